@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/app/tuning/plan/tune.h"
-#include "engine/app/tuning/tradeoff/measure/haptics/link_replay.h"
-#include "engine/app/tuning/tradeoff/measure/haptics/streamline.h"
-#include "engine/app/tuning/tradeoff/measure/rendering/render_workload.h"
+#include "engine/app/tuning/choose/tune.h"
+#include "engine/app/tuning/measure/haptics/link_replay.h"
+#include "engine/app/tuning/measure/haptics/streamline.h"
+#include "engine/app/tuning/measure/rendering/render_workload.h"
 #include "engine/base/numbers.h"
 #include "engine/scene/prepare.h"
 #include "haptics/build/build_program.h"
@@ -88,7 +88,7 @@ void row(const std::string& field, const std::string& target, const std::string&
 }
 
 /// The chosen point and the cheapest of the sweep whose error is at most `error`; times of both in turns, as the last of the sweep.
-int cheapest_within(const std::vector<tradeoff::Point>& sweep, double error) {
+int cheapest_within(const std::vector<tuning::Point>& sweep, double error) {
   int best = -1;
   for (std::size_t i = 0; i < sweep.size(); ++i)
     if (sweep[i].error <= error && (best < 0 || sweep[i].time.median < sweep[static_cast<std::size_t>(best)].time.median))
@@ -117,12 +117,12 @@ void eye_rows(const Case& c, scene::Scene& scene, std::vector<scene::Scene>& coa
   const render::FramePacket packet = get(render::make_frame(scene, 400, 300));
   render::FramePacket clear = packet;
   clear.background[3] = 0;
-  const plan::ImageCurve curve =
-      get(plan::measure_image_curve(*renderer, packet, get(plan::detect_quality_level_options(*renderer, packet)), [](double) {}));
-  const double told = tradeoff::min_resolvable_error(curve.curve);
+  const tuning::ImageCurve curve =
+      get(tuning::measure_image_curve(*renderer, packet, get(tuning::detect_quality_level_options(*renderer, packet)), [](double) {}));
+  const double told = tuning::min_resolvable_error(curve.curve);
   need(renderer->draw(packet, render::balanced_settings()));
   const auto sweep = all_settings(renderer->can_draw_fast(packet), packet.volumes.front().is_shaded);
-  const auto truth = get(tradeoff::render_image(*renderer, clear, render::converged_level(0.125)));
+  const auto truth = get(tuning::render_image(*renderer, clear, render::converged_level(0.125)));
   std::vector<render::FramePacket> levels;
   std::vector<std::unique_ptr<render::Renderer>> renderers;  // one a level, or each would make its mirrors again
   for (scene::Scene& coarse : coarser) {
@@ -136,7 +136,7 @@ void eye_rows(const Case& c, scene::Scene& scene, std::vector<scene::Scene>& coa
   }
   const auto error_of = [&](render::Renderer& by, render::FramePacket drawn, const render::RenderSettings& s) {
     drawn.background[3] = 0;
-    return render::measure_error(get(tradeoff::render_image(by, drawn, s)), truth,
+    return render::measure_error(get(tuning::render_image(by, drawn, s)), truth,
                                  {packet.background[0], packet.background[1], packet.background[2]})
         .rmse;
   };
@@ -144,14 +144,14 @@ void eye_rows(const Case& c, scene::Scene& scene, std::vector<scene::Scene>& coa
   wanted[0].max_image_error = std::max(1.0, 1.5 * told);
   wanted[1].max_image_error = 4 * *wanted[0].max_image_error;
   double fast = 1e9, slow = 0;
-  for (const tradeoff::Point& p : curve.curve.points) fast = std::min(fast, p.time.median), slow = std::max(slow, p.time.median);
+  for (const tuning::Point& p : curve.curve.points) fast = std::min(fast, p.time.median), slow = std::max(slow, p.time.median);
   wanted[2].max_image_ms = std::sqrt(fast * slow);
-  std::vector<plan::ImageTuning> plans;
-  tradeoff::Curve times;
-  std::vector<tradeoff::TimedRun> repeats;
+  std::vector<tuning::ImageTuning> plans;
+  tuning::Curve times;
+  std::vector<tuning::TimedRun> repeats;
   const auto add = [&](render::Renderer& by, const render::FramePacket& drawn, const render::RenderSettings& s,
                        const std::string& on = "") {
-    tradeoff::Point p;
+    tuning::Point p;
     p.setting = render::describe(s) + on;
     p.error = error_of(by, drawn, s);
     times.points.push_back(p);
@@ -162,9 +162,9 @@ void eye_rows(const Case& c, scene::Scene& scene, std::vector<scene::Scene>& coa
     for (const auto& s : sweep) add(*renderers[k], levels[k], s, fmt::format(", level {}", k + 1));
   const std::size_t swept = times.points.size();
   for (const scene::TuningTargets& plan : wanted) plans.emplace_back(curve, plan), add(*renderer, packet, plans.back().settings());
-  need(tradeoff::time_points(times, repeats, 10, 5));
+  need(tuning::time_points(times, repeats, 10, 5));
   for (std::size_t k = 0; k < plans.size(); ++k) {
-    const tradeoff::Point& chosen = times.points[swept + k];
+    const tuning::Point& chosen = times.points[swept + k];
     const double goal = std::max({told, wanted[k].max_image_error.value_or(chosen.error)});
     const int best = cheapest_within(times.points, goal);
     row(c.name,
@@ -178,49 +178,49 @@ void eye_rows(const Case& c, scene::Scene& scene, std::vector<scene::Scene>& coa
 }
 
 void hand_rows(const Case& c, scene::Scene scene) {
-  tradeoff::Workload subject{std::move(scene), tradeoff::select_effort("quick"), {}, {}, 1000, {}, {}};
-  need(tradeoff::add_haptics(subject, {}));
-  const auto curves = get(plan::measure_tick_curves(subject));
+  tuning::Workload subject{std::move(scene), tuning::select_effort("quick"), {}, {}, 1000, {}, {}};
+  need(tuning::add_haptics(subject, {}));
+  const auto curves = get(tuning::measure_tick_curves(subject));
   for (const std::string& s : subject.skipped) fmt::print(stderr, "{}: {}\n", c.name, s);
-  const auto found = plan::to_tick_curves(subject.scene, curves, 1000);
+  const auto found = tuning::to_tick_curves(subject.scene, curves, 1000);
   if (!found || found->links.empty()) return;
-  const plan::LinkCurve& link = found->links.front();
-  const double told = tradeoff::min_resolvable_error(link.curve) * link.length;
+  const tuning::LinkCurve& link = found->links.front();
+  const double told = tuning::min_resolvable_error(link.curve) * link.length;
   std::vector<scene::TuningTargets> wanted(3);
   wanted[0].max_proxy_error = std::max(1e-4 * link.length, 1.5 * told);
   wanted[1].max_proxy_error = std::max(1e-9 * link.length, 1.5 * told);
   scene::TuningTargets quickest;
   quickest.max_tick_us = 1e-9;
-  const plan::TickTuning cheap(*found, quickest);
+  const tuning::TickTuning cheap(*found, quickest);
   wanted[2].max_tick_us = 1.6 * cheap.expected_us();
   // another motion: slower, and a little beside
-  const tradeoff::NamedLink own = tradeoff::find_links(subject.scene, "streamline").front();
-  const auto along = tradeoff::motion_along_streamline(subject.scene, own, 1);
-  tradeoff::ProbeMotion motion = *along;
+  const tuning::NamedLink own = tuning::find_links(subject.scene, "streamline").front();
+  const auto along = tuning::motion_along_streamline(subject.scene, own, 1);
+  tuning::ProbeMotion motion = *along;
   const double beside = 0.002 * link.length;
   motion.position_at = [along, beside](double t) {
     return along->position_at(0.9 * t) + beside * Vec3(std::sin(9 * t), std::cos(7 * t), std::sin(5 * t));
   };
   const auto path = motion.samples(1000);
-  const field::VectorFieldPtr field = tradeoff::find_link_field(subject.scene, own.node).vector;
+  const field::VectorFieldPtr field = tuning::find_link_field(subject.scene, own.node).vector;
   const Vec3 seed = *get(json::get_optional_vec3(own.node, "seed"));
   const auto line =
       get(flow::trace({field.get(), false, 0}, seed, {.length = 10.2 * link.length, .tolerance = 1e-13, .hermite_tolerance = 1e-13}));
   const flow::NearestOnCurve nearest(line);
   std::vector<haptics::HapticProgram> programs;
-  tradeoff::Curve times;
+  tuning::Curve times;
   const auto add = [&](haptics::HapticProgram program, const std::string& words) {
-    programs.push_back(tradeoff::without_widgets(program));
+    programs.push_back(tuning::without_widgets(program));
     double far2 = 0;
-    tradeoff::run_ticks(programs.back(), path,
-                        [&](const HapticState& out) { far2 = std::max(far2, nearest.find_exact(out.links[0].proxy).distance2); });
-    tradeoff::Point p;
+    tuning::run_ticks(programs.back(), path,
+                      [&](const HapticState& out) { far2 = std::max(far2, nearest.find_exact(out.links[0].proxy).distance2); });
+    tuning::Point p;
     p.setting = words;
     p.error = std::sqrt(far2);
     times.points.push_back(p);
   };
   const auto online = [&](flow::Method method, double tolerance) {
-    return tradeoff::isolate_link(*subject.program, own.name, haptics::make_online_streamline({field, false, 0, method, tolerance, seed}));
+    return tuning::isolate_link(*subject.program, own.name, haptics::make_online_streamline({field, false, 0, method, tolerance, seed}));
   };
   using flow::Method;
   add(*subject.program, "selected");
@@ -229,18 +229,18 @@ void hand_rows(const Case& c, scene::Scene scene) {
     for (double digits = 2; digits <= 13; digits += 0.5)
       add(online(m, std::pow(10.0, -digits)), fmt::format("{} 1e-{}", flow::to_string(m), digits));
   const std::size_t swept = times.points.size();
-  std::vector<plan::TickTuning> plans;
+  std::vector<tuning::TickTuning> plans;
   for (const scene::TuningTargets& plan : wanted) {
     plans.emplace_back(*found, plan);
-    const plan::TunedLink& planned = plans.back().links().front();
-    for (const auto& s : tradeoff::streamline_settings(own.node))
+    const tuning::TunedLink& planned = plans.back().links().front();
+    for (const auto& s : tuning::streamline_settings(own.node))
       if (s.label == planned.setting) add(s.is_selected ? *subject.program : online(*s.method, s.tolerance.value_or(1e-9)), s.label);
   }
-  std::vector<tradeoff::TimedRun> repeats;
-  for (const haptics::HapticProgram& program : programs) repeats.push_back(tradeoff::make_tick_run(program, path));
-  need(tradeoff::time_points(times, repeats, 5, 15));
+  std::vector<tuning::TimedRun> repeats;
+  for (const haptics::HapticProgram& program : programs) repeats.push_back(tuning::make_tick_run(program, path));
+  need(tuning::time_points(times, repeats, 5, 15));
   for (std::size_t k = 0; k < plans.size(); ++k) {
-    const tradeoff::Point& chosen = times.points[swept + k];
+    const tuning::Point& chosen = times.points[swept + k];
     const double goal = std::max(told, wanted[k].max_proxy_error.value_or(chosen.error));
     const int best = cheapest_within(times.points, goal);
     row(c.name,

@@ -10,7 +10,7 @@
 #include "engine/app/cli/io_conflicts.h"
 #include "engine/app/cli/plugins.h"
 #include "engine/app/haptics/tick_csv.h"
-#include "engine/app/tuning/plan/tick_tuning.h"
+#include "engine/app/tuning/choose/tick_tuning.h"
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
@@ -189,7 +189,7 @@ Outcome LogProgramBuilder::reload_scene(const std::optional<std::string>& own_te
     CATENA_TRY(scene_, open_scene(scene_path_, field_options_));
     // applies the recorded tuning: tuning again would depend on the cost curves and on the speed of this computer
     if (scene_->tuning.has_haptic_targets() && is_scene_file(header_.scene_path))
-      return plan::apply_recorded_settings(header_.scene_text, *scene_);
+      return tuning::apply_recorded_settings(header_.scene_text, *scene_);
     return Done{};
   }
   CATENA_TRY(const std::vector<scene::FieldOverride> overrides, parse_field_overrides(field_options_));

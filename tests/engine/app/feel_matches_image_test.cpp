@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "engine/app/tuning/tradeoff/figures.h"
+#include "engine/app/tuning/figures/figures.h"
 #include "engine/app/viewer/edit/haptic_binding.h"
 #include "engine/app/viewer/input/pick.h"
 #include "engine/app/viewer/scene/scene_model.h"

@@ -117,7 +117,7 @@ TEST(ImageTuning, TimeBuysNothingThatRoundingHides) {
   auto measured = measure_image_curve(**renderer, *packet, *kind, [](double) {});
   ASSERT_TRUE(measured) << measured.error().message;
   // of settings of which no picture shows which one is better, the cheapest, whatever time there is
-  measured->curve.discretization_error = app::tradeoff::kNotMeasured;
+  measured->curve.discretization_error = app::tuning::kNotMeasured;
   auto& points = measured->curve.points;
   ASSERT_GE(points.size(), 3u);
   const int cheapest = int(points.size()) - 2;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // docs/reference/scene.md and docs/reference/study.md say what the readers read: every table of keys between "<!-- keys: NAME -->" and
-// "<!-- end -->" is the one that the components' own descriptions make, and none is missing. CATENA_WRITE_DOCUMENTS=1 in the environment
-// writes them anew (./run docs).
+// "<!-- end -->" is the one that the components' own descriptions make, and none is missing. So is every table of options between
+// "<!-- options: COMMAND -->" and "<!-- end -->" of docs/reference/command-line.md. CATENA_WRITE_DOCUMENTS=1 in the environment writes them
+// anew (./run docs).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "engine/app/cli/command_reference.h"
 #include "engine/app/cli/scene_schema.h"
 #include "engine/schema/documents.h"
 #include "engine/study/study.h"
@@ -18,16 +20,17 @@ namespace scene_document_test {
 
 using namespace catena;
 
-constexpr std::string_view kBegin = "<!-- keys: ", kBegun = " -->\n", kEnd = "<!-- end -->";
+constexpr std::string_view kKeys = "<!-- keys: ", kOptions = "<!-- options: ", kBegun = " -->\n", kEnd = "<!-- end -->";
 
-/// The text with its tables as they should be; the names of those it has.
-std::string with_tables(const std::string& text, const std::map<std::string, std::string>& tables, std::set<std::string>& named) {
+/// The text with its tables as they should be; the names of those it has. `marker`: what the line before a table begins with.
+std::string with_tables(const std::string& text, std::string_view marker, const std::map<std::string, std::string>& tables,
+                        std::set<std::string>& named) {
   std::string out;
   std::size_t at = 0;
   while (true) {
-    const std::size_t begin = text.find(kBegin, at);
+    const std::size_t begin = text.find(marker, at);
     if (begin == std::string::npos) return out + text.substr(at);
-    const std::size_t name_at = begin + kBegin.size(), name_end = text.find(kBegun, name_at), end = text.find(kEnd, name_end);
+    const std::size_t name_at = begin + marker.size(), name_end = text.find(kBegun, name_at), end = text.find(kEnd, name_end);
     EXPECT_NE(end, std::string::npos);
     if (end == std::string::npos) return text;
     const std::string name = text.substr(name_at, name_end - name_at);
@@ -39,14 +42,12 @@ std::string with_tables(const std::string& text, const std::map<std::string, std
   }
 }
 
-void check_document(const std::string& document, const std::vector<schema::Section>& components) {
-  std::map<std::string, std::string> tables;
-  for (const schema::Section& component : components)
-    for (auto& [name, table] : schema::markdown_tables(component)) tables.emplace(name, table);
+void check_document(const std::string& document, std::string_view marker, const std::map<std::string, std::string>& tables) {
   const std::string path = test::source_dir() + "/" + document, text = test::read_file(path);
   std::set<std::string> named, shown;
-  const std::string right = with_tables(text, tables, named);
-  for (const std::string& name : named) shown.insert(tables[name]);
+  const std::string right = with_tables(text, marker, tables, named);
+  for (const std::string& name : named)
+    if (tables.contains(name)) shown.insert(tables.at(name));
   for (const auto& [name, table] : tables) EXPECT_TRUE(shown.contains(table)) << document << " has no table \"" << name << "\"";
   if (std::getenv("CATENA_WRITE_DOCUMENTS") != nullptr)
     test::write_file(path, right);
@@ -54,8 +55,26 @@ void check_document(const std::string& document, const std::vector<schema::Secti
     EXPECT_TRUE(text == right) << document << " is not current; ./run docs writes it";
 }
 
-TEST(SceneDocument, SaysWhatTheReadersRead) { check_document("docs/reference/scene.md", app::scene_file_components()); }
+std::map<std::string, std::string> key_tables(const std::vector<schema::Section>& components) {
+  std::map<std::string, std::string> tables;
+  for (const schema::Section& component : components)
+    for (auto& [name, table] : schema::markdown_tables(component)) tables.emplace(name, table);
+  return tables;
+}
 
-TEST(SceneDocument, SaysWhatAStudyMaySay) { check_document("docs/reference/study.md", study::study_components()); }
+TEST(SceneDocument, SaysWhatTheReadersRead) { check_document("docs/reference/scene.md", kKeys, key_tables(app::scene_file_components())); }
+
+TEST(SceneDocument, SaysWhatAStudyMaySay) { check_document("docs/reference/study.md", kKeys, key_tables(study::study_components())); }
+
+TEST(SceneDocument, SaysWhatTheCommandsTake) {
+  std::map<std::string, std::string> tables;
+  for (const auto& [name, table] : app::option_tables()) {
+    // every option has a value type, and an example that the table of types has
+    EXPECT_EQ(table.find("| ? |"), std::string::npos) << name << table;
+    tables.emplace(name, table);
+  }
+  EXPECT_GE(tables.size(), 22u);
+  check_document("docs/reference/command-line.md", kOptions, tables);
+}
 
 }  // namespace scene_document_test

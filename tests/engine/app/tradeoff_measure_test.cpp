@@ -6,13 +6,13 @@
 #include <cmath>
 #include <filesystem>
 
-#include "engine/app/tuning/tradeoff/measure/discretization_error.h"
-#include "engine/app/tuning/tradeoff/measure/haptics/streamline.h"
-#include "engine/app/tuning/tradeoff/measure/pareto_choice.h"
-#include "engine/app/tuning/tradeoff/measure/rendering/render_workload.h"
-#include "engine/app/tuning/tradeoff/measure/timing.h"
-#include "engine/app/tuning/tradeoff/measure/workload.h"
-#include "engine/app/tuning/tradeoff/report/report.h"
+#include "engine/app/tuning/measure/discretization_error.h"
+#include "engine/app/tuning/measure/haptics/streamline.h"
+#include "engine/app/tuning/measure/pareto_choice.h"
+#include "engine/app/tuning/measure/rendering/render_workload.h"
+#include "engine/app/tuning/measure/timing.h"
+#include "engine/app/tuning/measure/workload.h"
+#include "engine/app/tuning/report/report.h"
 #include "engine/base/json.h"
 #include "engine/field/analytic/analytic.h"
 #include "engine/geometry/flow/curve.h"
@@ -23,7 +23,7 @@
 namespace tradeoff_measure_test {
 
 using namespace catena;
-using namespace catena::app::tradeoff;
+using namespace catena::app::tuning;
 using test::Table;
 
 /// Root mean square of grid - formula on a lattice that falls together with no voxels.

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "engine/app/tuning/tradeoff/report/report.h"
+#include "engine/app/tuning/report/report.h"
 #include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
@@ -71,13 +71,13 @@ TEST_F(TuningCommand, MeasuresOnceAndSaysWhatIsExpectedAndObserved) {
   const auto second = replay({"--max-proxy-error", "1e-2"});
   ASSERT_EQ(second.exit_code, 0) << second.err;
   EXPECT_EQ(test::read_file(only_file()), kept);
-  EXPECT_TRUE(app::tradeoff::is_report(only_file()));
+  EXPECT_TRUE(app::tuning::is_report(only_file()));
   // damage costs a sentence
   test::write_file(only_file(), kept.substr(0, 1000));
   const auto third = replay({});
   ASSERT_EQ(third.exit_code, 0) << third.err;
   EXPECT_NE(third.out.find("it is damaged; it is not believed, and measured anew"), std::string::npos) << third.out;
-  EXPECT_TRUE(app::tradeoff::read_report(only_file()));
+  EXPECT_TRUE(app::tuning::read_report(only_file()));
 }
 
 TEST_F(TuningCommand, LeavesWhatTheSceneStates) {
@@ -114,7 +114,7 @@ TEST_F(TuningCommand, ARecordingRepeatsToTheBitWhateverTheCacheSays) {
     if (const auto end = lies.find_first_of(",}", at); lies[at + 9] != 'n') lies.replace(at + 9, end - at - 9, "1e-15");
   for (std::size_t at = 0; (at = lies.find("\"median\": ", at)) != std::string::npos; at += 10) lies.insert(at + 10, "9");
   test::write_file(only_file(), lies);
-  ASSERT_TRUE(app::tradeoff::read_report(only_file()));
+  ASSERT_TRUE(app::tuning::read_report(only_file()));
   repeats({"replay", "--log", log});
   repeats({"replay", path, "--log", log});
   std::filesystem::remove_all(folder_ / "cache");

@@ -3,15 +3,15 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include "engine/app/tuning/plan/image_tuning.h"
-#include "engine/app/tuning/plan/tick_tuning.h"
+#include "engine/app/tuning/choose/image_tuning.h"
+#include "engine/app/tuning/choose/tick_tuning.h"
 #include "render/quality/refinement.h"
 
 namespace plan_test {
 
 using namespace catena;
-using namespace catena::app::plan;
-using app::tradeoff::Point;
+using namespace catena::app::tuning;
+using app::tuning::Point;
 
 inline Point make_point(double error, double time, const std::string& setting = "", double spread = 0.01) {
   Point p;

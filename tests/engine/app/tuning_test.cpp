@@ -6,15 +6,15 @@
 #include <cmath>
 #include <filesystem>
 
-#include "engine/app/tuning/plan/tune.h"
+#include "engine/app/tuning/choose/tune.h"
 #include "engine/app/viewer/window/live_tuning.h"
 #include "tests/engine/app/tuning_fixtures.h"
 #include "tests/support/support.h"
 
 namespace plan_test {
 
-using app::tradeoff::pick_point;
-using app::tradeoff::PickedPoint;
+using app::tuning::pick_point;
+using app::tuning::PickedPoint;
 
 TEST(TuningChoice, TakesTheCheapestThatMeetsTheError) {
   const Curve curve = four_point_curve();
@@ -37,7 +37,7 @@ TEST(TuningChoice, NeverAsksForMoreThanTheDataHold) {
   // nor does time buy it
   EXPECT_EQ(pick_point(curve, {{}, 100.0}).point, 1);
   EXPECT_FALSE(pick_point(curve, {4.0, {}}).at_floor);
-  curve.discretization_error = app::tradeoff::kNotMeasured, curve.reference_error = 1;
+  curve.discretization_error = app::tuning::kNotMeasured, curve.reference_error = 1;
   EXPECT_EQ(pick_point(curve, {0.5, {}}).point, 2);
 }
 

@@ -19,7 +19,7 @@ void draw_numbers(const char* what, const std::string& expected, const std::stri
 
 void draw_eye(PanelContext& context) {
   const LiveTuning& live = context.tuning;
-  const plan::ImageTuning& eye = *live.image_tuning;
+  const tuning::ImageTuning& eye = *live.image_tuning;
   ImGui::TextWrapped("%s", render::describe(eye.settings()).c_str());
   const auto error = context.scheduler.rmse();
   draw_numbers("the picture", fmt::format("{:.2g}/255, {:.3g} ms", eye.expected_error(), eye.expected_ms()),
@@ -31,7 +31,7 @@ void draw_eye(PanelContext& context) {
 
 void draw_hand(PanelContext& context) {
   const LiveTuning& live = context.tuning;
-  for (const plan::TunedLink& link : live.tick_tuning->links()) ImGui::TextWrapped("%s: %s", link.link.c_str(), link.setting.c_str());
+  for (const tuning::TunedLink& link : live.tick_tuning->links()) ImGui::TextWrapped("%s: %s", link.link.c_str(), link.setting.c_str());
   const double us = context.haptic_session.servo().stats().compute.p50_us;
   draw_numbers("the hand", fmt::format("{:.2g}, {:.3g} us", live.tick_tuning->expected_error(), live.tick_tuning->expected_us()),
                fmt::format("{}, {:.3g} us", live.tracking_error ? fmt::format("{:.2g}", *live.tracking_error) : "not yet", us));

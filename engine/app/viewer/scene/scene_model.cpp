@@ -79,7 +79,7 @@ Result<scene::Scene> SceneModel::parse_document() const {
   return scene;
 }
 
-Outcome SceneModel::set_tick_tuning(std::optional<plan::TickTuning> plan) {
+Outcome SceneModel::set_tick_tuning(std::optional<tuning::TickTuning> plan) {
   std::swap(tick_tuning_, plan);
   const Outcome done = edit_document([](scene::Document&) -> Outcome { return Done{}; });
   if (!done) std::swap(tick_tuning_, plan);

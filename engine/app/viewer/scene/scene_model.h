@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "engine/app/tuning/plan/tick_tuning.h"
+#include "engine/app/tuning/choose/tick_tuning.h"
 #include "engine/base/result.h"
 #include "engine/scene/document.h"
 #include "render/frame/camera.h"
@@ -49,7 +49,7 @@ class SceneModel {
   Outcome save(const std::string& path);
 
   /// Applies the tick tuning to the links, immediately and whenever the scene is read. An Error leaves everything unchanged.
-  Outcome set_tick_tuning(std::optional<plan::TickTuning> plan);
+  Outcome set_tick_tuning(std::optional<tuning::TickTuning> plan);
   /// Returns the text of the scene as used for haptics, with the tick tuning applied; for recordings.
   std::string recording_text() const;
 
@@ -73,7 +73,7 @@ class SceneModel {
   scene::Document document_;
   std::function<Outcome(scene::Scene&)> apply_overrides_;
   Validator validator_;
-  std::optional<plan::TickTuning> tick_tuning_;
+  std::optional<tuning::TickTuning> tick_tuning_;
   scene::Scene scene_;
   bool changed_ = false;
 };

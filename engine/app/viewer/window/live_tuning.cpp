@@ -90,21 +90,21 @@ bool LiveTuning::matches(const FrameRequest& next) const {
          render::describe(next.settings) == render::describe(image_tuning->settings());
 }
 
-Outcome measure_tick_costs(LiveTuning& live, SceneModel& scene, const HapticSession& hand, const plan::MessageCallback& tell) {
-  CATENA_TRY(plan::TickTuning made, plan::tune_ticks(scene.scene(), scene.document().text(), live.target, hand.device().settings.rate_hz,
-                                                     hand.field_options(), tell));
+Outcome measure_tick_costs(LiveTuning& live, SceneModel& scene, const HapticSession& hand, const tuning::MessageCallback& tell) {
+  CATENA_TRY(tuning::TickTuning made, tuning::tune_ticks(scene.scene(), scene.document().text(), live.target,
+                                                         hand.device().settings.rate_hz, hand.field_options(), tell));
   if (made.is_empty()) return Done{};
   live.tick_tuning = std::move(made);
   return scene.set_tick_tuning(live.tick_tuning);
 }
 
 Outcome measure_image_costs(LiveTuning& live, ProgressiveScheduler& pacing, render::Renderer& renderer, const render::FramePacket& packet,
-                            const SceneModel& scene, const HapticSession& hand, const plan::MessageCallback& tell) {
+                            const SceneModel& scene, const HapticSession& hand, const tuning::MessageCallback& tell) {
   if (!render::uses_raycast(packet)) {
     tell("tuning: the image has no settings: nothing in it is drawn by rays");
     return Done{};
   }
-  auto made = plan::tune_image(renderer, packet, live.target, {scene.scene(), scene.document().text(), hand.field_options()}, tell);
+  auto made = tuning::tune_image(renderer, packet, live.target, {scene.scene(), scene.document().text(), hand.field_options()}, tell);
   if (!made) return Error{made.error().message, true};
   live.image_tuning = std::move(*made);
   tell(live.image_tuning->summary());

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "engine/app/render/render_options.h"
-#include "engine/app/tuning/plan/tracking_error.h"
-#include "engine/app/tuning/plan/tune.h"
+#include "engine/app/tuning/choose/tracking_error.h"
+#include "engine/app/tuning/choose/tune.h"
 #include "engine/app/viewer/input/haptic_session.h"
 #include "engine/app/viewer/scene/scene_model.h"
 #include "engine/app/viewer/window/progressive_scheduler.h"
@@ -20,9 +20,9 @@ struct LiveTuning {
   scene::TuningTargets target;        ///< Current targets: of the command line, until the scene's text states others.
   scene::TuningTargets scene_target;  ///< Targets of the scene's text when last read.
   bool has_fixed_quality = false;     ///< The image has fixed settings (draft, balanced ..); the tuning does not change them.
-  std::optional<plan::ImageTuning> image_tuning;
-  std::optional<plan::TickTuning> tick_tuning;
-  std::optional<plan::TrackingErrorMonitor> observer;
+  std::optional<tuning::ImageTuning> image_tuning;
+  std::optional<tuning::TickTuning> tick_tuning;
+  std::optional<tuning::TrackingErrorMonitor> observer;
   double tuned_image_ms = 0;             ///< Time of the last frame with the tuned settings; 0: none so far.
   std::optional<double> tracking_error;  ///< Measured, world units.
 
@@ -46,9 +46,9 @@ struct LiveTuning {
 
 /// Measure the cost curves of tick or image, or take them from the cache, and apply the settings chosen for the targets. An Error means
 /// that there is no tick tuning, or a failure of the system. `packet`: of a refined frame; `tell` receives messages for the user.
-Outcome measure_tick_costs(LiveTuning& live, SceneModel& scene, const HapticSession& hand, const plan::MessageCallback& tell);
+Outcome measure_tick_costs(LiveTuning& live, SceneModel& scene, const HapticSession& hand, const tuning::MessageCallback& tell);
 Outcome measure_image_costs(LiveTuning& live, ProgressiveScheduler& pacing, render::Renderer& renderer, const render::FramePacket& packet,
-                            const SceneModel& scene, const HapticSession& hand, const plan::MessageCallback& tell);
+                            const SceneModel& scene, const HapticSession& hand, const tuning::MessageCallback& tell);
 /// Sets default targets (image error 2/255, proxy error 1e-9) where there are none: equivalent to a scene without targets.
 void set_default_target(LiveTuning& live);
 /// Call after the scene's text was read again: applies the targets it states. An Error leaves the links as they are.

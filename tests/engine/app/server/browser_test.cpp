@@ -58,7 +58,7 @@ TEST(BrowserClient, ThePageShowsTurnsFeelsAndChanges) {
   // the pointer is the hand; the wheel pushes it into the ball until it pushes back
   browser.mouse("mouseMoved", x, y);
   browser.key("h");
-  ASSERT_TRUE(browser.wait_until("catena.state.hand"));
+  ASSERT_TRUE(browser.wait_until("catena.state.probe"));
   // it began within the ball, too deep to be held: out, and in again from there
   for (int i = 0; i < 4; ++i) browser.mouse("mouseWheel", x, y, "\"deltaX\": 0, \"deltaY\": 100");
   EXPECT_TRUE(browser.wait_until("catena.state.links[0].status == 'FREE'"));
@@ -128,7 +128,7 @@ TEST(BrowserClient, DISABLED_LatencyAndRate) {
   browser.key("r");
   browser.mouse("mouseMoved", x, 280);
   browser.key("h");
-  EXPECT_TRUE(browser.wait_until("catena.state.hand"));
+  EXPECT_TRUE(browser.wait_until("catena.state.probe"));
   for (int i = 0; i < 8; ++i) browser.mouse("mouseWheel", x, 280, "\"deltaX\": 0, \"deltaY\": -100");
   const double exact = browser.evaluate_number("catena.exact");
   EXPECT_TRUE(browser.wait_until("sent.size == 0 && catena.exact > " + std::to_string(exact)));

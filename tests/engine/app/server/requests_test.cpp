@@ -23,13 +23,13 @@ TEST(ClientRequests, SayWhatAPageMayAskFor) {
   const auto opacity = parse_request(R"({"do": "opacity", "item": "volumes[0]", "points": [[0, 0], [1, 5]]})");
   ASSERT_TRUE(opacity);
   EXPECT_LT(std::get<OpacityRequest>(*opacity).points[1].alpha, 1);
-  EXPECT_EQ(std::get<ControlRequest>(*parse_request(R"({"do": "take"})")), ControlRequest::take);
+  EXPECT_EQ(std::get<ControlRequest>(*parse_request(R"({"do": "take_control"})")), ControlRequest::take);
   EXPECT_EQ(std::get<Action>(*parse_request(R"({"do": "undo"})")), Action::undo);
   EXPECT_EQ(std::get<StepRequest>(*parse_request(R"({"do": "step", "value": 3})")).step, 3);
   EXPECT_TRUE(std::get<RecordRequest>(*parse_request(R"({"do": "record"})")).on);
   EXPECT_FALSE(std::get<RecordRequest>(*parse_request(R"({"do": "stop_recording"})")).on);
-  EXPECT_EQ(std::get<TuningRequest>(*parse_request(R"({"do": "plan", "place": 0.25})")).position, 0.25);
-  EXPECT_FALSE(std::get<TuningRequest>(*parse_request(R"({"do": "plan"})")).position);
+  EXPECT_EQ(std::get<TuningRequest>(*parse_request(R"({"do": "tune", "position": 0.25})")).position, 0.25);
+  EXPECT_FALSE(std::get<TuningRequest>(*parse_request(R"({"do": "tune"})")).position);
 }
 
 TEST(ClientRequests, NothingElseIsTaken) {
@@ -61,8 +61,8 @@ TEST(ClientRequests, NothingElseIsTaken) {
                           R"({"do": "step", "value": -1})",
                           R"({"do": "step", "value": 0.5})",
                           R"({"do": "step", "value": 1e12})",
-                          R"({"do": "plan", "place": 1.5})",
-                          R"({"do": "plan", "place": "fast"})",
+                          R"({"do": "tune", "position": 1.5})",
+                          R"({"do": "tune", "position": "fast"})",
                           R"({"do": "record", "do": "x"})",
                           R"({"do": "map", "item": "volumes[0]"})"})
     EXPECT_FALSE(parse_request(bad)) << bad;

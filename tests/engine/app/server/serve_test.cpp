@@ -40,7 +40,7 @@ TEST(Serve, APageSeesMovesFeelsAndChanges) {
   ASSERT_NE(served.port(), 0) << served.err();
   const auto page = served.page();
   ASSERT_TRUE(page->is_open());
-  EXPECT_EQ(word_of(test::wait_for_message(*page, "role"), "hand"), "yours");
+  EXPECT_EQ(word_of(test::wait_for_message(*page, "role"), "control"), "yours");
   // coarse and quick at first, every pixel as it is when nothing moves
   const test::SentFrame first = test::wait_for_frame(*page);
   EXPECT_TRUE(first.file.starts_with("\xff\xd8\xff")) << "JPEG";
@@ -57,7 +57,7 @@ TEST(Serve, APageSeesMovesFeelsAndChanges) {
   EXPECT_EQ(test::wait_for_frame(*page, [](const test::SentFrame& p) { return p.width == 200; }).height, 100u);
   // the hand goes onto the ball, and the wheel pushes it in
   page->send(R"({"do": "move", "number": 6, "pieces": [[100, 50, 0, 0, 0, 0]]})");
-  page->send(R"({"do": "hand"})");
+  page->send(R"({"do": "probe"})");
   // it began within the ball, too deep to be held: out, and in again from there
   page->send(R"({"do": "move", "number": 7, "pieces": [[100, 50, 0, 0, -5, 0]]})");
   test::wait_for_message(*page, "state", [](const Node& state) {
@@ -66,7 +66,7 @@ TEST(Serve, APageSeesMovesFeelsAndChanges) {
   });
   page->send(R"({"do": "move", "number": 8, "pieces": [[100, 50, 0, 0, 9, 0]]})");
   const Node pushed = test::wait_for_message(*page, "state", [](const Node& state) { return number_of(state, "force") > 0.05; });
-  EXPECT_TRUE(pushed.find("hand") != nullptr && pushed.find("hand")->boolean);
+  EXPECT_TRUE(pushed.find("probe") != nullptr && pushed.find("probe")->boolean);
   ASSERT_TRUE(pushed.find("links") != nullptr && pushed.find("links")->items.size() == 1);
   EXPECT_EQ(word_of(pushed.find("links")->items[0], "name"), "skin");
   // a smaller ball, for eye and hand: the hand is outside
@@ -99,14 +99,14 @@ TEST(Serve, OnePageHasTheHandAndOthersWatch) {
   test::ServeProcess served(ball.path);
   ASSERT_NE(served.port(), 0) << served.err();
   auto first = served.page();
-  EXPECT_EQ(word_of(test::wait_for_message(*first, "role"), "hand"), "yours");
+  EXPECT_EQ(word_of(test::wait_for_message(*first, "role"), "control"), "yours");
   const auto second = served.page();
-  EXPECT_EQ(word_of(test::wait_for_message(*second, "role"), "hand"), "taken");
+  EXPECT_EQ(word_of(test::wait_for_message(*second, "role"), "control"), "taken");
   EXPECT_EQ(number_of(test::wait_for_message(*first, "role", [](const Node& r) { return number_of(r, "viewers") == 2; }), "viewers"), 2);
   EXPECT_NE(test::wait_for_frame(*second).number, 0u);
   // who watches changes nothing
   second->send(R"({"do": "level", "item": "isosurfaces[0]", "value": 0.25})");
-  second->send(R"({"do": "take"})");
+  second->send(R"({"do": "take_control"})");
   first->send(R"({"do": "level", "item": "isosurfaces[0]", "value": 0.75})");
   std::vector<double> levels;
   test::wait_for_message(*second, "scene", [&](const Node& scene) {
@@ -116,13 +116,13 @@ TEST(Serve, OnePageHasTheHandAndOthersWatch) {
   for (const double level : levels) EXPECT_NE(level, 0.25);
   // the hand is free when its page has gone
   first->close();
-  EXPECT_EQ(word_of(test::wait_for_message(*second, "role"), "hand"), "free");
-  second->send(R"({"do": "take"})");
-  EXPECT_EQ(word_of(test::wait_for_message(*second, "role"), "hand"), "yours");
-  second->send(R"({"do": "give"})");
-  EXPECT_EQ(word_of(test::wait_for_message(*second, "role"), "hand"), "free");
+  EXPECT_EQ(word_of(test::wait_for_message(*second, "role"), "control"), "free");
+  second->send(R"({"do": "take_control"})");
+  EXPECT_EQ(word_of(test::wait_for_message(*second, "role"), "control"), "yours");
+  second->send(R"({"do": "release_control"})");
+  EXPECT_EQ(word_of(test::wait_for_message(*second, "role"), "control"), "free");
   const auto third = served.page();
-  EXPECT_EQ(word_of(test::wait_for_message(*third, "role"), "hand"), "yours") << "who comes while it is free";
+  EXPECT_EQ(word_of(test::wait_for_message(*third, "role"), "control"), "yours") << "who comes while it is free";
   EXPECT_EQ(served.interrupt_and_wait(), 0);
 }
 
@@ -247,14 +247,14 @@ TEST(Serve, ThePlanOfTheHandIsMeasuredAndChosen) {
   test::ServeProcess served(folder / "line.json");
   ASSERT_NE(served.port(), 0) << served.err();
   const auto page = served.page();
-  page->send(R"({"do": "plan", "place": 0.5})");
+  page->send(R"({"do": "tune", "position": 0.5})");
   EXPECT_EQ(test::wait_for_message(*page, "note").kind, catena::json::Kind::string) << "nothing is measured yet";
-  page->send(R"({"do": "plan"})");
-  const auto planned = [](const Node& s) { return s.find("plan") != nullptr && s.find("plan")->kind == catena::json::Kind::object; };
+  page->send(R"({"do": "tune"})");
+  const auto planned = [](const Node& s) { return s.find("tuning") != nullptr && s.find("tuning")->kind == catena::json::Kind::object; };
   const Node measured = test::wait_for_message(*page, "state", planned);
   ASSERT_TRUE(planned(measured));
-  EXPECT_NE(word_of(*measured.find("plan"), "hand").find("curve"), std::string::npos);
-  page->send(R"({"do": "plan", "place": 0})");
+  EXPECT_NE(word_of(*measured.find("tuning"), "haptics").find("curve"), std::string::npos);
+  page->send(R"({"do": "tune", "position": 0})");
   const Node chosen = test::wait_for_message(*page, "state", [](const Node& s) { return word_of(s, "undo") == "accuracy"; });
   EXPECT_EQ(word_of(chosen, "undo"), "accuracy");
   EXPECT_TRUE(planned(chosen));
@@ -269,19 +269,19 @@ TEST(Serve, ThePlanOfTheEyeIsMeasuredAndChosen) {
   test::ServeProcess served(folder / "cloud.json");
   ASSERT_NE(served.port(), 0) << served.err();
   const auto page = served.page();
-  page->send(R"({"do": "plan"})");
+  page->send(R"({"do": "tune"})");
   const auto eye = [](const Node& s) {
-    const Node* plan = s.find("plan");
-    return plan != nullptr && plan->kind == catena::json::Kind::object ? word_of(*plan, "eye") : std::string();
+    const Node* plan = s.find("tuning");
+    return plan != nullptr && plan->kind == catena::json::Kind::object ? word_of(*plan, "image") : std::string();
   };
   const std::string measured = eye(test::wait_for_message(*page, "state", [&](const Node& s) { return !eye(s).empty(); }));
   EXPECT_NE(measured.find("/255, "), std::string::npos) << measured;
   // the slider's two ends; the place that is told is that of the stop that was chosen
   const auto error_of = [](const std::string& words) { return std::stod(words.substr(words.find(": ") + 2)); };
   const auto at = [&](const char* place, double least, double most) {
-    page->send(R"({"do": "plan", "place": )" + std::string(place) + "}");
+    page->send(R"({"do": "tune", "position": )" + std::string(place) + "}");
     return eye(test::wait_for_message(*page, "state", [&](const Node& s) {
-      const double told = eye(s).empty() ? -1 : number_of(*s.find("plan"), "place");
+      const double told = eye(s).empty() ? -1 : number_of(*s.find("tuning"), "position");
       return word_of(s, "undo") == "accuracy" && told >= least && told <= most;
     }));
   };
