@@ -12,7 +12,7 @@ namespace catena::app {
 namespace {
 
 constexpr double kFarthest = 1e5;  // maximum magnitude of a pointer coordinate, pixels
-constexpr std::pair<std::string_view, Action> kActions[] = {{"hand", Action::toggle_probe_mode},
+constexpr std::pair<std::string_view, Action> kActions[] = {{"probe", Action::toggle_probe_mode},
                                                             {"fit", Action::fit_view},
                                                             {"first_view", Action::reset_view},
                                                             {"along_x", Action::view_along_plus_x},
@@ -76,8 +76,8 @@ Result<ClientRequest> parse_request(std::string_view words) {
   CATENA_TRY(const std::string what, json::require_string(node, "do"));
   for (const auto& [word, action] : kActions)
     if (what == word) return ClientRequest{action};
-  if (what == "take") return ClientRequest{ControlRequest::take};
-  if (what == "give") return ClientRequest{ControlRequest::release};
+  if (what == "take_control") return ClientRequest{ControlRequest::take};
+  if (what == "release_control") return ClientRequest{ControlRequest::release};
   if (what == "record") return ClientRequest{RecordRequest{true}};
   if (what == "stop_recording") return ClientRequest{RecordRequest{false}};
   if (what == "step") {
@@ -85,11 +85,11 @@ Result<ClientRequest> parse_request(std::string_view words) {
     if (step < 0) return Error{"step: expected a value"};
     return ClientRequest{StepRequest{step}};
   }
-  if (what == "plan") {
-    if (node.find("place") == nullptr) return ClientRequest{TuningRequest{}};
-    CATENA_TRY(const double place, json::require_number(node, "place"));
-    if (!(place >= 0 && place <= 1)) return Error{"place: expected a number from 0 to 1"};
-    return ClientRequest{TuningRequest{place}};
+  if (what == "tune") {
+    if (node.find("position") == nullptr) return ClientRequest{TuningRequest{}};
+    CATENA_TRY(const double position, json::require_number(node, "position"));
+    if (!(position >= 0 && position <= 1)) return Error{"position: expected a number from 0 to 1"};
+    return ClientRequest{TuningRequest{position}};
   }
   if (what == "move") return move_of(node);
   if (what == "opacity") return opacity_of(node);

@@ -5,15 +5,15 @@
 ///                                      pointer and wheel input (navigation.h), pixels of the image;
 ///                                      held: sum of 1 left, 2 middle, 4 right button, 8 shift, 16 control, 32 space
 ///   {"do": "size", "width": W, "height": H}                of the image, pixels
-///   {"do": "hand" | "fit" | "first_view" | "along_x" | ...}  an action of the viewer (commands.h)
+///   {"do": "probe" | "fit" | "first_view" | "along_x" | ...}  an action of the viewer (commands.h)
 ///   {"do": "level", "item": "isosurfaces[0]", "value": V}
 ///   {"do": "opacity", "item": "volumes[0]", "points": [[value, alpha], ...]}
 ///   {"do": "map", "item": "volumes[0]", "name": "viridis"}
 ///   {"do": "step", "value": N}                             time step
 ///   {"do": "record" | "stop_recording"}                    records every haptic tick; the page can download the recording
-///   {"do": "plan", "place": S}                             position of the tuning slider, from 0, fast, to 1, exact;
-///                                                          without "place": measures the costs that the tuning uses
-///   {"do": "take" | "give"}                                takes or releases control, which one page has at a time
+///   {"do": "tune", "position": S}                          position of the tuning slider, from 0, fast, to 1, exact;
+///                                                          without "position": measures the costs that the tuning uses
+///   {"do": "take_control" | "release_control"}             takes or releases control, which one page has at a time
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -64,11 +64,11 @@ struct StepRequest {
 struct RecordRequest {
   bool on = false;
 };
-/// "plan": position of the tuning slider, 0 to 1; empty: measure the costs.
+/// "tune": position of the tuning slider, 0 to 1; empty: measure the costs.
 struct TuningRequest {
   std::optional<double> position;
 };
-/// "take" or "give".
+/// "take_control" or "release_control".
 enum class ControlRequest : std::uint8_t { take, release };
 
 /// Any request of a page.

@@ -73,8 +73,8 @@ void put(std::string& bytes, std::uint32_t number, int count) {
 
 }  // namespace
 
-std::string role_message(const std::string& hand, std::size_t viewers) {
-  return fmt::format(R"({{"role": {{"hand": {}, "viewers": {}}}}})", json_string(hand), viewers);
+std::string role_message(const std::string& control, std::size_t viewers) {
+  return fmt::format(R"({{"role": {{"control": {}, "viewers": {}}}}})", json_string(control), viewers);
 }
 
 std::string scene_message(SceneModel& host, HistogramCache& values) {
@@ -104,9 +104,9 @@ std::string plan_words(const LiveTuning& live) {
   if (!eye && !hand) return "null";
   std::string links;
   if (hand)
-    for (const plan::TunedLink& link : live.tick_tuning->links()) links += (links.empty() ? "" : ", ") + link.link + ": " + link.setting;
+    for (const tuning::TunedLink& link : live.tick_tuning->links()) links += (links.empty() ? "" : ", ") + link.link + ": " + link.setting;
   return fmt::format(
-      R"({{"place": {:.3f}, "eye": {}, "hand": {}}})", live.slider_position(),
+      R"({{"position": {:.3f}, "image": {}, "haptics": {}}})", live.slider_position(),
       json_string(eye ? fmt::format("{}: {:.2g}/255, {:.3g} ms", render::describe(live.image_tuning->settings()),
                                     live.image_tuning->expected_error(), live.image_tuning->expected_ms())
                       : ""),
@@ -124,8 +124,8 @@ std::string state_message(const HapticSession& hand, const SceneModel& scene, co
                          to_string(felt.links[i].status));
   const scene::Document& document = scene.document();
   return fmt::format(
-      R"({{"state": {{"force": {:.3f}, "most": {}, "links": [{}], "hand": {}, "picture": {}, "step": {}, "undo": {}, "redo": {}, )"
-      R"("recording": {}, "plan": {}}}}})",
+      R"({{"state": {{"force": {:.3f}, "max_force": {}, "links": [{}], "probe": {}, "picture": {}, "step": {}, "undo": {}, "redo": {}, )"
+      R"("recording": {}, "tuning": {}}}}})",
       norm(felt.force_n), json_number(scene.scene().coupling.max_force_n), links, more.probe_mode, json_string(more.image_description),
       step_words(scene.scene(), more.is_playing), json_string(document.undo_label()), json_string(document.redo_label()),
       recording_words(hand.recording(), more.recording_name), plan_words(more.tuning));

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 /// Messages to a page: JSON objects of one member each, and frames. Frame thread. The keys are those of the protocol.
-///   {"role": {"hand": "yours" | "free" | "taken", "viewers": N}}                     whether this page is in control
+///   {"role": {"control": "yours" | "free" | "taken", "viewers": N}}                  whether this page is in control
 ///   {"scene": {"name", "isosurfaces": [...], "volumes": [...], "maps": [...]}}       what can be edited
 ///   {"state": {
-///      "force": N, "most": N,                            force and maximum force, N
+///      "force": N, "max_force": N,                       force and maximum force, N
 ///      "links": [{"name", "status"}], "picture": "...",  "picture": description of the image
-///      "hand": true,                                     the pointer moves the probe
+///      "probe": true,                                    the pointer moves the probe
 ///      "step": {"now", "count", "time", "plays"},        "time": null if the time steps have no times
 ///      "undo": "isolevel", "redo": "",                   labels of what undo and redo change; empty: nothing
 ///      "recording": {"on", "seconds", "mb", "file"},     "file": name of the file to download; empty: none
-///      "plan": {"place", "eye", "hand"}}}                slider position, image tuning, tick tuning; null: not measured, or unused
+///      "tuning": {"position", "image", "haptics"}}}      slider position, image tuning, tick tuning; null: not measured, or unused
 ///   {"note": "one line"}
 /// A frame is a header of 16 bytes, little endian, followed by the image file: frame number (4 bytes), number of the newest input that the
 /// frame shows (4), width and height of the page's image (2, 2; the file may have fewer pixels), 1 for JPEG or 2 for PNG (1), 0 (1),
@@ -23,8 +23,8 @@
 
 namespace catena::app {
 
-/// The message "role". `hand`: "yours", "free" or "taken"; `viewers`: number of connected pages.
-std::string role_message(const std::string& hand, std::size_t viewers);
+/// The message "role". `control`: "yours", "free" or "taken"; `viewers`: number of connected pages.
+std::string role_message(const std::string& control, std::size_t viewers);
 /// The message "scene". `values`: cache of the histograms; those that are still being computed are sent with a later message.
 std::string scene_message(SceneModel& scene, HistogramCache& values);
 /// State of the session for the message "state", in addition to the haptics and the scene.

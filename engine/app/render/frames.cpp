@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "engine/app/render/frames.h"
+
+#include <csignal>
+
+#include "engine/app/cli/command.h"
+#include "engine/base/clock.h"
+#include "engine/io/field_cache.h"
+#include "engine/scene/time_steps.h"
+#include "render/extract/extract_internal.h"
+
+namespace catena::app {
+
+Result<render::FramePacket> Frames::packet(int frame) {
+  if (!steps_.empty()) {
+    scene::set_step(scene_, steps_[static_cast<std::size_t>(frame) % steps_.size()]);
+  }
+  scene_.animation_phase = options_.animation_phase + static_cast<double>(frame) / motion_.frames();
+  probe_.seek(scene_, options_.play_probe && motion_.frames() > 1 ? static_cast<double>(frame) / (motion_.frames() - 1) : 1);
+  CATENA_TRY(render::FramePacket packet, render::make_frame(scene_, size_.width, size_.height));
+  if (!steps_.empty() && frame + 1 < motion_.frames())
+    field::prefetch(scene::prefetch_requests(scene_, steps_[static_cast<std::size_t>(frame + 1) % steps_.size()]));
+  // the camera is fixed while the probe moves or time steps change
+  if (!base_view_ || (!options_.play_probe && steps_.empty())) base_view_ = packet.view, base_bounds_ = render::packet_bounds(packet);
+  const render::View view = motion_.view_at(*base_view_, base_bounds_, static_cast<double>(size_.width) / size_.height, frame);
+  render::set_view(scene_, view, packet);
+  CATENA_CHECK(render::check_screen_view(packet, scene_.stereo));
+  return packet;
+}
+
+Result<double> Frames::draw(int frame, Outputs* outputs) {
+  if (!interrupt_) interrupt_.emplace(std::vector{SIGINT, SIGTERM, SIGHUP});
+  const std::int64_t start = now_ns();
+  CATENA_TRY(const render::FramePacket next, packet(frame));
+  const double extract_ms = ms_since(start);
+  Outcome stopped = Done{};
+  bool interrupted = false;
+  const std::function<Outcome(const render::Band&)> take = [&](const render::Band& band) -> Outcome {
+    interrupted = interrupt_->is_requested();
+    if (interrupted) return Error{"interrupted"};
+    if (band.height == 0) {
+      if (progress != nullptr) progress->update(++tiles_done_);
+      return Done{};
+    }
+    if (first_ms == 0) first_ms = ms_since_process_start();
+    return stopped = outputs->write(band);
+  };
+  if (outputs != nullptr) CATENA_CHECK(outputs->begin_frame(frame));
+  const auto ms = render::render_tiled(*renderer, next, settings, plan, channels,
+                                       outputs != nullptr ? take : std::function<Outcome(const render::Band&)>());
+  CATENA_CHECK(stopped);
+  if (interrupted || interrupt_->is_requested()) throw MachineFailure{"interrupted: nothing half-written was kept"};
+  if (!ms) throw MachineFailure{ms.error().message};
+  if (outputs != nullptr) CATENA_CHECK(outputs->end_frame());
+  return extract_ms + ms->wall_ms;
+}
+
+Frames::Sample Frames::sample_of(const render::FramePacket& packet) const {
+  const bool whole = std::max(plan.samples_x(), plan.samples_y()) <= renderer->max_image_side() &&
+                     std::uint64_t(plan.samples_x()) * plan.samples_y() <= render::kMaxUntiledSamples;
+  if (plan.antialias == 1 && (plan.count() == 1 || whole)) return {packet};
+  const render::TileArea middle = plan.area(plan.columns() / 2, plan.rows() / 2);
+  return {render::make_tile_packet(packet, plan, middle),
+          double(middle.render_width) * middle.render_height / (double(plan.samples_x()) * plan.samples_y())};
+}
+
+}  // namespace catena::app
