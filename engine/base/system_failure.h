@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// System failures, distinguished from bad input by one table of errno codes: a full disk, a resource limit of the process, a device or
 /// server that does not respond. They end a command with exit code 1 and their cause; errors of a file or of the user end it with 2.
-/// docs/reference/command-line.md contains the same table. Any thread.
+/// docs/reference/errors.md contains the same table. Any thread.
 #pragma once
 #include <optional>
 #include <span>

@@ -23,7 +23,7 @@ TEST(Gallery, TheCommandsDrawThePictures) {
   fs::create_directory_symlink(test::source_dir() + "/assets", folder / "assets");
   fs::create_directories(folder / "out");
   const std::string text = test::read_file(test::source_dir() + "/docs/user/gallery.md");
-  const std::regex entry("!\\[[^\\]]+\\]\\(\\.\\./(assets/pictures/gallery/([\\w-]+\\.png))\\)\\n\\n```sh\\n([^`]+)```");
+  const std::regex entry("!\\[[^\\]]+\\]\\((?:\\.\\./)+(assets/pictures/gallery/([\\w-]+\\.png))\\)\\n\\n```sh\\n([^`]+)```");
   int compared = 0;
   for (auto it = std::sregex_iterator(text.begin(), text.end(), entry); it != std::sregex_iterator(); ++it) {
     const std::string kept = test::source_dir() + "/" + (*it)[1].str(), drawn = folder / "out/" + (*it)[2].str();

@@ -38,7 +38,7 @@ TEST(Site, EveryNameHasASentenceAndEveryLinkLeadsSomewhere) {
 
   // the public headers are in it, and so are the pages
   EXPECT_TRUE(test::exists(site + "/classcatena_1_1haptics_1_1Constraint.html"));
-  EXPECT_TRUE(test::exists(site + "/page-first-force.html"));
+  EXPECT_TRUE(test::exists(site + "/page-user-tutorials-first-force.html"));
   int pages = 0;
   std::set<std::string> known;
   for (const auto& entry : fs::directory_iterator(site)) {

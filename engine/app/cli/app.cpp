@@ -81,7 +81,8 @@ void add_memory_limit(CLI::App& program) {
     command
         ->add_option_function<double>(
             "--memory", [](double megabytes) { set_memory_limit(static_cast<std::uint64_t>(1e6 * megabytes)); },
-            "MB: the most memory that data may take (default: three quarters of what is free)")
+            "most memory that data may take (default: three quarters of what is free)")
+        ->type_name("MB")
         ->check(CLI::Range(1.0, 1e9));
   }
 }
@@ -89,7 +90,7 @@ void add_memory_limit(CLI::App& program) {
 // Adds --plugin FILE to every visible command
 void add_plugins(CLI::App& program, std::vector<std::string>& plugins) {
   const auto add_to = [&](CLI::App& command) {
-    command.add_option("--plugin", plugins, "a shared library with a constraint of your own; may be repeated")->allow_extra_args(false);
+    command.add_option("--plugin", plugins, "shared library with additional constraints")->type_name("LIBRARY")->allow_extra_args(false);
   };
   for (CLI::App* command : program.get_subcommands([](const CLI::App* c) { return !c->get_group().empty(); })) {
     const auto parts = command->get_subcommands([](const CLI::App*) { return true; });
@@ -107,28 +108,8 @@ int parse_and_work(int argc, char** argv) {
   program.set_version_flag("--version", std::string("catena ") + kVersion);
   CommandAction chosen;
   int view_exit_code = 0;
-  add_render(program, chosen);
-  add_replay(program, chosen);
-  add_export(program, chosen);
-  add_trace(program, chosen);
-  add_info(program, chosen);
-  add_generate(program, chosen);
-  add_import(program, chosen);
-  add_tradeoff(program, chosen);
-  add_feel(program, chosen);
-  add_devices(program, chosen);
-  add_serve(program, chosen);
-  add_study(program, chosen);
-  add_view(program, chosen, view_exit_code);
-  add_upgrade(program, chosen);
-  add_documents(program, chosen);
-  add_memory_limit(program);
   std::vector<std::string> plugins;
-  add_plugins(program, plugins);
-  for (CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
-    refuse_empty_numbers(*command);
-    for (CLI::App* part : command->get_subcommands([](const CLI::App*) { return true; })) refuse_empty_numbers(*part);
-  }
+  add_commands(program, chosen, view_exit_code, plugins);
 
   try {
     program.parse(argc, argv);
@@ -144,6 +125,30 @@ int parse_and_work(int argc, char** argv) {
 }
 
 }  // namespace
+
+void add_commands(CLI::App& program, CommandAction& chosen, int& exit_code, std::vector<std::string>& plugins) {
+  add_render(program, chosen);
+  add_replay(program, chosen);
+  add_export(program, chosen);
+  add_trace(program, chosen);
+  add_info(program, chosen);
+  add_generate(program, chosen);
+  add_import(program, chosen);
+  add_tradeoff(program, chosen);
+  add_feel(program, chosen);
+  add_devices(program, chosen);
+  add_serve(program, chosen);
+  add_study(program, chosen);
+  add_view(program, chosen, exit_code);
+  add_upgrade(program, chosen);
+  add_documents(program, chosen);
+  add_memory_limit(program);
+  add_plugins(program, plugins);
+  for (CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
+    refuse_empty_numbers(*command);
+    for (CLI::App* part : command->get_subcommands([](const CLI::App*) { return true; })) refuse_empty_numbers(*part);
+  }
+}
 
 // Runs parse_and_work() and reports the exceptions that it throws.
 static int guarded(int argc, char** argv) {

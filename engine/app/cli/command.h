@@ -36,6 +36,8 @@ void add_study(CLI::App& program, CommandAction& chosen);
 void add_documents(CLI::App& program, CommandAction& chosen);
 void add_upgrade(CLI::App& program, CommandAction& chosen);
 void add_view(CLI::App& program, CommandAction& chosen, int& exit_code);
+/// Adds all of them, with the options that every command has. `plugins`: values of --plugin; `exit_code`: of `view`.
+void add_commands(CLI::App& program, CommandAction& chosen, int& exit_code, std::vector<std::string>& plugins);
 
 /// Thrown for a failure of the system rather than the input, and for a replay that differs from its recording: exit code 1.
 struct MachineFailure {

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "engine/app/cli/command.h"
+#include "engine/app/cli/options.h"
 #include "engine/app/haptics/device_check.h"
 #include "engine/app/haptics/signal_handlers.h"
 #include "engine/base/console.h"
@@ -120,13 +121,16 @@ Outcome test(const DevicesOptions& options) {
 
 void add_devices(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<DevicesOptions>();
-  CLI::App* devices = program.add_subcommand("devices", "list the haptic devices, or test one");
-  devices->add_flag("--json", options->json, "the list as JSON");
-  CLI::App* command = devices->add_subcommand("test", "a safe self-test: reads poses; pushes only with --forces");
-  command->add_option("NAME", options->name, "a name of the list")->required();
-  command->add_flag("--forces", options->forces, "confirms: small pushes (at most 1 N) along every axis; hold the grip");
-  command->add_option("--seconds", options->seconds, "how long to read poses")->capture_default_str();
-  command->add_option("--firmware", options->firmware, "a firmware file of the vendor's, for a device that has none");
+  CLI::App* devices = program.add_subcommand("devices", "lists the haptic devices, or tests one");
+  devices->add_flag("--json", options->json, "prints the list as JSON");
+  CLI::App* command = devices->add_subcommand("test", "tests a device safely: reads its poses; exerts forces only with --forces");
+  command->add_option("NAME", options->name, "device, a name of the list")->type_name("DEVICE")->required();
+  command->add_flag("--forces", options->forces, "exerts small forces (at most 1 N) along every axis; hold the grip");
+  command->add_option("--seconds", options->seconds, "duration of reading poses")
+      ->type_name("S")
+      ->check(accepted("> 0, up to 600"))
+      ->capture_default_str();
+  command->add_option("--firmware", options->firmware, "firmware image of the vendor, for a device that has none")->type_name("FIRMWARE");
   command->callback([&chosen, options] { chosen = [options] { return test(*options); }; });
   devices->callback([&chosen, options, command] {
     if (command->parsed()) return;

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "engine/app/cli/command.h"
+#include "engine/app/cli/command_reference.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
 #include "engine/base/version.h"
@@ -33,7 +34,16 @@ std::string roff_name(const CLI::Option& option) {
   for (const std::string& name : option.get_snames()) names += (names.empty() ? "" : ", ") + ("\\fB" + roff("-" + name) + "\\fR");
   for (const std::string& name : option.get_lnames()) names += (names.empty() ? "" : ", ") + ("\\fB" + roff("--" + name) + "\\fR");
   if (names.empty()) return "\\fI" + roff(option.get_name(true)) + "\\fR";
-  return names + (!option.get_type_name().empty() ? " \\fI" + roff(option.get_type_name()) + "\\fR" : "");
+  const std::string value = value_name(option);
+  return names + (value.empty() ? "" : " \\fI" + roff(value) + "\\fR");
+}
+
+/// Returns the accepted values and the default of an option: "; on, off (default: off)".
+std::string range_note(const CLI::Option& option) {
+  std::string words = accepted_range(option);
+  words.erase(std::remove(words.begin(), words.end(), '`'), words.end());
+  if (!words.empty()) words.insert(0, "; ");
+  return option.get_default_str().empty() ? words : words + " (default: " + option.get_default_str() + ")";
 }
 
 void add_options(const CLI::App& command, std::string& page) {
@@ -41,17 +51,9 @@ void add_options(const CLI::App& command, std::string& page) {
     std::string part;
     for (const CLI::Option* option : command.get_options())
       if (option->get_positional() == places && !option->get_group().empty())
-        part += ".TP\n" + roff_name(*option) + "\n" + roff(option->get_description()) + "\n";
+        part += ".TP\n" + roff_name(*option) + "\n" + roff(option->get_description() + range_note(*option)) + "\n";
     if (!part.empty()) page += (places ? ".SH ARGUMENTS\n" : ".SH OPTIONS\n") + part;
   }
-}
-
-/// Returns a command's description without a full stop and without the prefix "Catena: " of the program's.
-std::string purpose(const CLI::App& command) {
-  std::string text = command.get_description();
-  if (text.starts_with("Catena: ")) text.erase(0, 8);
-  if (text.ends_with('.')) text.pop_back();
-  return text;
 }
 
 struct ManualPage {

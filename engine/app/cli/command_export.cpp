@@ -10,13 +10,14 @@
 #include "engine/app/cli/command.h"
 #include "engine/app/cli/export_scene.h"
 #include "engine/app/cli/io_conflicts.h"
-#include "engine/app/cli/mesh_writer.h"
 #include "engine/app/cli/options.h"
 #include "engine/app/haptics/log_replay.h"
 #include "engine/base/console.h"
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
+#include "engine/io/formats.h"
+#include "engine/io/mesh/write_mesh.h"
 #include "engine/io/volume/write_field.h"
 #include "haptics/servo/log/reader.h"
 
@@ -157,23 +158,43 @@ Outcome export_any(const ExportOptions& options) {
 void add_export(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<ExportOptions>();
   SceneExport& part = options->part;
-  CLI::App* command = program.add_subcommand("export", "a recording (.catlog) as CSV; a part of a scene for other programs");
-  add_source(*command, "FILE", options->log, "a recording (.catlog), a scene (.json) or a data file")->required();
-  command->add_option("-o,--output", options->output, "of a recording: CSV, the columns of replay; of a scene: by its ending")->required();
-  command->add_option("--details", options->details, "of a recording: all else that was recorded, CSV");
-  command->add_option("--poses", options->poses, "of a recording with a headset: head, hands and gaze of every picture, CSV");
+  CLI::App* command = program.add_subcommand("export", "writes a recording as tables, or one part of a scene for other programs");
+  add_source(*command, "FILE", options->log, "a recording (.catlog), a scene (.json) or a data file")->type_name("FILE")->required();
+  command->add_option("-o,--output", options->output, "file to write: of a recording the tick table (CSV), of a scene by its ending")
+      ->type_name("OUT")
+      ->required();
+  command->add_option("--details", options->details, "of a recording: details of each link and of the servo to write")
+      ->type_name("FILE.csv");
+  command->add_option("--poses", options->poses, "of a recording with a headset: poses of head, hands and gaze per image to write")
+      ->type_name("FILE.csv");
   const auto number = CLI::Range(0, 1'000'000);
-  command->add_option("--isosurface", part.isosurface, "number in the scene's list, from 0: " + mesh_export_extensions())->check(number);
-  command->add_option("--slice", part.slice, "number in the scene's list: .csv or .vtp, with the values of all fields")->check(number);
-  command->add_option("--streamlines", part.streamlines, "number in the scene's list: .vtp or .csv")->check(number);
-  command->add_option("--mesh", part.mesh, "name of a mesh: " + mesh_export_extensions());
-  command->add_option("--grid", part.grid, "of a data file that holds several: which field its scene shows");
-  command->add_option("--step", part.step, "which step in time, from 0, of fields that have several (default: the scene's)")->check(number);
-  command->add_option("--field", part.field, "name of a field: " + field::writable_extensions());
-  command->add_option("--probe", part.probe, "a path of the hand: .csv, with the values of all fields");
-  command->add_option("--spacing", part.spacing, "of a slice's samples, world units (default: the smallest voxel edge)")
+  command
+      ->add_option("--isosurface", part.isosurface,
+                   "isosurface to write, its number in the scene's list: " + io::writable_extensions(io::DataKind::mesh))
+      ->type_name("INDEX")
+      ->check(number);
+  command->add_option("--slice", part.slice, "slice to write with the values of all fields, its number in the scene's list: .csv or .vtp")
+      ->type_name("INDEX")
+      ->check(number);
+  command->add_option("--streamlines", part.streamlines, "streamlines to write, their number in the scene's list: .vtp or .csv")
+      ->type_name("INDEX")
+      ->check(number);
+  command->add_option("--mesh", part.mesh, "mesh to write: " + io::writable_extensions(io::DataKind::mesh))->type_name("MESH");
+  command
+      ->add_option("--grid", part.grid,
+                   "field that the default scene shows, of a data file with several (default: the first scalar one, else the first)")
+      ->type_name("GRID");
+  command->add_option("--step", part.step, "time step, counted from 0 (default: the scene's)")->type_name("INDEX")->check(number);
+  command->add_option("--field", part.field, "field to write: " + io::writable_extensions(io::DataKind::volume))->type_name("FIELD");
+  command->add_option("--probe", part.probe, "probe path at whose positions the values of all fields are written: .csv")
+      ->type_name("PROBE.csv");
+  command->add_option("--spacing", part.spacing, "spacing of a slice's samples (default: the smallest voxel edge)")
+      ->type_name("DISTANCE")
       ->check(number_above_zero());
-  command->add_option("--outside", part.outside, "of an isosurface, to which its normals point: auto is higher for a level set, else lower")
+  command
+      ->add_option("--outside", part.outside,
+                   "values to which the normals of an isosurface point; auto: higher for a level set, else lower")
+      ->type_name("WORD")
       ->check(CLI::IsMember({"auto", "lower", "higher"}))
       ->capture_default_str();
   command->callback([&chosen, options] { chosen = [options] { return export_any(*options); }; });

@@ -17,8 +17,8 @@
 #include "engine/app/haptics/haptic_device_setup.h"
 #include "engine/app/haptics/recording.h"
 #include "engine/app/haptics/signal_handlers.h"
-#include "engine/app/tuning/plan/tracking_error.h"
-#include "engine/app/tuning/plan/tune.h"
+#include "engine/app/tuning/choose/tracking_error.h"
+#include "engine/app/tuning/choose/tune.h"
 #include "engine/base/clock.h"
 #include "engine/base/console.h"
 #include "engine/base/text.h"
@@ -89,7 +89,7 @@ class StatusLine {
 
 /// Collects statistics until the time is over or an end is requested.
 void wait(haptics::Servo& servo, const haptics::Device& device, const Recording& recording, const FeelOptions& options,
-          const InterruptHandler& interrupt, StatusLine& line, ContactSummary& felt, plan::TrackingErrorMonitor& observer) {
+          const InterruptHandler& interrupt, StatusLine& line, ContactSummary& felt, tuning::TrackingErrorMonitor& observer) {
   constexpr double kStep = 0.02, kLine = 1;
   const std::int64_t start = now_ns();
   HapticState state;
@@ -128,10 +128,10 @@ Outcome run_feel(const FeelOptions& options) {
   const scene::TuningTargets wanted = options.targets.resolve(scene);
   CATENA_TRY(HapticDeviceSetup hand, open_haptic_device(scene, options.device, options.rate_hz, options.firmware));
   // the links are tuned before the first tick, and the tuned text is the one that is recorded
-  CATENA_TRY(std::string text, plan::read_scene_text(scene));
-  CATENA_TRY(const std::optional<plan::TickTuning> plan,
-             plan::tune_links(scene, text, wanted, hand.settings.rate_hz, options.fields,
-                              [](const std::string& said) { print_out(sanitize_for_terminal(said) + "\n"); }));
+  CATENA_TRY(std::string text, tuning::read_scene_text(scene));
+  CATENA_TRY(const std::optional<tuning::TickTuning> plan,
+             tuning::tune_links(scene, text, wanted, hand.settings.rate_hz, options.fields,
+                                [](const std::string& said) { print_out(sanitize_for_terminal(said) + "\n"); }));
   if (plan) {
     CATENA_TRY(text, plan->apply(text, options.scene));
   }
@@ -158,7 +158,7 @@ Outcome run_feel(const FeelOptions& options) {
                         program->meters_per_unit, options.seconds > 0 ? "" : "; Ctrl-C ends"));
   StatusLine line(*program);
   ContactSummary felt;
-  plan::TrackingErrorMonitor observer(plan ? &*plan : nullptr, *program);
+  tuning::TrackingErrorMonitor observer(plan ? &*plan : nullptr, *program);
   wait(servo, *hand.device, recording, options, interrupt, line, felt, observer);
   servo.stop();
   line.end();
@@ -177,20 +177,25 @@ Outcome run_feel(const FeelOptions& options) {
 
 void add_feel(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<FeelOptions>();
-  CLI::App* command = program.add_subcommand("feel", "feel a scene with a haptic device, without a window");
-  command->add_option("SCENE", options->scene, "the scene file (.json)")->required();
-  command->add_option("--device", options->device, "NAME or NAME:DETAIL; default: the scene's \"device\", or else simulated");
-  command->add_option("--seconds", options->seconds, "end after so long; default: until Ctrl-C")->check(number_at_least(0));
-  command->add_option("--rate", options->rate_hz, "ticks a second; default: the device's, or else 1000")
+  CLI::App* command = program.add_subcommand("feel", "runs a haptic device in a scene, without a window");
+  command->add_option("SCENE", options->scene, "scene (.json)")->type_name("SCENE")->required();
+  command->add_option("--device", options->device, "haptic device, NAME or NAME:DETAIL (default: the scene's, or simulated)")
+      ->type_name("DEVICE");
+  command->add_option("--seconds", options->seconds, "duration (default: until Ctrl-C)")->type_name("S")->check(number_at_least(0));
+  command->add_option("--rate", options->rate_hz, "ticks per second (default: the device's, or 1000)")
+      ->type_name("HZ")
       ->check(number_between(haptics::ServoOptions::kMinRateHz, haptics::ServoOptions::kMaxRateHz));
-  command->add_option("--firmware", options->firmware, "falcon: the vendor's image, sent when the device has none");
-  command->add_option("--record", options->record, "every tick, .catlog (replay --log, export, info read it)");
+  command->add_option("--firmware", options->firmware, "firmware image of the vendor, sent to a Falcon that has none")
+      ->type_name("FIRMWARE");
+  command->add_option("--record", options->record, "recording of every tick to write; replay --log, export and info read it")
+      ->type_name("FILE.catlog");
   options->targets.add_to(*command);
-  command->add_option("--forces", options->forces, "on: the device may push. Off at first, for a simulated device too")
+  command->add_option("--forces", options->forces, "whether the device may exert forces")
+      ->type_name("WORD")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
-  command->add_option("--stats", options->stats, "ticks, missed deadlines, histograms, JSON");
-  command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
+  command->add_option("--stats", options->stats, "statistics of the servo to write")->type_name("FILE.json");
+  command->add_option("--field", options->fields, "replaces a field of the scene")->type_name("NAME=FILE[:GRID]")->allow_extra_args(false);
   add_realtime_options(*command, options->realtime);
   command->callback([&chosen, options] { chosen = [options] { return run_feel(*options); }; });
 }

@@ -9,6 +9,7 @@
 
 #include "engine/app/cli/command.h"
 #include "engine/app/cli/io_conflicts.h"
+#include "engine/app/cli/options.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/field/analytic/analytic.h"
@@ -75,14 +76,29 @@ Outcome generate(const GenerateOptions& o) {
 
 void add_generate(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<GenerateOptions>();
-  CLI::App* command = program.add_subcommand("generate", "sample an analytic field on a grid");
-  command->add_option("NAME", options->name, "the field: " + join_words(field::analytic_names(), field::analytic_names().size()))
+  CLI::App* command = program.add_subcommand("generate", "samples a formula on a grid");
+  command->add_option("NAME", options->name, "formula to sample")
+      ->type_name("FORMULA")
+      ->check(accepted_words(join_words(field::analytic_names(), field::analytic_names().size())))
       ->required();
-  command->add_option("-o,--output", options->output, "the grid, .vdb")->required();
-  command->add_option("--resolution", options->resolution, "nodes an axis, both ends included")->required();
-  command->add_option("--box", options->box, "LO HI: the cube to sample")->capture_default_str();
-  command->add_option("--scale", options->scale, "multiplies the values")->capture_default_str();
-  CLI::Option* direction = command->add_option("--direction", options->direction, "of `uniform`")->expected(3)->capture_default_str();
+  command->add_option("-o,--output", options->output, "grid to write")->type_name("FILE.vdb")->required();
+  command->add_option("--resolution", options->resolution, "nodes along each axis, both ends included")
+      ->type_name("NODES")
+      ->check(accepted("2 to " + std::to_string(kMaxResolution)))
+      ->required();
+  command->add_option("--box", options->box, "extent of the cube along each axis, world units")
+      ->type_name("LO HI")
+      ->check(accepted("LO < HI"))
+      ->capture_default_str();
+  command->add_option("--scale", options->scale, "factor of the values")
+      ->type_name("FACTOR")
+      ->check(accepted("finite, not 0"))
+      ->capture_default_str();
+  CLI::Option* direction = command->add_option("--direction", options->direction, "direction of the formula uniform")
+                               ->type_name("X Y Z")
+                               ->check(accepted("not all 0"))
+                               ->expected(3)
+                               ->capture_default_str();
   command->callback([&chosen, options, direction] {
     options->direction_given = direction->count() > 0;
     chosen = [options] { return generate(*options); };

@@ -13,7 +13,7 @@
 #include "engine/app/render/outputs.h"
 #include "engine/base/console.h"
 #include "engine/base/text.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/formats.h"
 #include "engine/io/volume/load_field.h"
 #include "engine/io/volume/write_field.h"
 #include "engine/scene/time_steps.h"
@@ -65,9 +65,9 @@ Outcome check_one_step(const ImportOptions& o, const field::LoadRequest& request
 }
 
 Outcome import_file(const ImportOptions& o) {
-  if (!field::is_writable_format(o.output) && !o.output.starts_with("/dev/"))
-    return Error{o.output + ": expected an output that ends in " + field::writable_extensions()};
-  const bool raw_file = field::needs_layout(o.input);
+  if (io::find_writer(o.output, io::DataKind::volume) == nullptr && !o.output.starts_with("/dev/"))
+    return Error{o.output + ": expected an output that ends in " + io::writable_extensions(io::DataKind::volume)};
+  const bool raw_file = io::needs_layout(o.input);
   if (!raw_file && !o.shape.empty()) return Error{o.input + ": --shape belongs to .raw files"};
   field::LoadRequest request;
   request.path = o.input;
@@ -103,20 +103,33 @@ Outcome import_file(const ImportOptions& o) {
 
 void add_import(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<ImportOptions>();
-  CLI::App* command = program.add_subcommand("import", "convert a data file");
-  add_source(*command, "IN", options->input, field::describe_field_extensions())->required();
+  CLI::App* command = program.add_subcommand("import", "converts any data file to .vdb, .vti, .nrrd or NIfTI");
+  add_source(*command, "IN", options->input, io::describe_expected(io::DataKind::volume))->type_name("DATA")->required();
   command
       ->add_option("-o,--output", options->output,
-                   "the grid: " + field::writable_extensions() + "; %03d in a name numbers the steps in time, which are then all written")
+                   "grid to write: " + io::writable_extensions(io::DataKind::volume) + "; %03d in the name writes all time steps, numbered")
+      ->type_name("GRIDFILE")
       ->required();
-  command->add_option("--step", options->step, "which step in time, from 0 (default: the first of one file)")
+  command->add_option("--step", options->step, "time step, counted from 0 (default: the first of one file)")
+      ->type_name("INDEX")
       ->check(CLI::Range(0, 1'000'000));
-  command->add_option("--grid", options->grid, "which grid of a file that holds several");
-  command->add_option("--name", options->name, "the grid's name in the output");
-  command->add_option("--shape", options->shape, ".raw: voxels along x y z")->expected(3);
-  command->add_option("--spacing", options->spacing, ".raw: voxel edges")->expected(3)->capture_default_str();
-  command->add_option("--origin", options->origin, ".raw: world position of the first voxel's centre")->expected(3)->capture_default_str();
-  command->add_option("--type", options->type, ".raw: float32, uint8, int16, ... or float32x3")->capture_default_str();
+  command->add_option("--grid", options->grid, "grid to convert, of a file with several (default: the first usable one)")
+      ->type_name("GRID");
+  command->add_option("--name", options->name, "name of the grid in the output (default: that of the input)")->type_name("GRID");
+  command->add_option("--shape", options->shape, "of a .raw file: voxels along x, y and z")
+      ->type_name("NX NY NZ")
+      ->check(accepted(">= 1"))
+      ->expected(3);
+  command->add_option("--spacing", options->spacing, "of a .raw file: voxel edges, world units")
+      ->type_name("X Y Z")
+      ->check(accepted("> 0"))
+      ->expected(3)
+      ->capture_default_str();
+  command->add_option("--origin", options->origin, "of a .raw file: centre of the first voxel, world units")
+      ->type_name("X Y Z")
+      ->expected(3)
+      ->capture_default_str();
+  command->add_option("--type", options->type, "of a .raw file: type of a voxel")->type_name("TYPE")->capture_default_str();
   command->callback([&chosen, options] { chosen = [options] { return import_file(*options); }; });
 }
 

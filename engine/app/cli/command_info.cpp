@@ -12,12 +12,12 @@
 #include "engine/app/cli/options.h"
 #include "engine/app/cli/scene_schema.h"
 #include "engine/app/haptics/log_replay.h"
-#include "engine/app/tuning/cost/cost.h"
+#include "engine/app/tuning/predict/cost.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/field/field_display_range.h"
+#include "engine/io/formats.h"
 #include "engine/io/mesh/load_mesh.h"
-#include "engine/io/volume/formats.h"
 #include "engine/io/volume/load_field.h"
 #include "engine/io/volume/units.h"
 #include "engine/scene/color_maps.h"
@@ -35,6 +35,25 @@
 namespace catena::app {
 
 namespace {
+
+/// Prints a table of all formats: extensions, name, and what is read and written.
+void print_formats() {
+  fmt::print("{:<28}{:<36}{:<32}{}\n", "extensions", "format", "read as", "written from");
+  for (const io::Format& format : io::formats()) {
+    std::vector<std::string_view> read, written;
+    for (const auto& [kind, word] : {std::pair{io::DataKind::volume, "volume"},
+                                     {io::DataKind::mesh, "mesh"},
+                                     {io::DataKind::curves, "curves"},
+                                     {io::DataKind::points, "points"}}) {
+      if (format.reads(kind)) read.emplace_back(word);
+      if (format.writes(kind)) written.emplace_back(word);
+    }
+    constexpr std::size_t kAll = 1000;
+    fmt::print("{:<28}{:<36}{:<32}{}\n", join_words(format.extensions, kAll), format.name, join_words(read, kAll),
+               join_words(written, kAll));
+  }
+  fmt::print("A folder is read as DICOM images or as an OpenFOAM case.\n");
+}
 
 /// Prints the pose and the sizes of each widget, and the value that a ruler measures.
 Outcome describe_widgets(scene::Scene& scene) {
@@ -158,26 +177,27 @@ void add_info(CLI::App& program, CommandAction& chosen) {
        json = std::make_shared<bool>(false), cost = std::make_shared<bool>(false), measure = std::make_shared<bool>(false);
   auto part = std::make_shared<std::string>();
   auto step = std::make_shared<int>(0);
-  CLI::App* command = program.add_subcommand("info", "describe a data file or a scene");
+  CLI::App* command = program.add_subcommand("info", "describes a data file, a mesh, curves, points, a scene or a recording");
   add_source(*command, "FILE", *path,
-             "a data file, a folder of DICOM images, a triangle mesh, curves, a table of points, a scene (.json) or a recording (.catlog)");
-  command->add_option("--grid", *grid, "of a data file that holds several: this one alone, by name, or by the number of a DICOM series");
-  command->add_option("--step", *step, "of a data file: as it is at this step in time, from 0")->check(CLI::Range(0, 1'000'000));
-  command->add_flag("--json", *json, "the same facts as one JSON object");
-  CLI::Option* costs = command->add_flag(
-      "--cost", *cost,
-      "what of it will be loaded, mirrored, created, evaluated a tick and drawn a frame: bytes and expected times instead");
-  command->add_flag("--measure", *measure, "with --cost: beside it what was then measured")->needs(costs);
-  command->add_flag("--formats", *formats, "list the endings of the files that are read instead");
-  command->add_flag("--schema", *schema, "print the JSON Schema of scenes instead, for an editor");
-  command->add_option("--keys", *part, "list the keys of a part of a scene instead: volumes, chain, camera, ...");
-  command->add_flag("--colormaps", *maps, "list the colour maps instead");
+             "a data file, a folder of DICOM images, a triangle mesh, curves, a table of points, a scene (.json) or a recording (.catlog)")
+      ->type_name("FILE");
+  command->add_option("--grid", *grid, "only this grid of a data file: its name, or the number of a DICOM series (default: all)")
+      ->type_name("GRID");
+  command->add_option("--step", *step, "time step of a data file, counted from 0 (default: 0)")
+      ->type_name("INDEX")
+      ->check(CLI::Range(0, 1'000'000));
+  command->add_flag("--json", *json, "prints the same facts as one JSON object");
+  CLI::Option* costs =
+      command->add_flag("--cost", *cost, "prints expected bytes and times instead: of loading, GPU mirrors, creation, a tick and a frame");
+  command->add_flag("--measure", *measure, "also does this work and prints what it measured")->needs(costs);
+  command->add_flag("--formats", *formats, "lists the formats that are read instead");
+  command->add_flag("--schema", *schema, "prints the JSON Schema of scenes instead, for an editor");
+  command->add_option("--keys", *part, "lists the keys of a part of a scene instead: volumes, chain, camera, ...")->type_name("PART");
+  command->add_flag("--colormaps", *maps, "lists the colour maps instead");
   command->callback([&chosen, path, grid, step, schema, maps, part, formats, json, cost, measure] {
     chosen = [path, grid, step, schema, maps, part, formats, json, cost, measure]() -> Outcome {
       if (*formats) {
-        constexpr std::size_t kAll = 1000;
-        fmt::print("fields: {}\nmeshes: {}\nfolders: DICOM images\n", join_words(field::field_extensions(), kAll),
-                   join_words(mesh::mesh_endings(), kAll));
+        print_formats();
         return Done{};
       }
       if (*maps) {

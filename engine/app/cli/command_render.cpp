@@ -12,51 +12,90 @@ namespace catena::app {
 
 void add_render(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<RenderOptions>();
-  CLI::App* command = program.add_subcommand("render", "a picture, offscreen");
-  add_source(*command, "SOURCE", options->source, "a scene (.json) or a data file")->required();
+  CLI::App* command = program.add_subcommand("render", "renders an image, a sequence of images or a video, without a window");
+  add_source(*command, "SOURCE", options->source, "a scene (.json) or a data file")->type_name("FILE")->required();
   command
       ->add_option("-o,--output", options->output,
-                   ".png, .exr (linear, premultiplied), or .mp4, .webm, .gif (needs ffmpeg); %03d in a name numbers the frames")
+                   "image or video to write; .mp4, .webm and .gif need ffmpeg; %03d in the name numbers the frames")
+      ->type_name("IMAGE")
       ->required();
-  command->add_option("--size", options->size, "WxH, up to 65536 each way; large pictures are drawn in tiles")->capture_default_str();
-  command->add_option("--bits", options->bits, "of a .png: 8 or 16")->check(CLI::IsMember({8, 16}))->capture_default_str();
-  command->add_option("--depth", options->depth,
-                      "distance of the nearest opaque surface along the view axis: .exr, channel Z, inf for none");
-  command->add_option("--ids", options->ids,
-                      "the opaque object in each pixel: 16-bit grey .png, 0 for none; --stats and the file say which");
-  command->add_option("--antialias", options->antialias, "N x N samples a pixel")->check(CLI::Range(1, 16))->capture_default_str();
-  command->add_option("--tile", options->tile, "draw in tiles of so many samples each way (default: chosen by the size)")
+  command->add_option("--size", options->size, "size of the image; large images are rendered in tiles")
+      ->type_name("WxH")
+      ->check(image_size_up_to(kMaxTiledPixels))
+      ->capture_default_str();
+  command->add_option("--bits", options->bits, "bits per channel of a .png")
+      ->type_name("BITS")
+      ->check(CLI::IsMember({8, 16}))
+      ->capture_default_str();
+  command
+      ->add_option("--depth", options->depth,
+                   "depth image to write: distance of the nearest opaque surface along the view axis, channel Z, inf for none")
+      ->type_name("FILE.exr");
+  command
+      ->add_option("--ids", options->ids,
+                   "id image to write: the opaque object of each pixel, 16-bit grey, 0 for none; --stats and the file name the objects")
+      ->type_name("FILE.png");
+  command->add_option("--antialias", options->antialias, "samples per pixel along each axis")
+      ->type_name("N")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+  command->add_option("--tile", options->tile, "size of a tile along each axis (default: chosen from the size)")
+      ->type_name("SAMPLES")
       ->check(CLI::Range(8, 16384));
-  command->add_option("--quality", options->quality,
-                      "draft, balanced, reference, time=MS, error=E (RMSE, 1/255) or step=VOXELS (default: the scene's, or balanced)");
+  command->add_option("--quality", options->quality, "target or settings of the rendering (default: the scene's, or balanced)")
+      ->type_name("QUALITY");
   options->targets.add_to(*command);
   add_stereo_options(*command, options->stereo);
-  command->add_option("--frames", options->frames, "how many frames to draw and time (default: 1; with --camera its duration times --fps)")
+  command
+      ->add_option("--frames", options->frames, "number of frames (default: 1; with --camera, --head or --play their duration times --fps)")
+      ->type_name("FRAMES")
       ->check(CLI::Range(1, kMaxFrames));
-  command->add_option("--fps", options->fps, "frames a second of a video")->check(number_between(0.01, 1000))->capture_default_str();
-  command->add_option("--orbit", options->orbit_deg, "turn by so many degrees over the frames");
-  command->add_option("--elevation", options->elevation_deg, "raise the camera by so many degrees");
-  command->add_option("--zoom", options->zoom, "enlarge the middle of the picture");
-  command->add_option("--view", options->view, "look along +x, -x, +y, -y, +z, -z, or iso, at all that is drawn");
-  command->add_flag("--fit", options->fit, "bring all that is drawn into the picture, from the same direction");
-  command->add_option("--camera", options->camera, "key frames, CSV: t,px,py,pz,tx,ty,tz[,ux,uy,uz][,fovy]");
-  command->add_option("--head", options->head_path,
-                      "a tracked head before --screen, CSV: t,x,y,z, world units (default: the camera's position)");
-  command->add_option("--animation-phase", options->animation_phase,
-                      "phase of the animated bands of streamlines, 0 to 1; the frames add one period");
-  command->add_option("--grid", options->grid, "of a data file that holds several: which field is shown");
-  command->add_option("--step", options->step, "which step in time, of fields that have several")->check(CLI::Range(0, 1'000'000));
-  command->add_option("--steps", options->steps, "steps in time FIRST:LAST or FIRST:LAST:STRIDE, a frame each");
-  command->add_option("--probe", options->probe, "probe path, CSV: the cursor is drawn where the hand is at its end");
-  command->add_flag("--play", options->play_probe, "the hand goes along --probe over the frames (default: its duration times --fps)");
-  command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
+  command->add_option("--fps", options->fps, "frames per second of a video and of camera paths")
+      ->type_name("FPS")
+      ->check(number_between(0.01, 1000))
+      ->capture_default_str();
+  command->add_option("--orbit", options->orbit_deg, "rotation of the camera about the target over all frames (default: 0)")
+      ->type_name("DEG")
+      ->check(accepted("finite"));
+  command->add_option("--elevation", options->elevation_deg, "angle by which the camera is raised (default: 0)")
+      ->type_name("DEG")
+      ->check(accepted("-90 to 90"));
+  command->add_option("--zoom", options->zoom, "magnification about the centre of the image (default: 1)")
+      ->type_name("FACTOR")
+      ->check(accepted("0.001 to 1e6"));
+  command->add_option("--view", options->view, "view along an axis, or iso, that fits everything rendered (default: the scene's camera)")
+      ->type_name("VIEW");
+  command->add_flag("--fit", options->fit, "fits everything rendered into the image, without turning the camera");
+  command->add_option("--camera", options->camera, "camera key frames: t,px,py,pz,tx,ty,tz[,ux,uy,uz][,fovy]")->type_name("CAMERA.csv");
+  command
+      ->add_option("--head", options->head_path,
+                   "tracked head in front of --screen: t,x,y,z in world units (default: the camera's position)")
+      ->type_name("HEAD.csv");
+  command
+      ->add_option("--animation-phase", options->animation_phase,
+                   "phase of the animated bands of streamlines; the frames add one period (default: 0)")
+      ->type_name("PHASE")
+      ->check(accepted("finite"));
+  command->add_option("--grid", options->grid, "field to show, of a data file with several (default: the first scalar one, else the first)")
+      ->type_name("GRID");
+  command->add_option("--step", options->step, "time step, counted from 0 (default: the scene's)")
+      ->type_name("INDEX")
+      ->check(CLI::Range(0, 1'000'000));
+  command->add_option("--steps", options->steps, "time steps, one frame each")
+      ->type_name("FIRST:LAST[:STRIDE]")
+      ->check(accepted("from 0 on"));
+  command->add_option("--probe", options->probe, "probe path; the cursor is drawn at the state of its last row")->type_name("PROBE.csv");
+  command->add_flag("--play", options->play_probe, "moves the probe along --probe over the frames");
+  command->add_option("--field", options->fields, "replaces a field of the scene")->type_name("NAME=FILE[:GRID]")->allow_extra_args(false);
   options->colors.add_to(*command);
-  command->add_option("--stats", options->stats, "figures, JSON");
+  command->add_option("--stats", options->stats, "statistics to write")->type_name("FILE.json");
   add_annotation_options(*command, options->annotate);
   command
-      ->add_option("--gpu-memory", options->gpu_memory_mb, "MB of GPU memory to keep within; what does not fit is drawn coarser, and said")
+      ->add_option("--gpu-memory", options->gpu_memory_mb,
+                   "limit on GPU memory; what does not fit is drawn coarser, with a note (default: what the driver reports)")
+      ->type_name("MB")
       ->check(number_between(1, 1e9));
-  command->add_flag("--validation", options->validation, "run with the Vulkan validation layers and count their messages");
+  command->add_flag("--validation", options->validation, "enables the Vulkan validation layers and counts their messages");
   command->callback([&chosen, options] { chosen = [options] { return render_images(*options); }; });
 }
 

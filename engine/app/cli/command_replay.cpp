@@ -12,8 +12,8 @@
 #include "engine/app/haptics/log_replay.h"
 #include "engine/app/haptics/probe_playback.h"
 #include "engine/app/haptics/tick_csv.h"
-#include "engine/app/tuning/plan/tracking_error.h"
-#include "engine/app/tuning/plan/tune.h"
+#include "engine/app/tuning/choose/tracking_error.h"
+#include "engine/app/tuning/choose/tune.h"
 #include "engine/base/csv.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
@@ -34,15 +34,15 @@ Result<haptics::DeviceLimits> device_limits(const scene::Scene& scene, const std
 }
 
 /// Tunes the links before the first tick; returns the tuning, if the scene or the options request one.
-Result<std::optional<plan::TickTuning>> plan_the_hand(scene::Scene& scene, const ReplayOptions& options) {
+Result<std::optional<tuning::TickTuning>> plan_the_hand(scene::Scene& scene, const ReplayOptions& options) {
   const scene::TuningTargets wanted = options.targets.resolve(scene);
   double rate_hz = 1000;
   if (scene.device) {
     CATENA_TRY(const haptics::DeviceSettings settings, haptics::read_device_settings(*scene.device, scene.path));
     rate_hz = settings.rate_hz;
   }
-  return plan::tune_links(scene, wanted, rate_hz, options.fields,
-                          [](const std::string& line) { fmt::print("{}\n", sanitize_for_terminal(line)); });
+  return tuning::tune_links(scene, wanted, rate_hz, options.fields,
+                            [](const std::string& line) { fmt::print("{}\n", sanitize_for_terminal(line)); });
 }
 
 Outcome replay_scene(const ReplayOptions& options) {
@@ -55,7 +55,7 @@ Outcome replay_scene(const ReplayOptions& options) {
   named.add_input(scene);
   CATENA_CHECK(named.check());
   CATENA_TRY(const haptics::DeviceLimits limits, device_limits(scene, options.scene));
-  CATENA_TRY(const std::optional<plan::TickTuning> plan, plan_the_hand(scene, options));
+  CATENA_TRY(const std::optional<tuning::TickTuning> plan, plan_the_hand(scene, options));
   CATENA_TRY(const std::shared_ptr<const haptics::HapticProgram> program, haptics::build_program(scene, limits));
   print_scene_notes(scene);
   CATENA_TRY(const std::vector<ProbePathRow> rows, read_probe_path(options.probe));
@@ -78,7 +78,7 @@ Outcome replay_scene(const ReplayOptions& options) {
     widgets->write(widget_header(*program));
   }
   ContactSummary felt;
-  plan::TrackingErrorMonitor observer(plan ? &*plan : nullptr, *program);
+  tuning::TrackingErrorMonitor observer(plan ? &*plan : nullptr, *program);
   WidgetUsage use;
   ProgressLine progress("replay", static_cast<double>(path.size()));
   std::string line;
@@ -127,17 +127,18 @@ Outcome replay_scene(const ReplayOptions& options) {
 
 void add_replay(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<ReplayOptions>();
-  CLI::App* command = program.add_subcommand("replay", "drive the tick from a recorded probe path: deterministic, no thread");
-  command->add_option("SCENE", options->scene, "the scene file (.json); with --log: used instead of the recorded one");
-  command->add_option("--probe", options->probe, "probe path, CSV: t,x,y,z[,buttons][,qw,qx,qy,qz]");
-  command->add_option("--log", options->log, "a recording (.catlog): runs it again and compares every bit");
-  command->add_option("-o,--output", options->output, "ticks, CSV");
-  command->add_option("--details", options->details, "what every link tells beside: gap, leaving, share, energy; CSV");
-  command->add_option("--widgets", options->widgets,
-                      "modes and poses of the widgets, CSV: t, NAME_mode, NAME_handle, NAME_held, NAME_x,y,z ..");
-  command->add_option("--stats", options->stats, "figures, JSON");
+  CLI::App* command = program.add_subcommand("replay", "runs the chain along a probe path or a recording, with the same bits every time");
+  command->add_option("SCENE", options->scene, "scene (.json); with --log: used instead of the recorded one")->type_name("SCENE");
+  command->add_option("--probe", options->probe, "probe path: t,x,y,z[,buttons][,qw,qx,qy,qz]; required without --log")
+      ->type_name("PROBE.csv");
+  command->add_option("--log", options->log, "recording to run again; every bit is compared")->type_name("FILE.catlog");
+  command->add_option("-o,--output", options->output, "tick table to write; required without --log")->type_name("FILE.csv");
+  command->add_option("--details", options->details, "details of each link to write: gap, release ratio, force, energy")
+      ->type_name("FILE.csv");
+  command->add_option("--widgets", options->widgets, "modes and poses of the widgets to write")->type_name("FILE.csv");
+  command->add_option("--stats", options->stats, "statistics to write")->type_name("FILE.json");
   options->targets.add_to(*command);
-  command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
+  command->add_option("--field", options->fields, "replaces a field of the scene")->type_name("NAME=FILE[:GRID]")->allow_extra_args(false);
   command->callback(
       [&chosen, options] { chosen = [options] { return options->log.empty() ? replay_scene(*options) : replay_log_file(*options); }; });
 }

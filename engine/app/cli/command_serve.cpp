@@ -14,6 +14,8 @@ namespace catena::app {
 
 namespace {
 
+constexpr int kMaxServedSize = 4096;  // pixels on each axis
+
 const std::string kServedQuality = "time=50";
 
 struct ServeArguments {
@@ -28,7 +30,7 @@ struct ServeArguments {
 
 Outcome start_serving(const ServeArguments& given) {
   ServeArguments o = given;
-  CATENA_TRY(const ImageSize size, parse_image_size(o.size, 4096));
+  CATENA_TRY(const ImageSize size, parse_image_size(o.size, kMaxServedSize));
   ServeOptions options;
   options.grid = o.grid;
   CATENA_TRY(options.overrides, parse_field_overrides(o.fields));
@@ -63,27 +65,38 @@ Outcome start_serving(const ServeArguments& given) {
 
 void add_serve(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<ServeArguments>();
-  CLI::App* command = program.add_subcommand("serve", "the scene in a browser, here or through `ssh -L`: orbit, and the mouse as the hand");
-  add_source(*command, "SOURCE", options->source, "a scene (.json) or a data file")->required();
-  command->add_option("--grid", options->grid, "of a data file that holds several: which field is shown");
-  command->add_option("--port", options->port, "to listen at; 0: any that is free")->check(CLI::Range(0, 65535))->capture_default_str();
-  command->add_option("--address", options->address, "to listen at, in numbers; 0.0.0.0 lets other machines in, without encryption")
+  CLI::App* command = program.add_subcommand("serve", "shows a scene in a browser, on this machine or another");
+  add_source(*command, "SOURCE", options->source, "a scene (.json) or a data file")->type_name("FILE")->required();
+  command->add_option("--grid", options->grid, "field to show, of a data file with several (default: the first scalar one, else the first)")
+      ->type_name("GRID");
+  command->add_option("--port", options->port, "TCP port; 0: any that is free")
+      ->type_name("PORT")
+      ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  command->add_option("--name", options->names, "what browsers may call this machine, beside localhost and addresses in numbers")
+  command->add_option("--address", options->address, "numeric address to listen at; 0.0.0.0 admits other machines, without encryption")
+      ->type_name("ADDRESS")
+      ->capture_default_str();
+  command->add_option("--name", options->names, "host name that browsers may use, in addition to localhost and numeric addresses")
+      ->type_name("HOST")
       ->allow_extra_args(false);
-  command->add_option("--frame-ancestor", options->frame_ancestor,
-                      "a page's origin whose frames may show this one, such as http://127.0.0.1:8888");
-  command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
-  command->add_option("--size", options->size, "of the picture before a page says its own, WxH")->capture_default_str();
-  command->add_option("--quality", options->quality,
-                      "time=MS, error=E (RMSE, 1/255), draft, balanced, reference or step=VOXELS, of a picture at rest. Default: the "
-                      "scene's, or else time=50");
+  command->add_option("--frame-ancestor", options->frame_ancestor, "origin of pages whose frames may show this one")->type_name("URL");
+  command->add_option("--field", options->fields, "replaces a field of the scene")->type_name("NAME=FILE[:GRID]")->allow_extra_args(false);
+  command->add_option("--size", options->size, "size of the image until a page requests its own")
+      ->type_name("WxH")
+      ->check(image_size_up_to(kMaxServedSize))
+      ->capture_default_str();
   command
-      ->add_option("--gpu-memory", options->gpu_memory_mb, "MB of GPU memory to keep within; what does not fit is drawn coarser, and said")
+      ->add_option("--quality", options->quality,
+                   "target or settings of the rendering of an image at rest (default: the scene's, or time=50)")
+      ->type_name("QUALITY");
+  command
+      ->add_option("--gpu-memory", options->gpu_memory_mb,
+                   "limit on GPU memory; what does not fit is drawn coarser, with a note (default: what the driver reports)")
+      ->type_name("MB")
       ->check(number_between(1, 1e9));
-  command->add_option("--seconds", options->seconds, "end after so long; default: until Ctrl-C")->check(number_at_least(0));
-  command->add_flag("--follow", options->follow, "steps in time that a running program adds are shown as they come, once they are whole");
-  command->add_flag("--exit-with-stdin", options->until_stdin_ends, "end when the standard input does: with the program at its other end");
+  command->add_option("--seconds", options->seconds, "duration (default: until Ctrl-C)")->type_name("S")->check(number_at_least(0));
+  command->add_flag("--follow", options->follow, "shows new time steps of a running program once they are complete");
+  command->add_flag("--exit-with-stdin", options->until_stdin_ends, "ends when standard input ends, with the program that started it");
   add_annotation_options(*command, options->annotate);
   add_realtime_options(*command, options->realtime);
   command->callback([&chosen, options] { chosen = [options] { return start_serving(*options); }; });

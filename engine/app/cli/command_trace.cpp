@@ -14,12 +14,12 @@
 #include "engine/app/cli/command.h"
 #include "engine/app/cli/io_conflicts.h"
 #include "engine/app/cli/options.h"
-#include "engine/app/cli/polyline_writer.h"
 #include "engine/base/clock.h"
 #include "engine/base/csv.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/geometry/flow/batch_tracer.h"
+#include "engine/io/formats.h"
 #include "engine/io/volume/load_field.h"
 #include "engine/scene/streamlines.h"
 #include "engine/scene/time_steps.h"
@@ -175,9 +175,9 @@ Outcome trace_lines(const TraceOptions& options) {
   for (const auto& [name, value] :
        {std::pair{"--length", options.length}, {"--min-speed", options.min_speed}, {"--tolerance", options.tolerance}})
     if (!std::isfinite(value)) return Error{fmt::format("{}: expected a finite number", name)};
-  const bool vtp = options.output.ends_with(".vtp");
-  if (!vtp && !options.output.ends_with(".csv") && !options.output.starts_with("/dev/"))
-    return Error{options.output + ": expected an output that ends in .csv or .vtp"};
+  const io::Format* format = io::find_writer(options.output.starts_with("/dev/") ? "stream.csv" : options.output, io::DataKind::curves);
+  if (format == nullptr)
+    return Error{options.output + ": expected an output that ends in " + io::writable_extensions(io::DataKind::curves)};
   CATENA_TRY(scene::Scene scene, scene_of(options));
   IoConflictChecker files(scene);
   if (!options.seeds.starts_with("{")) files.add_input(options.seeds);
@@ -203,10 +203,7 @@ Outcome trace_lines(const TraceOptions& options) {
   }
 
   CATENA_TRY(OutputFile out, OutputFile::open(options.output));
-  if (vtp)
-    write_polylines_vtp(out, curves, *field);
-  else
-    write_polylines_csv(out, curves);
+  format->write_curves(out, curves, *field);
   const double first_cpu_ms = timing.cpu_ms.front();
   if (options.stats.empty()) {
     CATENA_CHECK(out.commit());
@@ -228,34 +225,42 @@ Outcome trace_lines(const TraceOptions& options) {
 
 void add_trace(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<TraceOptions>();
-  CLI::App* command = program.add_subcommand("trace", "streamlines through seeds, as arc-length curves");
-  add_source(*command, "SOURCE", options->source, "a scene file (.json) or a data file")->required();
-  command->add_option("--field", options->field, "a field of the scene, or a grid of the file")->required();
+  CLI::App* command = program.add_subcommand("trace", "traces streamlines through seeds, as arc-length curves");
+  add_source(*command, "SOURCE", options->source, "a scene (.json) or a data file")->type_name("FILE")->required();
+  command->add_option("--field", options->field, "vector field of the scene, or grid of the file")->type_name("FIELD")->required();
   command
       ->add_option("--seeds", options->seeds,
-                   "seeds: CSV x,y,z; or a pattern as a scene's \"seeds\" has it, '{\"line\": ...}' or a .json file")
+                   "seeds: a table x,y,z (CSV), or a pattern as in a scene's \"seeds\", '{\"line\": ...}' or a .json file")
+      ->type_name("SEEDS")
       ->required();
-  command->add_option("-o,--output", options->output, "lines: .vtp, or CSV: line,s,x,y,z,tx,ty,tz")->required();
-  command->add_option("--length", options->length, "longest arc length in each direction, world units (default: 10 L)")
+  command->add_option("-o,--output", options->output, "streamlines to write: .vtp or .csv")->type_name("LINES")->required();
+  command->add_option("--length", options->length, "longest arc length in each direction (default: 10 L)")
+      ->type_name("LENGTH")
       ->check(number_above_zero());
   command
       ->add_option("--tolerance", options->tolerance,
-                   "of a step, times L: above 1e-9 lines are traced many at once, with knots a step apart (default: 1e-10; patterns 1e-7)")
+                   "error of a step; above 1e-9 lines are traced many at once, with knots one step apart (default: 1e-10; patterns 1e-7)")
+      ->type_name("TOLERANCE")
       ->check(CLI::Range(0.0, 0.01));
   command
-      ->add_option(
-          "--step", options->step,
-          "the longest step, voxels, of a formula world units (default: 0.5; as the lines need where the tolerance is at most 1e-9)")
+      ->add_option("--step", options->step,
+                   "longest step; of a formula in world units (default: 0.5; as the lines need where the tolerance is at most 1e-9)")
+      ->type_name("VOXELS")
       ->check(CLI::Range(0.01, 4.0));
-  command->add_option("--time-step", options->time_step, "which step in time, from 0, of a field that has several (default: the scene's)")
+  command->add_option("--time-step", options->time_step, "time step, counted from 0 (default: the scene's)")
+      ->type_name("INDEX")
       ->check(CLI::Range(0, 1'000'000));
-  command->add_option("--repeat", options->repeat, "trace a table so many times, for --stats: medians, and the first")
+  command->add_option("--repeat", options->repeat, "traces a table of seeds several times, for the medians of --stats (default: 1)")
+      ->type_name("N")
       ->check(CLI::Range(1, 1000));
-  command->add_option("--stats", options->stats, "figures, JSON");
-  command->add_option("--kind", options->kind, "vector, or line where v and -v are the same")
+  command->add_option("--stats", options->stats, "statistics to write")->type_name("FILE.json");
+  command->add_option("--kind", options->kind, "line: v and -v are the same direction; vector: they differ")
+      ->type_name("WORD")
       ->check(CLI::IsMember({"vector", "line"}))
       ->capture_default_str();
-  command->add_option("--min-speed", options->min_speed, "speeds at or below this end a line")->check(number_at_least(0));
+  command->add_option("--min-speed", options->min_speed, "a line ends where the speed is at most this (default: 0)")
+      ->type_name("SPEED")
+      ->check(number_at_least(0));
   command->callback([&chosen, options] { chosen = [options] { return trace_lines(*options); }; });
 }
 

@@ -8,8 +8,8 @@
 
 #include "engine/app/cli/command.h"
 #include "engine/app/cli/options.h"
-#include "engine/app/tuning/tradeoff/figures.h"
-#include "engine/app/tuning/tradeoff/measure_tradeoffs.h"
+#include "engine/app/tuning/figures/figures.h"
+#include "engine/app/tuning/measure/measure_tradeoffs.h"
 #include "engine/base/text.h"
 
 namespace catena::app {
@@ -47,25 +47,37 @@ Outcome run_tradeoff(const TradeoffOptions& options) {
 void add_tradeoff(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<TradeoffOptions>();
   CLI::App* command =
-      program.add_subcommand("tradeoff", "what the settings of a scene cost and what they buy, measured; or figures of the paper");
+      program.add_subcommand("tradeoff", "measures error against cost for the settings of a scene; or makes figures of the paper");
   add_source(*command, "SOURCE", options->source,
-             "a scene (.json) or a data file to measure; or the tradeoff.json of a run, for its page again");
+             "a scene (.json) or a data file to measure; or the tradeoff.json of a run, to make its page again")
+      ->type_name("FILE");
   command
       ->add_option("--figure", options->figure,
-                   "2: drift from a streamline; 3: a penetrable surface and a curve; stiffness: the largest spring; energy: what a closed "
-                   "loop of the hand gains")
+                   "figure to make instead: 2: drift from a streamline; 3: a penetrable surface and a curve; stiffness: the largest "
+                   "spring; energy: energy gain of a closed loop")
+      ->type_name("WORD")
       ->check(CLI::IsMember({"2", "3", "stiffness", "energy"}));
-  command->add_option("-o,--output", options->output, "a folder for the page and the tables; of a figure its script and plots")->required();
+  command->add_option("-o,--output", options->output, "folder for the page and the tables; of a figure its script and plots")
+      ->type_name("FOLDER")
+      ->required();
   command
       ->add_option("--effort", options->effort,
-                   "quick: at most two minutes; default: about five; thorough: larger images and more repeats, up to twenty minutes")
+                   "time to measure: quick at most 2 minutes, default about 5, thorough up to 20 with larger images and more repeats")
+      ->type_name("WORD")
       ->check(CLI::IsMember({"quick", "default", "thorough"}))
       ->capture_default_str();
-  command->add_option("--compare", options->compare, "the tradeoff.json of another machine or version: side by side on the page");
-  command->add_option("--probe", options->probe, "a hand's path of your own, CSV: t,x,y,z[,buttons]");
-  command->add_option("--only", options->only, "measure only these")->delimiter(',')->check(CLI::IsMember(measurement_names()));
-  command->add_option("--grid", options->grid, "of a data file that holds several");
-  command->add_option("--field", options->fields, "replace a field of the scene: NAME=FILE[:GRID]")->allow_extra_args(false);
+  command->add_option("--compare", options->compare, "a tradeoff.json of another machine or version, shown side by side")
+      ->type_name("FILE.json");
+  command->add_option("--probe", options->probe, "probe path to measure with: t,x,y,z[,buttons] (default: along the first link)")
+      ->type_name("PROBE.csv");
+  command->add_option("--only", options->only, "measures only these (default: all)")
+      ->type_name("WORD")
+      ->delimiter(',')
+      ->check(CLI::IsMember(measurement_names()));
+  command
+      ->add_option("--grid", options->grid, "field to measure, of a data file with several (default: the first scalar one, else the first)")
+      ->type_name("GRID");
+  command->add_option("--field", options->fields, "replaces a field of the scene")->type_name("NAME=FILE[:GRID]")->allow_extra_args(false);
   command->callback([&chosen, options] { chosen = [options] { return run_tradeoff(*options); }; });
 }
 

@@ -97,8 +97,8 @@ Outcome upgrade_files(const UpgradeOptions& options) {
 void add_upgrade(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<UpgradeOptions>();
   CLI::App* command = program.add_subcommand("upgrade", "replaces the names of version 0.2 in scenes, studies and recordings");
-  command->add_option("FILE", options->files, "scenes and studies (.json), recordings (.catlog)")->required();
-  command->add_flag("--no-backup", options->without_backup, "do not keep the old file as FILE.bak");
+  command->add_option("FILE", options->files, "scenes and studies (.json), recordings (.catlog)")->type_name("OLD")->required();
+  command->add_flag("--no-backup", options->without_backup, "does not keep the old file as FILE.bak");
   command->callback([&chosen, options] { chosen = [options] { return upgrade_files(*options); }; });
 }
 

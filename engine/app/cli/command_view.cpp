@@ -7,7 +7,7 @@
 #include "engine/app/cli/io_conflicts.h"
 #include "engine/app/cli/options.h"
 #include "engine/app/haptics/device_file.h"
-#include "engine/app/tuning/plan/tune.h"
+#include "engine/app/tuning/choose/tune.h"
 #include "engine/app/viewer/viewer.h"
 #include "engine/scene/follow_files.h"
 #include "haptics/device/registry.h"
@@ -103,42 +103,63 @@ Outcome open_window(const ViewArguments& given, int& exit_code) {
 
 void add_view(CLI::App& program, CommandAction& chosen, int& exit_code) {
   auto options = std::make_shared<ViewArguments>();
-  CLI::App* command = program.add_subcommand("view", "an interactive window: orbit, and the mouse as the hand");
-  add_source(*command, "SOURCE", options->source, "a scene (.json) or a data file (without it the window says how to begin)");
-  command->add_option(
-      "--device", options->device,
-      "what holds the probe: mouse, or a haptic device (its forces are off until F). Default: the scene's, or else the mouse, "
-      "which also steps in for what is not plugged in");
-  command->add_option(
-      "--device-file", options->device_file,
-      "the device's settings, as of a scene's \"device\", in its place; where it stands in a headset's room is written there");
-  command->add_option(
-      "--head", options->head,
-      "a tracked head before --screen: CSV, t,x,y,z, world units, played by time; or a device (default: the mouse moves it)");
-  command->add_option("--grid", options->grid, "of a data file that holds several: which field is shown");
-  command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
-  command->add_option("--size", options->size, "of the window, WxH")->capture_default_str();
-  command->add_option(
-      "--quality", options->quality,
-      "time=MS, error=E (RMSE, 1/255), draft, balanced, reference or step=VOXELS, of a picture at rest; while something moves "
-      "it comes within MS or 50 ms. Default: the scene's, or else time=50");
+  CLI::App* command = program.add_subcommand("view", "opens the interactive window");
+  add_source(*command, "SOURCE", options->source, "a scene (.json) or a data file; without it the window shows how to begin")
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--device", options->device,
+          "mouse, or a haptic device whose forces are off until F; the mouse replaces a missing device (default: the scene's, or mouse)")
+      ->type_name("DEVICE");
+  command
+      ->add_option("--device-file", options->device_file,
+                   "device settings that replace the scene's \"device\"; the device's position in a headset's room is saved there")
+      ->type_name("FILE.json");
+  command
+      ->add_option("--head", options->head,
+                   "tracked head in front of --screen: a table t,x,y,z in world units, or a device (default: the mouse)")
+      ->type_name("HEAD.csv|DEVICE");
+  command->add_option("--grid", options->grid, "field to show, of a data file with several (default: the first scalar one, else the first)")
+      ->type_name("GRID");
+  command->add_option("--field", options->fields, "replaces a field of the scene")->type_name("NAME=FILE[:GRID]")->allow_extra_args(false);
+  command->add_option("--size", options->size, "size of the window")
+      ->type_name("WxH")
+      ->check(image_size_up_to(kMaxImageSize))
+      ->capture_default_str();
+  command
+      ->add_option("--quality", options->quality,
+                   "target or settings of an image at rest; while something moves an image takes time=MS or 50 ms (default: the scene's, "
+                   "or time=50)")
+      ->type_name("QUALITY");
   options->targets.add_to(*command);
   command
-      ->add_option("--gpu-memory", options->gpu_memory_mb, "MB of GPU memory to keep within; what does not fit is drawn coarser, and said")
+      ->add_option("--gpu-memory", options->gpu_memory_mb,
+                   "limit on GPU memory; what does not fit is drawn coarser, with a note (default: what the driver reports)")
+      ->type_name("MB")
       ->check(number_between(1, 1e9));
-  command->add_option("--shaders", options->shaders, "the folder of shaders to draw with, watched: what changes there is compiled at once");
+  command
+      ->add_option("--shaders", options->shaders,
+                   "folder of shaders to use; changes there are compiled at once (default: the built-in ones)")
+      ->type_name("SHADERS");
   add_stereo_options(*command, options->stereo);
-  command->add_option("--frames", options->frames, "quit after so many frames")->check(number_between(0, std::numeric_limits<int>::max()));
-  command->add_option("--seconds", options->seconds, "draw all the time, and quit after so long")->check(number_at_least(0));
-  command->add_option("--screenshot", options->screenshot, "write the last frame here, .png");
-  command->add_option("--screenshot-ui", options->window_screenshot, "the same with the panels over it, .png");
-  command->add_flag("--follow", options->follow, "steps in time that a running program adds are shown as they come, once they are whole");
-  command->add_flag("--xr", options->headset, "show it in a headset (OpenXR), too: the window mirrors one eye");
-  command->add_flag("--no-panels", options->no_panels, "begin without the panels (Tab shows them)");
-  command->add_option("--frame-stats", options->frame_stats, "how long the pictures took, histograms, JSON");
-  command->add_option("--servo-stats", options->servo_stats, "the servo's ticks, missed deadlines, histograms, JSON");
-  command->add_option("--record", options->record, "every tick, .catlog (replay --log, export, info read it)");
-  command->add_option("--firmware", options->firmware, "falcon: the vendor's image, sent when the device has none");
+  command->add_option("--frames", options->frames, "number of frames after which the window closes; 0: never (default: 0)")
+      ->type_name("FRAMES")
+      ->check(number_between(0, std::numeric_limits<int>::max()));
+  command->add_option("--seconds", options->seconds, "draws all the time and closes after this duration; 0: never (default: 0)")
+      ->type_name("S")
+      ->check(number_at_least(0));
+  command->add_option("--screenshot", options->screenshot, "last frame to write")->type_name("FILE.png");
+  command->add_option("--screenshot-ui", options->window_screenshot, "last frame with the panels to write")->type_name("FILE.png");
+  command->add_flag("--follow", options->follow, "shows new time steps of a running program once they are complete");
+  command->add_flag("--xr", options->headset, "also shows the scene in a headset (OpenXR); the window mirrors one view");
+  command->add_flag("--no-panels", options->no_panels, "starts without the panels; Tab shows them");
+  command->add_option("--frame-stats", options->frame_stats, "times of the frames to write, with histograms")->type_name("FILE.json");
+  command->add_option("--servo-stats", options->servo_stats, "statistics of the servo to write: ticks, missed deadlines, histograms")
+      ->type_name("FILE.json");
+  command->add_option("--record", options->record, "recording of every tick to write; replay --log, export and info read it")
+      ->type_name("FILE.catlog");
+  command->add_option("--firmware", options->firmware, "firmware image of the vendor, sent to a Falcon that has none")
+      ->type_name("FIRMWARE");
   add_annotation_options(*command, options->annotate);
   add_realtime_options(*command, options->realtime);
   command->callback([&chosen, &exit_code, options] { chosen = [&exit_code, options] { return open_window(*options, exit_code); }; });

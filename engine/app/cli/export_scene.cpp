@@ -8,14 +8,14 @@
 #include "engine/app/cli/command.h"
 #include "engine/app/cli/field_sampler.h"
 #include "engine/app/cli/io_conflicts.h"
-#include "engine/app/cli/mesh_writer.h"
-#include "engine/app/cli/polyline_writer.h"
 #include "engine/base/console.h"
 #include "engine/base/csv.h"
 #include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/geometry/mesh/isosurface.h"
+#include "engine/io/formats.h"
+#include "engine/io/mesh/write_mesh.h"
 #include "engine/io/volume/units.h"
 #include "engine/io/volume/write_field.h"
 #include "engine/scene/prepare.h"
@@ -53,14 +53,15 @@ void say(const std::string& output, const std::string& what) {
   fmt::print("{}: {}\n", sanitize_for_terminal(output), sanitize_for_terminal(what));
 }
 
-Outcome write_and_tell(const std::string& path, const MeshExport& surface) {
-  CATENA_CHECK(write_mesh_file(path, surface));
-  if (const std::string lost = describe_precision_loss(path, surface); !lost.empty()) print_scene_notes(path, {lost});
+Outcome write_and_tell(const std::string& path, const mesh::MeshExport& surface) {
+  CATENA_CHECK(mesh::write_mesh(path, surface));
+  if (const std::string lost = mesh::describe_precision_loss(path, surface); !lost.empty()) print_scene_notes(path, {lost});
   return Done{};
 }
 
 Outcome export_isosurface(const SceneExport& options, scene::Scene& scene) {
-  CATENA_CHECK(expect(options.output, is_mesh_export_path(options.output), mesh_export_extensions()));
+  CATENA_CHECK(
+      expect(options.output, io::find_writer(options.output, io::DataKind::mesh) != nullptr, io::writable_extensions(io::DataKind::mesh)));
   CATENA_TRY(const Entity item, find_item<scene::Isosurface>(scene, *options.isosurface, "isosurfaces"));
   const scene::Isosurface& surface = scene.entities.get<scene::Isosurface>(item);
   CATENA_TRY(const field::AnyField drawn, scene::resolve_rendered_field(scene, surface.field, surface.where));
@@ -72,16 +73,17 @@ Outcome export_isosurface(const SceneExport& options, scene::Scene& scene) {
   CATENA_TRY(mesh::Isosurface made,
              mesh::extract_isosurface(*drawn.scalar->grid(), surface.level, higher ? mesh::OutwardSide::higher : mesh::OutwardSide::lower,
                                       scene.path, [&](double done) { progress.update(done); }));
-  MeshExport out{std::move(made.vertices), std::move(made.normals), std::move(made.triangles)};
+  mesh::MeshExport out{std::move(made.vertices), std::move(made.normals), std::move(made.triangles)};
   CATENA_CHECK(write_and_tell(options.output, out));
   say(options.output, fmt::format("{} triangles, {} points, level {}", out.triangles.size(), out.points.size(), to_text(surface.level)));
   return Done{};
 }
 
 Outcome export_mesh(const SceneExport& options, scene::Scene& scene) {
-  CATENA_CHECK(expect(options.output, is_mesh_export_path(options.output), mesh_export_extensions()));
+  CATENA_CHECK(
+      expect(options.output, io::find_writer(options.output, io::DataKind::mesh) != nullptr, io::writable_extensions(io::DataKind::mesh)));
   CATENA_TRY(const mesh::MeshPtr mesh, scene::resolve_mesh(scene, options.mesh, option_node("--mesh")));
-  MeshExport out{mesh->vertices(), {}, mesh->triangles()};
+  mesh::MeshExport out{mesh->vertices(), {}, mesh->triangles()};
   for (std::size_t v = 0; v < out.points.size(); ++v) out.normals.push_back(mesh->vertex_normal(static_cast<std::uint32_t>(v)));
   CATENA_CHECK(write_and_tell(options.output, out));
   say(options.output, fmt::format("{} triangles, {} points", out.triangles.size(), out.points.size()));
@@ -89,17 +91,14 @@ Outcome export_mesh(const SceneExport& options, scene::Scene& scene) {
 }
 
 Outcome export_streamlines(const SceneExport& options, scene::Scene& scene) {
-  const bool vtp = has_extension(options.output, ".vtp");
-  CATENA_CHECK(expect(options.output, vtp || has_extension(options.output, ".csv"), ".vtp or .csv"));
+  const io::Format* format = io::find_writer(options.output, io::DataKind::curves);
+  CATENA_CHECK(expect(options.output, format != nullptr, io::writable_extensions(io::DataKind::curves)));
   CATENA_TRY(const Entity item, find_item<scene::StreamlineSet>(scene, *options.streamlines, "streamlines"));
   const scene::StreamlineSet& set = scene.entities.get<scene::StreamlineSet>(item);
   CATENA_TRY(const field::AnyField field, scene::resolve_field(scene, set.field, set.where));
   CATENA_TRY(const std::vector<flow::CurvePtr> curves, scene::resolve_lines(scene, item));
   CATENA_TRY(OutputFile out, OutputFile::open(options.output));
-  if (vtp)
-    write_polylines_vtp(out, curves, *field.vector);
-  else
-    write_polylines_csv(out, curves);
+  format->write_curves(out, curves, *field.vector);
   CATENA_CHECK(out.commit());
   say(options.output, fmt::format("{} line{}", curves.size(), curves.size() == 1 ? "" : "s"));
   return Done{};
@@ -190,7 +189,7 @@ Outcome export_slice(const SceneExport& options, scene::Scene& scene) {
     }
     CATENA_CHECK(out.commit());
   } else {
-    MeshExport out{plane.points, {}, plane.triangles, samples.sample_points(plane.points)};
+    mesh::MeshExport out{plane.points, {}, plane.triangles, samples.sample_points(plane.points)};
     CATENA_CHECK(write_and_tell(options.output, out));
   }
   say(options.output, fmt::format("{} samples, {} apart", plane.points.size(), to_text(spacing)));
@@ -215,7 +214,8 @@ Outcome export_probe(const SceneExport& options, scene::Scene& scene) {
 }
 
 Outcome export_field(const SceneExport& options, scene::Scene& scene) {
-  CATENA_CHECK(expect(options.output, field::is_writable_format(options.output), field::writable_extensions()));
+  CATENA_CHECK(expect(options.output, io::find_writer(options.output, io::DataKind::volume) != nullptr,
+                      io::writable_extensions(io::DataKind::volume)));
   const Entity entity = scene::find_field(scene, options.field);
   const json::Node where = option_node("--field");
   if (!entity) return scene::resolve_field(scene, options.field, where).error();  // the message lists the existing fields

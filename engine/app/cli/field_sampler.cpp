@@ -56,10 +56,10 @@ void FieldSampler::append_csv_cells(std::string& line, const Vec3& world) {
   }
 }
 
-std::vector<PointValues> FieldSampler::sample_points(const std::vector<Vec3>& points) {
-  std::vector<PointValues> all;
+std::vector<mesh::PointValues> FieldSampler::sample_points(const std::vector<Vec3>& points) {
+  std::vector<mesh::PointValues> all;
   for (NamedField& field : fields_) {
-    PointValues values{field.name, field.components(), {}};
+    mesh::PointValues values{field.name, field.components(), {}};
     values.values.reserve(points.size() * static_cast<std::size_t>(values.components));
     for (const Vec3& p : points) {
       double numbers[3];

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/app/cli/mesh_writer.h"
 #include "engine/base/result.h"
+#include "engine/io/mesh/write_mesh.h"
 #include "engine/scene/scene.h"
 
 namespace catena::app {
@@ -21,7 +21,7 @@ class FieldSampler {
   /// Appends one cell per column for the point `world`, each after a comma; empty where the field has no value. Numbers read back exactly.
   void append_csv_cells(std::string& line, const Vec3& world);
   /// Samples all fields at the points; NaN where a field has no value.
-  std::vector<PointValues> sample_points(const std::vector<Vec3>& points);
+  std::vector<mesh::PointValues> sample_points(const std::vector<Vec3>& points);
   /// Total number of components of all fields.
   std::size_t column_count() const;
 

@@ -9,9 +9,9 @@
 #include "engine/app/cli/json_writer.h"
 #include "engine/app/cli/plugins.h"
 #include "engine/app/haptics/log_replay.h"
-#include "engine/geometry/curves/point_set.h"
 #include "engine/io/curves/load_curves.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/curves/load_points.h"
+#include "engine/io/formats.h"
 #include "engine/io/volume/units.h"
 #include "engine/scene/time_steps.h"
 #include "engine/scene/units.h"
@@ -68,7 +68,7 @@ Result<std::string> json_of_file(const std::string& path, const std::string& gri
   CATENA_TRY(const std::vector<field::GridInfo> grids, read_grid_infos(at.path, grid, at.step));
   std::vector<std::string> described, notes;
   for (const field::GridInfo& g : grids) described.push_back(json_of_grid(at.path, g));
-  const scene::FileSummary look = field::needs_layout(path) ? scene::FileSummary{} : scene::summarize_file(path, grid, step);
+  const scene::FileSummary look = io::needs_layout(path) ? scene::FileSummary{} : scene::summarize_file(path, grid, step);
   if (look.steps.count > 0) CATENA_CHECK(check_step(step, look.steps.count - 1, fmt::format("--step {}", step), path));
   for (const std::string& line : look.lines) notes.push_back(to_json_value(line));
   JsonObject out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena info --json`: the contents of `catena info` as one JSON object on one line of stdout. docs/reference/command-line.md lists its
+/// `catena info --json`: the contents of `catena info` as one JSON object on one line of stdout. docs/reference/columns.md lists its
 /// members.
 #pragma once
 #include <string>

@@ -7,8 +7,8 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/field/field_display_range.h"
+#include "engine/io/formats.h"
 #include "engine/io/mesh/load_mesh.h"
-#include "engine/io/volume/formats.h"
 #include "engine/io/volume/load_field.h"
 #include "engine/io/volume/units.h"
 #include "engine/scene/time_steps.h"
@@ -143,7 +143,7 @@ Outcome describe_file(const std::string& path, const std::string& grid, int step
     }
     fmt::print("  bytes        {} ({})\n", g.bytes, format_bytes(static_cast<double>(g.bytes)));
   }
-  if (field::needs_layout(path)) return Done{};
+  if (io::needs_layout(path)) return Done{};
   const scene::FileSummary look = scene::summarize_file(path, grid, step);
   CATENA_CHECK(print_steps(path, look.steps, step));
   for (const std::string& line : look.lines) fmt::print("{}\n", sanitize_for_terminal(line));

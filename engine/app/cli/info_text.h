@@ -6,8 +6,8 @@
 #include "engine/base/result.h"
 #include "engine/base/vec.h"
 #include "engine/geometry/curves/curves.h"
-#include "engine/geometry/curves/point_set.h"
 #include "engine/geometry/mesh/mesh.h"
+#include "engine/io/curves/load_points.h"
 
 namespace catena::app {
 

@@ -30,9 +30,9 @@ CLI::Option* add_source(CLI::App& command, const std::string& name, std::string&
 }
 
 void add_annotation_options(CLI::App& command, AnnotationOptions& options) {
-  command.add_option("--title", options.title, "text at the top of the picture");
-  command.add_flag("--scalar-bar", options.scalar_bar, "the colours of the first volume or coloured streamlines, with their values");
-  command.add_flag("--orientation-marker", options.orientation_marker, "the world's axes in a corner");
+  command.add_option("--title", options.title, "title at the top of the image")->type_name("TEXT");
+  command.add_flag("--scalar-bar", options.scalar_bar, "shows the colours of the first volume or coloured streamlines, with their values");
+  command.add_flag("--orientation-marker", options.orientation_marker, "shows the world axes in a corner");
 }
 
 Outcome add_annotations(scene::Scene& scene, const AnnotationOptions& options) {
@@ -50,12 +50,17 @@ Outcome add_annotations(scene::Scene& scene, const AnnotationOptions& options) {
 }
 
 void HapticTargetOptions::add_to(CLI::App& command) {
-  CLI::Option* error = command
-                           .add_option("--max-proxy-error", max_proxy_error,
-                                       "greatest distance of a streamline link's proxy from its line, world units: links without settings "
-                                       "of their own get the fastest ones that keep it")
-                           ->check(number_above_zero());
-  command.add_option("--max-tick-us", max_tick_us, "longest time of a tick, us: the same links get the most exact settings that keep it")
+  CLI::Option* error =
+      command
+          .add_option(
+              "--max-proxy-error", max_proxy_error,
+              "greatest distance of a streamline link's proxy from its line: chooses the fastest settings within it (default: the scene's)")
+          ->type_name("ERROR")
+          ->check(number_above_zero());
+  command
+      .add_option("--max-tick-us", max_tick_us,
+                  "longest time of a tick: chooses the most accurate settings of streamline links within it (default: the scene's)")
+      ->type_name("US")
       ->check(number_above_zero())
       ->excludes(error);
 }
@@ -67,12 +72,22 @@ scene::TuningTargets HapticTargetOptions::resolve(const scene::Scene& scene) con
 }
 
 void ColorOptions::add_to(CLI::App& command) {
-  command.add_option("--colormap", colormap,
-                     "colour map of a data file (catena info --colormaps lists them); lines show their speed by it");
-  command.add_option("--range", range, "the values between which a data file's colours, and a volume's opacity, lie: LO HI")->expected(2);
-  command.add_option("--mapping", mapping, "linear, log or symlog: the scale of a data file's colours, and of a volume's opacity");
-  command.add_option("--linear-below", linear_below,
-                     "of --mapping symlog: up to this size values are linear (default: a thousandth of the greatest)");
+  command
+      .add_option("--colormap", colormap, "colour map of a data file; catena info --colormaps lists them (default: chosen from the data)")
+      ->type_name("COLORMAP");
+  command
+      .add_option("--range", range, "range of values that the colours and the opacity of a data file cover (default: the display range)")
+      ->type_name("LO HI")
+      ->check(accepted("LO < HI"))
+      ->expected(2);
+  command.add_option("--mapping", mapping, "scale of the colours and of the opacity of a data file (default: linear)")
+      ->type_name("WORD")
+      ->check(accepted("{linear,log,symlog}"));
+  command
+      .add_option("--linear-below", linear_below,
+                  "of --mapping symlog: values of at most this magnitude are mapped linearly (default: a thousandth of the greatest)")
+      ->type_name("VALUE")
+      ->check(accepted("> 0"));
 }
 
 Result<scene::NamedColors> ColorOptions::to_named_colors() const {

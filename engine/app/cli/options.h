@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/app/cli/value_types.h"
 #include "engine/app/haptics/haptic_device_setup.h"
 #include "engine/base/numbers.h"
 #include "engine/base/result.h"
@@ -27,17 +28,28 @@ namespace catena::app {
 /// (engine/scene/time_steps.h).
 CLI::Option* add_source(CLI::App& command, const std::string& name, std::string& source, const std::string& help);
 
+/// States the accepted values of an option for `--help` and the reference, "> 0" or "{on,off}", and accepts all: the command checks them.
+inline CLI::Validator accepted(const std::string& values) {
+  return CLI::Validator([](const std::string&) { return std::string(); }, values);
+}
+
+/// As above, for words listed as "mono, left or right".
+inline CLI::Validator accepted_words(std::string words) {
+  if (const auto at = words.rfind(" or "); at != std::string::npos) words.replace(at, 4, ", ");
+  return accepted("{" + words + "}");
+}
+
 /// Accepts a finite number from `least` to `most`.
 inline CLI::Validator number_between(double least, double most) {
+  const bool bounded = most < std::numeric_limits<double>::max();
   return CLI::Validator(
-      [least, most](const std::string& text) -> std::string {
+      [least, most, bounded](const std::string& text) -> std::string {
         const auto value = parse_double(text);
         if (value && *value >= least && *value <= most) return {};
-        const std::string range =
-            most < std::numeric_limits<double>::max() ? "from " + to_text(least) + " to " + to_text(most) : "of at least " + to_text(least);
+        const std::string range = bounded ? "from " + to_text(least) + " to " + to_text(most) : "of at least " + to_text(least);
         return in_quotes(text) + " is out of range; a finite number " + range + " was expected";
       },
-      "");
+      bounded ? to_text(least) + " to " + to_text(most) : ">= " + to_text(least));
 }
 
 /// Accepts a finite number of at least `least`.
@@ -51,21 +63,25 @@ inline CLI::Validator number_above_zero() {
         if (value && *value > 0 && *value <= std::numeric_limits<double>::max()) return {};
         return in_quotes(text) + " is out of range; a finite number above 0 was expected";
       },
-      "");
+      "> 0");
 }
 
 /// Makes all numeric options of `command` report an empty value before any other check. Call after all options of `command` are added.
 inline void refuse_empty_numbers(CLI::App& command) {
   for (CLI::Option* option : command.get_options([](const CLI::Option* o) { return o->get_expected_min() > 0; })) {
-    const std::string type = option->get_type_name();
-    if (!type.starts_with("INT") && !type.starts_with("UINT") && !type.starts_with("FLOAT")) continue;
+    const ValueType* type = find_value_type(option->get_type_name());
+    if (type == nullptr || !type->is_number) continue;
     option->transform(CLI::Validator(
         [](std::string& text) -> std::string { return text.empty() ? "the value is empty; a number was expected" : ""; }, ""));
   }
 }
 
-/// Maximum value of --size WxH.
-inline constexpr std::uint32_t kMaxImageSize = 16384;  ///< Pixels on each axis of an image that is rendered in one piece
+/// Maximum values of --size WxH, pixels on each axis.
+inline constexpr std::uint32_t kMaxImageSize = 16384;  ///< Of an image that is rendered in one piece
+inline constexpr int kMaxTiledPixels = 65536;          ///< Of an image that is rendered in tiles
+
+/// States the accepted values of --size.
+inline CLI::Validator image_size_up_to(int most) { return accepted("1x1 to " + std::to_string(most) + "x" + std::to_string(most)); }
 
 /// Size of an image, pixels.
 struct ImageSize {
@@ -131,14 +147,23 @@ inline Outcome check_packed_size(const scene::Stereo& stereo, const ImageSize& s
 
 /// Adds the stereo options to a command.
 inline void add_stereo_options(CLI::App& command, StereoOptions& choice) {
-  command.add_option("--stereo", choice.mode,
-                     scene::stereo_mode_names() + " (default: the scene's); each eye has the size of --size, *-half squeezes all into it");
-  command.add_option("--eye-separation", choice.separation,
-                     "between the eyes, world units (default: the scene's, or a 30th of --zero-parallax)");
-  command.add_option("--zero-parallax", choice.zero_parallax,
-                     "distance from the eyes to where both see the same, world units (default: the scene's, or the camera's target)");
-  command.add_option("--screen", choice.screen,
-                     "the picture is what the eye sees through this one of the scene's \"screens\"; the camera's position is the head");
+  command
+      .add_option("--stereo", choice.mode,
+                  "stereo mode; each view has the size of --size, *-half fits all views into it (default: the scene's)")
+      ->type_name("MODE")
+      ->check(accepted_words(scene::stereo_mode_names()));
+  command
+      .add_option("--eye-separation", choice.separation,
+                  "distance between the two views (default: the scene's, or a 30th of --zero-parallax)")
+      ->type_name("DISTANCE")
+      ->check(accepted(">= 0"));
+  command
+      .add_option("--zero-parallax", choice.zero_parallax,
+                  "distance at which the two views coincide (default: the scene's, or that of the camera's target)")
+      ->type_name("LENGTH")
+      ->check(accepted("> 0"));
+  command.add_option("--screen", choice.screen, "renders for this screen of the scene, seen from the camera's position (default: none)")
+      ->type_name("SCREEN");
 }
 
 }  // namespace catena::app
@@ -193,10 +218,12 @@ struct HapticTargetOptions {
 
 /// Adds --realtime on|off and --cpu N: real-time scheduling and core of the haptic thread.
 inline void add_realtime_options(CLI::App& command, RealtimeChoice& choice) {
-  command.add_option("--realtime", choice.realtime, "fixed priority and locked memory for the servo, where permitted")
+  command.add_option("--realtime", choice.realtime, "fixed priority and locked memory for the haptic thread, where permitted")
+      ->type_name("WORD")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
-  command.add_option("--cpu", choice.cpu, "the core that the servo stays on; default: the last one, with a fixed priority")
+  command.add_option("--cpu", choice.cpu, "processor core of the haptic thread (default: the last one, with a fixed priority)")
+      ->type_name("CORE")
       ->check(CLI::Range(0, 4095));
 }
 

@@ -95,9 +95,9 @@ Outcome analyse_folder(const AnalyseOptions& options) {
 void add_study_analyze(CLI::App& study, CommandAction& chosen) {
   auto options = std::make_shared<AnalyseOptions>();
   CLI::App* command =
-      study.add_subcommand("analyse", "what the trials of a data folder say: tests, intervals, plots, each of the paper's findings");
-  command->add_option("DIR", options->data, "the data folder: study.json and its trials")->required();
-  command->add_option("-o,--output", options->output, "a folder for the page, the tables and the JSON")->required();
+      study.add_subcommand("analyse", "analyses the trials of a data folder: tests, intervals, plots, the paper's findings");
+  command->add_option("DIR", options->data, "data folder: study.json and its trials")->type_name("FOLDER")->required();
+  command->add_option("-o,--output", options->output, "folder for the page, the tables and the JSON")->type_name("FOLDER")->required();
   command->callback([&chosen, options] { chosen = [options] { return analyse_folder(*options); }; });
 }
 

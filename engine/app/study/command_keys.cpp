@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "engine/app/cli/options.h"
 #include "engine/app/study/study_commands.h"
 #include "engine/schema/documents.h"
 #include "engine/study/study.h"
@@ -37,9 +38,11 @@ std::string study_schema() {
 void add_study_keys(CLI::App& study, CommandAction& chosen) {
   auto part = std::make_shared<std::string>();
   auto is_schema = std::make_shared<bool>(false);
-  CLI::App* command = study.add_subcommand("keys", "list what a study file may say");
-  command->add_option("PART", *part, "only this: study, tasks, conditions, operator, questionnaire, compare or findings");
-  command->add_flag("--schema", *is_schema, "print the JSON Schema of studies instead, for an editor");
+  CLI::App* command = study.add_subcommand("keys", "lists the keys of a study file");
+  command->add_option("PART", *part, "part whose keys are listed (default: all)")
+      ->type_name("PART")
+      ->check(accepted("{study,tasks,conditions,operator,questionnaire,compare,findings}"));
+  command->add_flag("--schema", *is_schema, "prints the JSON Schema of studies instead, for an editor");
   command->callback([&chosen, part, is_schema] {
     chosen = [part, is_schema]() -> Outcome {
       if (!*is_schema) return print_study_keys(*part);

@@ -93,9 +93,9 @@ Outcome merge(const MergeOptions& options) {
 
 void add_study_merge(CLI::App& study, CommandAction& chosen) {
   auto options = std::make_shared<MergeOptions>();
-  CLI::App* command = study.add_subcommand("merge", "the subjects of several data folders in one");
-  command->add_option("DIR", options->folders, "data folders of one study")->required();
-  command->add_option("-o,--output", options->output, "the data folder to make")->required();
+  CLI::App* command = study.add_subcommand("merge", "joins the subjects of several data folders in one");
+  command->add_option("DIR", options->folders, "data folders of one study")->type_name("FOLDER")->required();
+  command->add_option("-o,--output", options->output, "data folder to make")->type_name("FOLDER")->required();
   command->callback([&chosen, options] { chosen = [options] { return merge(*options); }; });
 }
 

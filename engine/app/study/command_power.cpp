@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "engine/app/cli/options.h"
 #include "engine/app/study/study_commands.h"
 #include "engine/study/statistics/power.h"
 #include "engine/study/study.h"
@@ -47,11 +48,20 @@ Outcome print_power(const PowerOptions& options) {
 
 void add_study_power(CLI::App& study, CommandAction& chosen) {
   auto options = std::make_shared<PowerOptions>();
-  CLI::App* command = study.add_subcommand("power", "how many subjects a design needs to find a difference of a given size");
-  command->add_option("STUDY", options->study, "a study file (.json)")->required();
-  command->add_option("--effect", options->effect, "d_z: mean of the differences by their standard deviation")->required();
-  command->add_option("--power", options->power, "how often it shall be found")->capture_default_str();
-  command->add_option("--alpha", options->alpha, "how often something is found where there is nothing")->capture_default_str();
+  CLI::App* command = study.add_subcommand("power", "computes how many subjects a design needs to find a difference of a given size");
+  command->add_option("STUDY", options->study, "study (.json)")->type_name("STUDY")->required();
+  command->add_option("--effect", options->effect, "effect size d_z: mean of the differences divided by their standard deviation")
+      ->type_name("D_Z")
+      ->check(accepted("0.01 to 10"))
+      ->required();
+  command->add_option("--power", options->power, "probability of finding the difference")
+      ->type_name("POWER")
+      ->check(accepted("--alpha < P <= 0.9999"))
+      ->capture_default_str();
+  command->add_option("--alpha", options->alpha, "probability of a false finding")
+      ->type_name("ALPHA")
+      ->check(accepted("1e-6 to 0.5"))
+      ->capture_default_str();
   command->callback([&chosen, options] { chosen = [options] { return print_power(*options); }; });
 }
 

@@ -90,20 +90,28 @@ Outcome run_study(const StudyRunOptions& options) {
 
 void add_study_run(CLI::App& study, CommandAction& chosen) {
   auto options = std::make_shared<StudyRunOptions>();
-  CLI::App* command = study.add_subcommand("run", "a session with a subject, in the window; the same command goes on after any end");
-  command->add_option("STUDY", options->study, "the study file (.json)")->required();
-  command->add_option("--subject", options->subject, "the subject's number: no names")
+  CLI::App* command = study.add_subcommand("run", "runs a session with a subject in the window; the same command resumes it");
+  command->add_option("STUDY", options->study, "study (.json)")->type_name("STUDY")->required();
+  command->add_option("--subject", options->subject, "number of the subject")
+      ->type_name("SUBJECT")
       ->required()
       ->check(CLI::Range(1, study::kMaxSubject));
-  command->add_option("--device", options->device, "what holds the probe: mouse, or a name of `catena devices`")->required();
-  command->add_option("-o,--output", options->folder, "the folder of the data")->required();
-  command->add_option("--forces", options->forces, "whether the device may push; must be said for one that can")
+  command->add_option("--device", options->device, "mouse, or a device of `catena devices`")->type_name("DEVICE")->required();
+  command->add_option("-o,--output", options->folder, "data folder")->type_name("FOLDER")->required();
+  command->add_option("--forces", options->forces, "whether the device may exert forces; required for a device that can")
+      ->type_name("WORD")
       ->check(CLI::IsMember({"on", "off"}));
-  command->add_option("--firmware", options->firmware, "falcon: the vendor's image, sent when the device has none");
-  command->add_option("--size", options->size, "of the window, WxH")->capture_default_str();
-  command->add_option("--quality", options->quality, "of the pictures, as of view: error=2 is as sharp at any time, whatever the machine")
+  command->add_option("--firmware", options->firmware, "firmware image of the vendor, sent to a Falcon that has none")
+      ->type_name("FIRMWARE");
+  command->add_option("--size", options->size, "size of the window")
+      ->type_name("WxH")
+      ->check(image_size_up_to(kMaxImageSize))
       ->capture_default_str();
-  command->add_flag("--fullscreen", options->full_screen, "as large as the screen (F11)");
+  command
+      ->add_option("--quality", options->quality, "target or settings of the images, as of view; error=2 is equally sharp on every machine")
+      ->type_name("QUALITY")
+      ->capture_default_str();
+  command->add_flag("--fullscreen", options->full_screen, "fills the screen (F11)");
   add_stereo_options(*command, options->stereo);
   add_realtime_options(*command, options->realtime);
   command->callback([&chosen, options] { chosen = [options] { return run_study(*options); }; });

@@ -51,11 +51,17 @@ Outcome write_trial_scene(const StudySceneOptions& options) {
 
 void add_study_scene(CLI::App& study, CommandAction& chosen) {
   auto options = std::make_shared<StudySceneOptions>();
-  CLI::App* command = study.add_subcommand("scene", "a trial as a scene file");
-  command->add_option("STUDY", options->study, "the study file (.json)")->required();
-  command->add_option("--subject", options->subject, "whose session")->check(CLI::Range(1, study::kMaxSubject))->capture_default_str();
-  command->add_option("--trial", options->trial, "its number in the session, from 0")->check(CLI::Range(0, 1000000))->capture_default_str();
-  command->add_option("-o,--output", options->output, "the scene, .json")->required();
+  CLI::App* command = study.add_subcommand("scene", "writes a trial as a scene");
+  command->add_option("STUDY", options->study, "study (.json)")->type_name("STUDY")->required();
+  command->add_option("--subject", options->subject, "number of the subject")
+      ->type_name("SUBJECT")
+      ->check(CLI::Range(1, study::kMaxSubject))
+      ->capture_default_str();
+  command->add_option("--trial", options->trial, "number of the trial in the session, counted from 0")
+      ->type_name("INDEX")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
+  command->add_option("-o,--output", options->output, "scene to write")->type_name("FILE.json")->required();
   command->callback([&chosen, options] { chosen = [options] { return write_trial_scene(*options); }; });
 }
 

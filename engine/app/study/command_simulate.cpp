@@ -10,6 +10,7 @@
 #include <mutex>
 
 #include "engine/app/cli/io_conflicts.h"
+#include "engine/app/cli/options.h"
 #include "engine/app/cli/plugins.h"
 #include "engine/app/study/study_commands.h"
 #include "engine/app/study/subject_folder.h"
@@ -190,15 +191,23 @@ Outcome simulate(const SimulateOptions& options) {
 
 void add_study_simulate(CLI::App& study, CommandAction& chosen) {
   auto options = std::make_shared<SimulateOptions>();
-  CLI::App* command = study.add_subcommand("simulate", "the study with a model in the place of its subjects");
-  command->add_option("STUDY", options->study, "the study file (.json)")->required();
-  command->add_option("--subjects", options->subjects, "how many; default: those of the design")->check(CLI::Range(1, study::kMaxSubject));
-  command->add_option("-o,--output", options->output, "the data folder; what it holds of this study is kept")->required();
-  command->add_option("--shard", options->shard,
-                      "I/N: every N-th subject from the I-th on, for a cluster's job array; study merge joins them");
-  command->add_option("--model", options->model, "NAME=NUMBER: another number of the file's \"operator\", for instance depth_noise_mm=4")
+  CLI::App* command = study.add_subcommand("simulate", "runs a study with a model in place of its subjects");
+  command->add_option("STUDY", options->study, "study (.json)")->type_name("STUDY")->required();
+  command->add_option("--subjects", options->subjects, "number of subjects (default: that of the design)")
+      ->type_name("N")
+      ->check(CLI::Range(1, study::kMaxSubject));
+  command->add_option("-o,--output", options->output, "data folder; the trials of this study that it holds are kept")
+      ->type_name("FOLDER")
+      ->required();
+  command
+      ->add_option("--shard", options->shard,
+                   "every N-th subject from the I-th on, for a cluster's job array; study merge joins them (default: all)")
+      ->type_name("I/N")
+      ->check(accepted("1 <= I <= N"));
+  command->add_option("--model", options->model, "replaces a number of the file's \"operator\"")
+      ->type_name("NAME=NUMBER")
       ->allow_extra_args(false);
-  command->add_flag("--record", options->record, "every tick of every trial, DIR/recordings/SUBJECT-TRIAL.catlog");
+  command->add_flag("--record", options->record, "records every tick of every trial: DIR/recordings/SUBJECT-TRIAL.catlog");
   command->callback([&chosen, options] { chosen = [options] { return simulate(*options); }; });
 }
 

@@ -8,8 +8,7 @@
 namespace catena::app {
 
 void add_study(CLI::App& program, CommandAction& chosen) {
-  CLI::App* command =
-      program.add_subcommand("study", "an experiment with subjects, described by a file: its trials, its data, its statistics");
+  CLI::App* command = program.add_subcommand("study", "runs an experiment described by a file, and analyses its data");
   command->require_subcommand(1);
   add_study_simulate(*command, chosen);
   add_study_run(*command, chosen);
