@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Debian packages: cmake --preset package && cmake --build --preset package && cpack --config build/package/CPackConfig.cmake
 #   catena          the program, the helpers that it and the library start, manual pages, completion, scenes, the rules for devices
-#   libcatena0.1    the shared library
+#   libcatena0.3    the shared library
 #   libcatena-dev   headers, `find_package(catena)`, examples
 #   python3-catena  the Python module
 # What they depend on is found by dpkg-shlibdeps. Nothing but the program's package asks anything of the machine: it makes the group

@@ -17,7 +17,6 @@ if(CATENA_INSTALL)
     REGEX "/assets/(pictures|system|scenes/data)$" EXCLUDE)
   # documents lie as in this tree, so that their links hold
   install(FILES README.md CHANGELOG.md LICENSE SECURITY.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT catena)
-  install(FILES engine/app/viewer/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/engine/app/viewer COMPONENT catena)
   install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT catena REGEX "/docs/(examples|site)$" EXCLUDE)
   install(DIRECTORY assets/pictures DESTINATION ${CMAKE_INSTALL_DOCDIR}/assets COMPONENT catena)
 endif()

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// The documents: every relative link leads to a file and to a heading, every file of the tree that they name is there, every Suite.Case
-/// that they name is a test, and README says the scene that assets/scenes/first.json holds.
+/// that they name is a test, prose is short, and README says the scene that assets/scenes/first.json holds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -124,6 +124,76 @@ TEST(Documents, EveryTestThatTheyNameIsOne) {
       EXPECT_NE((cases + ' ').find(' ' + name + (all ? "" : " ")), std::string::npos) << document << " names " << name;
     }
   EXPECT_GT(checked, 20);
+}
+
+/// A paragraph of prose, or an item of a list, with the line on which it begins.
+struct Paragraph {
+  int line = 0;
+  std::string text;
+};
+
+/// The prose of a document: without tables, headings, code and comments; of links only the text remains.
+std::vector<Paragraph> prose(const std::string& document) {
+  static const std::regex item(R"(^\s*(?:[-*+]|\d+[.)])\s+)"), link(R"(!?\[([^\]]*)\]\([^)]*\))");
+  std::vector<Paragraph> found;
+  std::istringstream in(contents(document));
+  bool is_code = false, is_comment = false, continues = false;
+  int number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    const std::size_t begin = line.find_first_not_of(' ');
+    const std::string text = begin == std::string::npos ? "" : line.substr(begin);
+    if (text.starts_with("```")) is_code = !is_code;
+    if (text.starts_with("<!--")) is_comment = true;
+    const bool is_prose = !is_code && !is_comment && !text.empty() && text.find_first_of("#|`") != 0;
+    const bool starts_with_code = !is_code && !is_comment && text.starts_with("`") && !text.starts_with("```");
+    if (is_comment && text.find("-->") != std::string::npos) is_comment = false;
+    if (!is_prose && !starts_with_code) {
+      continues = false;
+      continue;
+    }
+    if (!continues && begin >= 4) continue;  // an indented block of code
+    if (!continues || std::regex_search(line, item)) found.push_back({number, {}});
+    continues = true;
+    found.back().text += std::regex_replace(line, item, "") + " ";
+  }
+  for (Paragraph& paragraph : found) paragraph.text = std::regex_replace(paragraph.text, link, "$1");
+  return found;
+}
+
+int word_count(const std::string& text) {
+  std::istringstream in(text);
+  int count = 0;
+  for (std::string word; in >> word;) ++count;
+  return count;
+}
+
+TEST(Documents, ProseIsShort) {
+  constexpr int kMaxParagraph = 80, kMaxSentence = 30;  // words
+  static const std::regex end(R"([.!?]["”)\]*_`]*\s+)");
+  int checked = 0;
+  for (const std::string& document : documents())
+    for (const Paragraph& paragraph : prose(document)) {
+      ++checked;
+      const std::string at = document + ":" + std::to_string(paragraph.line) + ": " + paragraph.text.substr(0, 60);
+      EXPECT_LE(word_count(paragraph.text), kMaxParagraph) << at;
+      for (auto it = std::sregex_token_iterator(paragraph.text.begin(), paragraph.text.end(), end, -1); it != std::sregex_token_iterator();
+           ++it)
+        EXPECT_LE(word_count(it->str()), kMaxSentence) << at << "\n" << it->str();
+    }
+  EXPECT_GT(checked, 500);
+}
+
+TEST(Documents, AGuideIsShortAndHasAPicture) {
+  int checked = 0;
+  for (const auto& entry : fs::directory_iterator(test::source_dir() + "/docs/user")) {
+    if (entry.path().extension() != ".md") continue;
+    const std::string text = test::read_file(entry.path().string());
+    ++checked;
+    EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 150) << entry.path();
+    EXPECT_NE(text.find("!["), std::string::npos) << entry.path();
+  }
+  EXPECT_GT(checked, 10);
 }
 
 TEST(Documents, TheReadmeIsShortAndShowsTheFirstScene) {
