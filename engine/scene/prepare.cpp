@@ -3,102 +3,23 @@
 
 #include <algorithm>
 
+#include "engine/scene/drawable.h"
 #include "engine/scene/streamlines.h"
-#include "engine/scene/visibility.h"
 #include "engine/scene/widgets.h"
 
 namespace catena::scene {
 
-namespace {
-
-/// The entities with a visible T; a copy, because components are added during the iteration.
-template <class T>
-std::vector<Entity> visible(const EntityStore& world) {
-  std::vector<Entity> all;
-  world.each<T>([&](Entity e, const T&) {
-    if (!is_hidden(world, e)) all.push_back(e);
-  });
-  return all;
-}
-
-/// Loads the fields of surfaces and volumes that rays intersect, and the fields that color them.
-template <class T>
-Outcome load_drawn(Scene& scene) {
-  for (const Entity e : visible<T>(scene.entities)) {
-    const T& item = scene.entities.get<T>(e);
-    CATENA_CHECK(resolve_rendered_field(scene, item.field, item.where));
-    if (item.color_by) CATENA_CHECK(resolve_rendered_field(scene, item.color_by->field, item.color_by->where));
-  }
-  return Done{};
-}
-
-Outcome load_meshes(Scene& scene) {
-  for (const Entity e : visible<SurfaceMesh>(scene.entities)) {
-    const SurfaceMesh& surface = scene.entities.get<SurfaceMesh>(e);
-    CATENA_CHECK(resolve_mesh(scene, surface.mesh));
-    if (surface.color_by) CATENA_CHECK(resolve_field(scene, surface.color_by->field, surface.where));
-  }
-  return Done{};
-}
-
-Outcome load_flows(Scene& scene, StreamlineTracing streamlines) {
-  for (const Entity e : visible<StreamlineSet>(scene.entities)) {
-    if (streamlines == StreamlineTracing::immediate && lines_version(scene, e) == 0) CATENA_CHECK(resolve_lines(scene, e));
-    const StreamlineSet& set = scene.entities.get<StreamlineSet>(e);
-    if (set.color_by && set.color_by->source == ColorBy::Source::field) CATENA_CHECK(resolve_field(scene, set.color_by->field, set.where));
-  }
-  for (const Entity e : visible<Indicator>(scene.entities)) {
+Outcome prepare(Scene& scene, StreamlineTracing streamlines) {
+  CATENA_CHECK(propagate_widgets(scene));
+  for (const Drawable& kind : drawables())
+    if (kind.load != nullptr) CATENA_CHECK(kind.load(scene));
+  if (streamlines == StreamlineTracing::immediate)
+    for (const Entity e : visible_entities<StreamlineSet>(scene.entities))
+      if (lines_version(scene, e) == 0) CATENA_CHECK(resolve_lines(scene, e));
+  for (const Entity e : visible_entities<Indicator>(scene.entities)) {
     const Indicator& indicator = scene.entities.get<Indicator>(e);
     CATENA_CHECK(resolve_field(scene, indicator.field, indicator.where));
   }
-  return Done{};
-}
-
-/// Loads the vector fields of glyphs, the fields that color them, and the surfaces that they lie on, visible or not.
-Outcome load_glyphs(Scene& scene) {
-  for (const Entity e : visible<GlyphSet>(scene.entities)) {
-    const GlyphSet& set = scene.entities.get<GlyphSet>(e);
-    CATENA_CHECK(resolve_field(scene, set.field, set.where));
-    if (set.color_by && set.color_by->source == ColorBy::Source::field) CATENA_CHECK(resolve_field(scene, set.color_by->field, set.where));
-    if (set.support == GlyphSet::Support::mesh) CATENA_CHECK(resolve_mesh(scene, set.support_entity));
-    if (set.support == GlyphSet::Support::slice) {
-      const Slice& slice = scene.entities.get<Slice>(set.support_entity);
-      CATENA_CHECK(resolve_rendered_field(scene, slice.color_by.field, slice.where));
-    }
-    if (set.support == GlyphSet::Support::isosurface) {
-      const Isosurface& surface = scene.entities.get<Isosurface>(set.support_entity);
-      CATENA_CHECK(resolve_rendered_field(scene, surface.field, surface.where));
-    }
-  }
-  return Done{};
-}
-
-/// Loads the files of curves or points by `use`, and the fields that color them.
-template <class T, class Use>
-Outcome load_files(Scene& scene, const Use& use) {
-  for (const Entity e : visible<T>(scene.entities)) {
-    CATENA_CHECK(use(e));
-    const std::optional<ColorBy>& by = scene.entities.get<T>(e).color_by;
-    if (by && by->source == ColorBy::Source::field) CATENA_CHECK(resolve_field(scene, by->field, by->where));
-  }
-  return Done{};
-}
-
-}  // namespace
-
-Outcome prepare(Scene& scene, StreamlineTracing streamlines) {
-  CATENA_CHECK(propagate_widgets(scene));
-  CATENA_CHECK(load_drawn<Volume>(scene));
-  CATENA_CHECK(load_drawn<Isosurface>(scene));
-  CATENA_CHECK(load_meshes(scene));
-  for (const Entity e : visible<Slice>(scene.entities)) {
-    const Slice& slice = scene.entities.get<Slice>(e);
-    CATENA_CHECK(resolve_rendered_field(scene, slice.color_by.field, slice.where));
-  }
-  CATENA_CHECK(load_flows(scene, streamlines));
-  CATENA_CHECK(load_glyphs(scene));
-  CATENA_CHECK(load_files<CurvesSource>(scene, [&](Entity e) { return resolve_curves(scene, e); }));
-  CATENA_CHECK(load_files<PointsSource>(scene, [&](Entity e) { return resolve_points(scene, e); }));
   if (scene.bounding_box && scene.bounding_box->field)
     CATENA_CHECK(resolve_rendered_field(scene, scene.bounding_box->field, scene.bounding_box->where));
   if (scene.axes && scene.axes->field) CATENA_CHECK(resolve_rendered_field(scene, scene.axes->field, scene.axes->where));
@@ -123,7 +44,7 @@ Bounds scene_bounds(const Scene& scene) {
   };
   scene.entities.each<CurvesSource>(add_box);
   scene.entities.each<PointsSource>(add_box);
-  for (const Entity e : visible<StreamlineSet>(scene.entities)) bounds.extend(lines_bounds(scene, e));
+  for (const Entity e : visible_entities<StreamlineSet>(scene.entities)) bounds.extend(lines_bounds(scene, e));
   return bounds;
 }
 

@@ -5,64 +5,67 @@
 #include "engine/scene/readers.h"
 
 namespace catena::scene {
+
+Result<std::size_t> read_index(const json::Node& object, std::string_view key, std::string_view what, std::size_t count,
+                               const std::string& whose) {
+  if (count == 0) return json::error_at(*object.find(key), "the scene has no " + std::string(what) + "; one was expected for " + whose);
+  CATENA_TRY(const int index, json::get_integer(object, key, 0, 0, static_cast<int>(count) - 1));
+  return static_cast<std::size_t>(index);
+}
+
 namespace {
 
 constexpr double kMaxPoints = 576;  // points along the shorter side of the image
 
-/// Whether a component of the entity has colors that a scalar bar can show, visible or hidden.
+/// Whether the entity has colors that a scalar bar can show, visible or hidden.
 bool has_colors(const EntityStore& world, Entity e) {
-  return world.has<Volume>(e) || world.has<Slice>(e) || (world.has<Isosurface>(e) && world.get<Isosurface>(e).color_by) ||
-         (world.has<StreamlineSet>(e) && world.get<StreamlineSet>(e).color_by) ||
-         (world.has<GlyphSet>(e) && world.get<GlyphSet>(e).color_by) ||
-         (world.has<CurvesSource>(e) && world.get<CurvesSource>(e).color_by) ||
-         (world.has<PointsSource>(e) && world.get<PointsSource>(e).color_by);
+  const Drawable* kind = find_drawable(world, e);
+  return kind != nullptr && kind->has_colors(world, e);
 }
 
-/// The first entity with colors that shows the field.
+/// The first entity with colors that shows the field: volumes and slices before others.
 Entity shown_field(const EntityStore& world, Entity field) {
-  Entity found;
-  const auto take = [&](Entity e, bool shows) {
-    if (!found && shows && has_colors(world, e)) found = e;
-  };
-  world.each<Volume>([&](Entity e, const Volume& volume) { take(e, volume.field == field); });
-  world.each<Slice>([&](Entity e, const Slice& slice) { take(e, slice.color_by.field == field); });
-  world.each<Isosurface>([&](Entity e, const Isosurface& surface) { take(e, surface.color_by && surface.color_by->field == field); });
-  const auto take_set = [&](Entity e, const auto& set) {
-    const bool other = set.color_by && set.color_by->source == ColorBy::Source::field;
-    take(e, (other ? set.color_by->field : set.field) == field);
-  };
-  world.each<StreamlineSet>(take_set);
-  world.each<GlyphSet>(take_set);
-  world.each<CurvesSource>([&](Entity e, const CurvesSource& curves) { take(e, curves.color_by && curves.color_by->field == field); });
-  world.each<PointsSource>([&](Entity e, const PointsSource& points) { take(e, points.color_by && points.color_by->field == field); });
-  return found;
+  std::vector<const Drawable*> kinds;
+  for (const Drawable& kind : drawables()) kinds.push_back(&kind);
+  std::ranges::stable_partition(kinds, [](const Drawable* kind) { return kind->name == "volumes" || kind->name == "slices"; });
+  for (const Drawable* kind : kinds)
+    for (const auto& [e, where] : kind->items(world))
+      if (kind->has_colors(world, e) && kind->color_field(world, e) == field) return e;
+  return {};
 }
 
-/// Finds an entity that has colors only with "color_by". `set`: an item stands for a set of objects.
-template <class T>
-Result<Entity> read_coloured(const Scene& scene, const json::Node& item, const std::string& key, bool set) {
-  CATENA_TRY(const Entity shown, read_index<T>(scene, item, key, key, "a scalar bar"));
+/// The kinds whose items a scalar bar can name.
+std::vector<const Drawable*> named_kinds() {
+  std::vector<const Drawable*> kinds;
+  for (const Drawable& kind : drawables())
+    if (!kind.bar_key.empty()) kinds.push_back(&kind);
+  return kinds;
+}
+
+/// Finds the item of a list that the member `kind.bar_key` states by its index.
+Result<Entity> read_item(const Scene& scene, const json::Node& item, const Drawable& kind) {
+  const std::string key(kind.bar_key);
+  const std::vector<DrawableItem> all = kind.items(scene.entities);
+  CATENA_TRY(const std::size_t index, read_index(item, key, kind.name, all.size(), "a scalar bar"));
+  const Entity shown = all[index].first;
   if (has_colors(scene.entities, shown)) return shown;
-  return json::error_at(
-      *item.find(key), "these " + key +
-                           (set ? " have one colour; a set with \"color_by\" was" : " show no values; " + key + " with \"color_by\" were") +
-                           " expected for a scalar bar");
+  return json::error_at(*item.find(key),
+                        "this " + std::string(kind.singular) + " shows no values; one with \"color_by\" was expected for a scalar bar");
 }
 
 Result<Entity> read_shown(const Scene& scene, const json::Node& item) {
-  int given = 0;
-  for (const char* key : {"volume", "slice", "streamlines", "glyphs", "curves", "points", "field"}) given += item.find(key) != nullptr;
+  const std::vector<const Drawable*> kinds = named_kinds();
+  int given = item.find("field") != nullptr ? 1 : 0;
+  std::string choices;
+  for (const Drawable* kind : kinds) {
+    given += item.find(kind->bar_key) != nullptr ? 1 : 0;
+    choices += in_quotes(kind->bar_key) + ": INDEX, ";
+  }
   if (given != 1)
-    return json::error_at(item, "a scalar bar names " + std::string(given == 0 ? "nothing" : "several things") +
-                                    "; one of \"volume\": INDEX, \"slice\": INDEX, \"streamlines\": INDEX, \"glyphs\": INDEX, "
-                                    "\"curves\": INDEX, \"points\": INDEX, \"field\": NAME was expected");
-  const std::string whose = "a scalar bar";
-  if (item.find("volume")) return read_index<Volume>(scene, item, "volume", "volumes", whose);
-  if (item.find("slice")) return read_index<Slice>(scene, item, "slice", "slices", whose);
-  if (item.find("streamlines")) return read_coloured<StreamlineSet>(scene, item, "streamlines", true);
-  if (item.find("glyphs")) return read_coloured<GlyphSet>(scene, item, "glyphs", true);
-  if (item.find("curves")) return read_coloured<CurvesSource>(scene, item, "curves", false);
-  if (item.find("points")) return read_coloured<PointsSource>(scene, item, "points", false);
+    return json::error_at(item, "a scalar bar names " + std::string(given == 0 ? "nothing" : "several things") + "; one of " + choices +
+                                    "\"field\": NAME was expected");
+  for (const Drawable* kind : kinds)
+    if (item.find(kind->bar_key) != nullptr) return read_item(scene, item, *kind);
   CATENA_TRY(const Entity field, read_field_name(scene, item));
   const Entity shown = shown_field(scene.entities, field);
   if (!shown)
@@ -89,17 +92,16 @@ bool is_format(std::string_view text) {
 const Table<ScalarBar>& scalar_bar_table() {
   static const auto table = [] {
     Table<ScalarBar> t;
-    const auto index = [](const char* key, const char* of) {
-      return schema::integer(key, "", std::string("Shows this item of `") + of + "`, counted from 0.", 0, 1000000)
-          .with_range_text("an index");
-    };
-    t.group({index("volume", "volumes"), index("slice", "slices"), index("streamlines", "streamlines"), index("glyphs", "glyphs"),
-             index("curves", "curves"), index("points", "points"),
-             schema::reference("field", Role::any_field, "Or the first thing that shows this field: one of the seven.")},
-            [](Scene& scene, const json::Node& item, ScalarBar& bar) -> Outcome {
-              CATENA_TRY(bar.target, read_shown(scene, item));
-              return Done{};
-            });
+    Keys targets;
+    for (const Drawable* kind : named_kinds())
+      targets.push_back(schema::integer(std::string(kind->bar_key), "",
+                                        "Shows this item of `" + std::string(kind->name) + "`, counted from 0.", 0, 1000000)
+                            .with_range_text("an index"));
+    targets.push_back(schema::reference("field", Role::any_field, "Or the first item that shows this field."));
+    t.group(targets, [](Scene& scene, const json::Node& item, ScalarBar& bar) -> Outcome {
+      CATENA_TRY(bar.target, read_shown(scene, item));
+      return Done{};
+    });
     t.bind(schema::text("title", "Over the bar; `{time}` and `{step}` as in `title`.").with_default("the name of what is shown"),
            &ScalarBar::title);
     t.bind(schema::choice("position", {"right", "left", "bottom", "top"}, "Where in the picture."), &ScalarBar::side);

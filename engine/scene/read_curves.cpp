@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Reads "curves": polylines from a file, or the vortex core lines of a field, rendered as tubes.
 #include "engine/io/formats.h"
+#include "engine/scene/drawable_rows.h"
 #include "engine/scene/reader_bindings.h"
 
 namespace catena::scene {
@@ -65,10 +66,19 @@ const Table<CurvesItem>& curves_table() {
 
 }  // namespace
 
-Part curves_part() {
+static Part curves_part() {
   return {make_list_component("curves", "Curves from a file, such as the fibres of a tractogram, or traced along the cores of vortices.",
                               curves_table()),
           [](Scene& scene, const json::Node& node) { return read_file_items(scene, node, curves_table()); }};
 }
+
+static Outcome load_curves(Scene& scene) {
+  return load_visible<CurvesSource>(scene, [&](Entity e, const CurvesSource& curves) -> Outcome {
+    CATENA_CHECK(resolve_curves(scene, e));
+    return load_color_field(scene, curves.color_by);
+  });
+}
+
+Drawable curves() { return make_drawable<CurvesSource>(curves_part, "curves", "set of curves", "sets of curves", "curves", load_curves); }
 
 }  // namespace catena::scene

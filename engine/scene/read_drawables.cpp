@@ -6,6 +6,7 @@
 #include "engine/base/text.h"
 #include "engine/io/formats.h"
 #include "engine/io/volume/unsupported_formats.h"
+#include "engine/scene/drawable_rows.h"
 #include "engine/scene/reader_bindings.h"
 
 namespace catena::scene {
@@ -199,18 +200,46 @@ Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std
 std::string to_json(const Scene& scene, const Volume& volume) { return volume_table().write(scene, volume); }
 std::string to_json(const Scene& scene, const Isosurface& surface) { return isosurface_table().write(scene, surface); }
 
-Part volumes_part() {
+/// Loads the fields of surfaces and volumes that rays intersect, and the fields that color them.
+template <class T>
+static Outcome load_ray_items(Scene& scene) {
+  return load_visible<T>(scene, [&](Entity, const T& item) -> Outcome {
+    CATENA_CHECK(resolve_rendered_field(scene, item.field, item.where));
+    if (item.color_by) CATENA_CHECK(resolve_rendered_field(scene, item.color_by->field, item.color_by->where));
+    return Done{};
+  });
+}
+
+static Part volumes_part() {
   return {make_list_component("volumes", "Volumes seen through. At most four.", volume_table()),
           [](Scene& scene, const json::Node& node) { return read_items(scene, node, volume_table()); }};
 }
 
-Part isosurfaces_part() {
+Drawable volumes() { return make_drawable<Volume>(volumes_part, "volumes", "volume", "volumes", "volume", load_ray_items<Volume>); }
+
+static Part isosurfaces_part() {
   return {make_list_component("isosurfaces", "Surfaces on which a scalar field has one value. At most eight translucent ones.",
                               isosurface_table()),
           [](Scene& scene, const json::Node& node) { return read_items(scene, node, isosurface_table()); }};
 }
 
-Part meshes_part() { return {make_list_component("meshes", "Triangle meshes, which are drawn and felt.", mesh_table()), read_meshes}; }
+Drawable isosurfaces() {
+  return make_drawable<Isosurface>(isosurfaces_part, "isosurfaces", "isosurface", "isosurfaces", {}, load_ray_items<Isosurface>);
+}
+
+static Part meshes_part() {
+  return {make_list_component("meshes", "Triangle meshes, which are drawn and felt.", mesh_table()), read_meshes};
+}
+
+static Outcome load_meshes(Scene& scene) {
+  return load_visible<SurfaceMesh>(scene, [&](Entity, const SurfaceMesh& surface) -> Outcome {
+    CATENA_CHECK(resolve_mesh(scene, surface.mesh));
+    if (surface.color_by) CATENA_CHECK(resolve_field(scene, surface.color_by->field, surface.where));
+    return Done{};
+  });
+}
+
+Drawable meshes() { return make_drawable<SurfaceMesh>(meshes_part, "meshes", "mesh", "meshes", {}, load_meshes); }
 
 Part cursor_part() {
   return {{"cursor", "The hand in a still picture; a device or a replay moves it.", schema::Section::Layout::object, cursor_table().keys()},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Reads "glyphs": arrows of a vector field on a slice, a plane, an isosurface or a mesh, or in a box.
 #include "engine/base/text.h"
+#include "engine/scene/drawable_rows.h"
 #include "engine/scene/reader_bindings.h"
 #include "engine/scene/visibility.h"
 
@@ -154,8 +155,28 @@ Outcome read_glyphs(Scene& scene, const json::Node& node) {
 
 std::string to_json(const Scene& scene, const GlyphSet& set) { return glyphs_table().write(scene, set); }
 
-Part glyphs_part() {
+static Part glyphs_part() {
   return {make_list_component("glyphs", "Arrows of a vector field, evenly placed on a surface or in a box.", glyphs_table()), read_glyphs};
 }
+
+/// Loads the vector fields, the fields that color them, and the surfaces that the glyphs lie on, visible or not.
+static Outcome load_glyphs(Scene& scene) {
+  return load_visible<GlyphSet>(scene, [&](Entity, const GlyphSet& set) -> Outcome {
+    CATENA_CHECK(resolve_field(scene, set.field, set.where));
+    CATENA_CHECK(load_color_field(scene, set.color_by));
+    if (set.support == On::mesh) CATENA_CHECK(resolve_mesh(scene, set.support_entity));
+    if (set.support == On::slice) {
+      const Slice& slice = scene.entities.get<Slice>(set.support_entity);
+      CATENA_CHECK(resolve_rendered_field(scene, slice.color_by.field, slice.where));
+    }
+    if (set.support == On::isosurface) {
+      const Isosurface& surface = scene.entities.get<Isosurface>(set.support_entity);
+      CATENA_CHECK(resolve_rendered_field(scene, surface.field, surface.where));
+    }
+    return Done{};
+  });
+}
+
+Drawable glyphs() { return make_drawable<GlyphSet>(glyphs_part, "glyphs", "set of glyphs", "sets of glyphs", "glyphs", load_glyphs); }
 
 }  // namespace catena::scene

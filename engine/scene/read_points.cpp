@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Reads "points": positions from a table, rendered as spheres.
 #include "engine/io/formats.h"
+#include "engine/scene/drawable_rows.h"
 #include "engine/scene/reader_bindings.h"
 
 namespace catena::scene {
@@ -40,9 +41,18 @@ const Table<PointsItem>& points_table() {
 
 }  // namespace
 
-Part points_part() {
+static Part points_part() {
   return {make_list_component("points", "Places from a table, drawn as balls.", points_table()),
           [](Scene& scene, const json::Node& node) { return read_file_items(scene, node, points_table()); }};
 }
+
+static Outcome load_points(Scene& scene) {
+  return load_visible<PointsSource>(scene, [&](Entity e, const PointsSource& points) -> Outcome {
+    CATENA_CHECK(resolve_points(scene, e));
+    return load_color_field(scene, points.color_by);
+  });
+}
+
+Drawable points() { return make_drawable<PointsSource>(points_part, "points", "set of points", "sets of points", "points", load_points); }
 
 }  // namespace catena::scene

@@ -2,6 +2,7 @@
 /// Reads "slices": plane, colors, contours.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/scene/drawable_rows.h"
 #include "engine/scene/readers.h"
 #include "engine/scene/visibility.h"
 
@@ -104,7 +105,7 @@ Outcome read_slices(Scene& scene, const json::Node& node) {
 
 std::string to_json(const Scene& scene, const Slice& slice) { return slice_table().write(scene, slice); }
 
-Part slices_part() {
+static Part slices_part() {
   return {
       make_list_component(
           "slices",
@@ -112,5 +113,14 @@ Part slices_part() {
           slice_table()),
       read_slices};
 }
+
+static Outcome load_slices(Scene& scene) {
+  return load_visible<Slice>(scene, [&](Entity, const Slice& slice) -> Outcome {
+    CATENA_CHECK(resolve_rendered_field(scene, slice.color_by.field, slice.where));
+    return Done{};
+  });
+}
+
+Drawable slices() { return make_drawable<Slice>(slices_part, "slices", "slice", "slices", "slice", load_slices); }
 
 }  // namespace catena::scene

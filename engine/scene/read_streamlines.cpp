@@ -2,6 +2,7 @@
 /// Reads "streamlines" and the "indicator".
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/scene/drawable_rows.h"
 #include "engine/scene/readers.h"
 #include "engine/scene/streamlines.h"
 #include "engine/scene/visibility.h"
@@ -88,7 +89,18 @@ Outcome read_indicator(Scene& scene, const json::Node& node) {
 
 std::string to_json(const Scene& scene, const StreamlineSet& set) { return streamlines_table().write(scene, set); }
 
-Part streamlines_part() { return {make_list_component("streamlines", "Tubes along streamlines.", streamlines_table()), read_streamlines}; }
+static Part streamlines_part() {
+  return {make_list_component("streamlines", "Tubes along streamlines.", streamlines_table()), read_streamlines};
+}
+
+static Outcome load_streamlines(Scene& scene) {
+  return load_visible<StreamlineSet>(scene, [&](Entity, const StreamlineSet& set) { return load_color_field(scene, set.color_by); });
+}
+
+Drawable streamlines() {
+  return make_drawable<StreamlineSet>(streamlines_part, "streamlines", "streamline set", "streamline sets", "streamlines",
+                                      load_streamlines);
+}
 
 Part indicator_part() {
   return {{"indicator", "A short piece of the streamline through the cursor, with an arrowhead.", schema::Section::Layout::object,

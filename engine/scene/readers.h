@@ -9,6 +9,7 @@
 #include "engine/base/text.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/components.h"
+#include "engine/scene/drawable.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/to_json.h"
 #include "engine/schema/key.h"
@@ -20,12 +21,6 @@ using schema::Key;
 using schema::Keys;
 using schema::Role;
 
-/// A top-level key of the scene file.
-struct Part {
-  schema::Section description;                 ///< For "chain", "modes" and "device" the modules that read the keys describe them
-  Outcome (*read)(Scene&, const json::Node&);  ///< Nullptr: read_root reads it before the others
-};
-
 // In the order of docs/reference/scene.md.
 Part time_part();
 Part fields_part();
@@ -35,14 +30,6 @@ Part coupling_part();
 Part workspace_part();
 Part device_part();
 Part widgets_part();
-Part volumes_part();
-Part isosurfaces_part();
-Part slices_part();
-Part meshes_part();
-Part streamlines_part();
-Part glyphs_part();
-Part curves_part();
-Part points_part();
 Part indicator_part();
 Part clip_part();
 Part camera_part();
@@ -182,17 +169,17 @@ schema::Members color_scale_members(const std::vector<TransferFunction::ColorPoi
 /// Returns a volume's colors and opacities as members.
 schema::Members transfer_members(const TransferFunction& transfer);
 
-/// Returns the entity at the index in member `key`, counted among the entities that own a T. For messages `what` names them and `whose` the
-/// object with the index.
+/// Returns the index in member `key` of a list of `count` items. For messages `what` names the items and `whose` the object with the index.
+Result<std::size_t> read_index(const json::Node& object, std::string_view key, std::string_view what, std::size_t count,
+                               const std::string& whose);
+/// Returns the entity at the index in member `key`, counted among the entities that own a T.
 template <class T>
 Result<Entity> read_index(const Scene& scene, const json::Node& object, std::string_view key, const std::string& what,
                           const std::string& whose) {
   std::vector<Entity> owners;
   scene.entities.each<T>([&](Entity e, const T&) { owners.push_back(e); });
-  const json::Node& node = *object.find(key);
-  if (owners.empty()) return json::error_at(node, "the scene has no " + what + "; one was expected for " + whose);
-  CATENA_TRY(const int index, json::get_integer(object, key, 0, 0, static_cast<int>(owners.size()) - 1));
-  return owners[static_cast<std::size_t>(index)];
+  CATENA_TRY(const std::size_t index, read_index(object, key, what, owners.size(), whose));
+  return owners[index];
 }
 
 /// Key "seeds" of streamlines. read_seeds is in streamlines.h, because the command `trace` reads the same.

@@ -4,6 +4,7 @@
 #include "engine/base/output_file.h"
 #include "engine/scene/auto_transfer.h"
 #include "engine/scene/document.h"
+#include "engine/scene/drawable.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/streamlines.h"
 #include "engine/scene/time_steps.h"
@@ -137,17 +138,15 @@ bool same_sources(const Scene& old, const Scene& fresh) {
          all_same<CurvesSource>(old, fresh, same_curves) && all_same<PointsSource>(old, fresh, same_table<PointsSource>);
 }
 
-template <class T>
-void carry_made(Scene& old, Scene& fresh) {
-  std::vector<Entity> left;
-  old.entities.each<T>([&](Entity e, const T&) { left.push_back(e); });
-  fresh.entities.each<T>([&](Entity e, const T& part) {
-    const auto same = [&](Entity before) { return before && json::is_equal_value(old.entities.get<T>(before).where, part.where); };
-    const auto it = names_a_file(part.where) ? left.end() : std::find_if(left.begin(), left.end(), same);
-    if (it == left.end()) return;
-    fresh.cache.move_missing_from(e, old.cache, *it);
-    *it = Entity{};
-  });
+void carry_cached(const Drawable& kind, Scene& old, Scene& fresh) {
+  std::vector<DrawableItem> left = kind.items(old.entities);
+  for (const auto& [e, where] : kind.items(fresh.entities)) {
+    const auto same = [&, node = where](const DrawableItem& before) { return before.first && json::is_equal_value(*before.second, *node); };
+    const auto it = names_a_file(*where) ? left.end() : std::find_if(left.begin(), left.end(), same);
+    if (it == left.end()) continue;
+    fresh.cache.move_missing_from(e, old.cache, it->first);
+    it->first = Entity{};
+  }
 }
 
 // ---- widgets ----
@@ -221,16 +220,8 @@ void transfer_state(Scene& old, Scene& fresh) {
   // before the line sets, which refer to these curves
   for (auto& [key, curve] : old.traced_curves)
     if (curve.use_count() > 1) fresh.traced_curves.emplace(key, curve);
-  if (same_sources(old, fresh)) {
-    carry_made<StreamlineSet>(old, fresh);
-    carry_made<GlyphSet>(old, fresh);
-    carry_made<Slice>(old, fresh);
-    carry_made<CurvesSource>(old, fresh);
-    carry_made<PointsSource>(old, fresh);
-    carry_made<SurfaceMesh>(old, fresh);
-    carry_made<Volume>(old, fresh);
-    carry_made<Isosurface>(old, fresh);
-  }
+  if (same_sources(old, fresh))
+    for (const Drawable& kind : drawables()) carry_cached(kind, old, fresh);
   transfer_lines(old, fresh);
   carry_widgets(old, fresh);
   fresh.animation_phase = old.animation_phase;

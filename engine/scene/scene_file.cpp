@@ -15,25 +15,17 @@ namespace {
 /// All sections in reading order, so that every name is defined before it is used: fields first; links before the widgets that name them;
 /// widgets before the objects bound to them; rendered objects before their scalar bars.
 const std::vector<Part>& parts() {
-  static const std::vector<Part> all{time_part(),         fields_part(),
-                                     chain_part(),        widgets_part(),
-                                     modes_part(),        coupling_part(),
-                                     workspace_part(),    device_part(),
-                                     volumes_part(),      isosurfaces_part(),
-                                     meshes_part(),       slices_part(),
-                                     streamlines_part(),  glyphs_part(),
-                                     curves_part(),       points_part(),
-                                     indicator_part(),    cursor_part(),
-                                     scalar_bars_part(),  labels_part(),
-                                     title_part(),        orientation_marker_part(),
-                                     status_part(),       overlay_part(),
-                                     camera_part(),       stereo_part(),
-                                     background_part(),   quality_part(),
-                                     clip_part(),         jitter_part(),
-                                     bounding_box_part(), axes_part(),
-                                     ground_part(),       fog_part(),
-                                     lights_part(),       unit_length_part(),
-                                     screens_part()};
+  static const std::vector<Part> all = [] {
+    std::vector<Part> made{time_part(),  fields_part(),   chain_part(),     widgets_part(),
+                           modes_part(), coupling_part(), workspace_part(), device_part()};
+    for (const Drawable& kind : drawables()) made.push_back(kind.part());
+    for (Part (*part)() : {indicator_part, cursor_part,      scalar_bars_part,  labels_part, title_part,      orientation_marker_part,
+                           status_part,    overlay_part,     camera_part,       stereo_part, background_part, quality_part,
+                           clip_part,      jitter_part,      bounding_box_part, axes_part,   ground_part,     fog_part,
+                           lights_part,    unit_length_part, screens_part})
+      made.push_back(part());
+    return made;
+  }();
   return all;
 }
 

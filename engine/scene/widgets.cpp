@@ -6,6 +6,7 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/geometry/flow/seeds.h"
+#include "engine/scene/drawable.h"
 
 namespace catena::scene {
 namespace {
@@ -16,64 +17,25 @@ using widget::Kind;
 constexpr double kPlaneRadius = 0.12, kHandleRadius = 0.012, kSnap = 0.02, kRelease = 0.05, kPlaneNear = 0.02, kHandleNear = 0.03,
                  kStep = 0.02;
 
-/// The longest domain among the fields, meshes, curves and points; 0: none.
-class Longest {
- public:
-  explicit Longest(Scene& scene) : scene_(scene) {}
-  void add_field(Entity field, const json::Node& where) {
-    if (field) fields_.emplace_back(field, where);
-  }
-  void add_mesh(Entity mesh) { meshes_.push_back(mesh); }
-  void add_curves(Entity curves) { curves_.push_back(curves); }
-  void add_points(Entity points) { points_.push_back(points); }
-  Result<double> length() const {
-    double longest = 0;
-    for (const auto& [field, where] : fields_) {
-      CATENA_TRY(const field::AnyField any, resolve_field(scene_, field, where));
-      longest = std::max(longest, any.get()->domain_length());
-    }
-    for (const Entity mesh : meshes_) {
-      CATENA_TRY(const mesh::MeshPtr loaded, resolve_mesh(scene_, mesh));
-      longest = std::max(longest, loaded->domain_length());
-    }
-    for (const Entity curves : curves_) {
-      CATENA_TRY(const auto loaded, resolve_curves(scene_, curves));
-      longest = std::max(longest, max_abs(loaded->max_corner - loaded->min_corner));
-    }
-    for (const Entity points : points_) {
-      CATENA_TRY(const auto loaded, resolve_points(scene_, points));
-      longest = std::max(longest, max_abs(loaded->max_corner - loaded->min_corner));
-    }
-    return longest;
-  }
-
- private:
-  Scene& scene_;
-  std::vector<std::pair<Entity, json::Node>> fields_;
-  std::vector<Entity> meshes_, curves_, points_;
-};
-
 Result<double> length_of(Scene& scene, const Widget& widget) {
-  Longest drawn(scene);
-  drawn.add_field(widget.field, widget.where);
-  scene.entities.each<Volume>([&](Entity, const Volume& volume) { drawn.add_field(volume.field, volume.where); });
-  scene.entities.each<Isosurface>([&](Entity, const Isosurface& surface) { drawn.add_field(surface.field, surface.where); });
-  scene.entities.each<Slice>([&](Entity, const Slice& slice) { drawn.add_field(slice.color_by.field, slice.where); });
-  scene.entities.each<StreamlineSet>([&](Entity, const StreamlineSet& set) { drawn.add_field(set.field, set.where); });
-  scene.entities.each<GlyphSet>([&](Entity, const GlyphSet& set) { drawn.add_field(set.field, set.where); });
-  scene.entities.each<SurfaceMesh>([&](Entity, const SurfaceMesh& surface) { drawn.add_mesh(surface.mesh); });
-  scene.entities.each<CurvesSource>([&](Entity e, const CurvesSource&) { drawn.add_curves(e); });
-  scene.entities.each<PointsSource>([&](Entity e, const PointsSource&) { drawn.add_points(e); });
-  CATENA_TRY(const double longest, drawn.length());
+  CATENA_TRY(double longest, field_length(scene, widget.field, widget.where));
+  for (const Drawable& kind : drawables())
+    for (const auto& [e, where] : kind.items(scene.entities)) {
+      CATENA_TRY(const double length, kind.domain_length(scene, e));
+      longest = std::max(longest, length);
+    }
   if (longest > 0) return longest;
-  // nothing is visible: use the haptic objects
-  Longest felt(scene);
+  // nothing is drawn: use the haptic objects
+  std::vector<std::pair<Entity, json::Node>> fields;
   scene.entities.each<Link>([&](Entity, const Link& link) {
     if (const json::Node* field = link.node.find("field"); field != nullptr && field->kind == json::Kind::string)
-      felt.add_field(find_field(scene, field->string), *field);
+      fields.emplace_back(find_field(scene, field->string), *field);
   });
-  CATENA_TRY(const double of_links, felt.length());
-  return of_links > 0 ? of_links : 4;
+  for (const auto& [field, where] : fields) {
+    CATENA_TRY(const double length, field_length(scene, field, where));
+    longest = std::max(longest, length);
+  }
+  return longest > 0 ? longest : 4;
 }
 
 /// Sets a size that is not given.

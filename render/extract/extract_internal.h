@@ -50,6 +50,11 @@ Outcome prepare_cached(scene::Scene& scene, const Make& make) {
   return Done{};
 }
 
+/// Volumes and isosurfaces: adds the visible ones to the packet. An Error for a vector field, or a level that the field does not have.
+Outcome extract_volumes(const scene::Scene& scene, FramePacket& packet);
+/// As extract_volumes().
+Outcome extract_isosurfaces(const scene::Scene& scene, FramePacket& packet);
+
 /// Bounding box, axes, ground, fog and lights. Frame thread.
 ///   bounding box   the twelve edges of a field's domain, also for rotated and sheared grids; else of the bounds of all rendered items
 ///   axes           three edges of that box with ticks at round numbers (along the world's axes), on its outline in the image

@@ -6,10 +6,12 @@
 #include "engine/base/numbers.h"
 #include "engine/base/result.h"
 #include "engine/base/text.h"
+#include "engine/scene/drawable.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/time_steps.h"
 #include "engine/scene/units.h"
 #include "engine/scene/visibility.h"
+#include "render/extract/drawable.h"
 #include "render/extract/extract_internal.h"
 
 namespace catena::render {
@@ -126,115 +128,6 @@ std::optional<Color> optional_color(const std::optional<Color>& c) {
   return Color{c->r, c->g, c->b};
 }
 
-/// The colours that an entity shows (value, r, g, b), and what it calls them. None where it is hidden.
-struct Shown {
-  std::vector<std::array<double, 4>> colors;
-  std::string name;
-  const scene::LabelMap* labels = nullptr;  ///< whose colours they are
-  double linear_below = 0;                  ///< the scale of the values (engine/base/symlog_scale.h)
-};
-
-std::vector<std::array<double, 4>> rows_of(const std::vector<scene::TransferFunction::ColorPoint>& points) {
-  std::vector<std::array<double, 4>> rows;
-  for (const auto& point : points) rows.push_back({point.value, point.color.r, point.color.g, point.color.b});
-  return rows;
-}
-
-/// The packet's slices are in the order of their owners, without the hidden ones.
-const SliceItem* slice_item(const scene::EntityStore& world, scene::Entity wanted, const FramePacket& packet) {
-  std::size_t i = 0, found = packet.slices.size();
-  world.each<scene::Slice>([&](scene::Entity e, const scene::Slice&) {
-    if (is_hidden(world, e)) return;
-    if (e == wanted) found = i;
-    ++i;
-  });
-  return found < packet.slices.size() ? &packet.slices[found] : nullptr;
-}
-
-/// "velocity (m/s)"
-std::string with_unit(const std::string& name, const std::string& unit) { return unit.empty() ? name : name + " (" + unit + ")"; }
-
-Shown colors_of(const scene::Scene& scene, scene::Entity e, const FramePacket& packet) {
-  const scene::EntityStore& world = scene.entities;
-  if (is_hidden(world, e)) return {};
-  const auto named = [&](scene::Entity field) { return with_unit(entity_name(scene, field), scene::unit_of(scene, field)); };
-  const auto labels = [&](const scene::ColorBy& by) {
-    return shows_labels(scene, by.field, by.colors, by.named) ? find_label_map(scene, by.field) : nullptr;
-  };
-  if (world.has<scene::Volume>(e)) {
-    const scene::Volume& volume = world.get<scene::Volume>(e);
-    const bool states = volume.where.find("color") != nullptr || volume.where.find("transfer") != nullptr;
-    return {rows_of(volume.transfer.colors), named(volume.field), states ? nullptr : find_label_map(scene, volume.field)};
-  }
-  if (world.has<scene::Isosurface>(e)) {
-    const scene::ColorBy& by = *world.get<scene::Isosurface>(e).color_by;
-    const field::AnyField& any = rendered_field(scene, by.field);
-    if (!any.scalar) return {};
-    const DisplayRange range = field::display_range(*any.scalar);
-    return {rows_of(make_display_color_table(scene, by.field, by.colors, by.named, range.lo, range.hi)), named(by.field), labels(by)};
-  }
-  if (world.has<scene::Slice>(e)) {
-    const SliceItem* slice = slice_item(world, e, packet);
-    const scene::ColorBy& by = world.get<scene::Slice>(e).color_by;
-    return slice ? Shown{slice->colors, named(by.field), labels(by)} : Shown{};
-  }
-  if (world.has<scene::PointsSource>(e)) {
-    const auto* points = find_point_colors(scene.cache, e);
-    if (points == nullptr) return {};
-    const scene::ColorBy& by = *world.get<scene::PointsSource>(e).color_by;
-    return {rows_of(*points), by.source == scene::ColorBy::Source::field ? named(by.field) : by.value_name};
-  }
-  if (world.has<scene::CurvesSource>(e)) {
-    const auto* points = find_curve_colors(scene.cache, e);
-    if (points == nullptr) return {};
-    const scene::ColorBy& by = *world.get<scene::CurvesSource>(e).color_by;
-    return {rows_of(*points), by.source == scene::ColorBy::Source::field   ? named(by.field)
-                              : by.source == scene::ColorBy::Source::value ? by.value_name
-                                                                           : with_unit("arc length", scene::length_unit(scene))};
-  }
-  const bool glyphs = world.has<scene::GlyphSet>(e);
-  const ColorTable* points = glyphs ? find_glyph_colors(scene.cache, e) : find_streamline_colors(scene.cache, e);
-  if (points == nullptr) return {};
-  const auto colors = rows_of(*points);
-  const scene::Entity of = glyphs ? world.get<scene::GlyphSet>(e).field : world.get<scene::StreamlineSet>(e).field;
-  const auto& color_by = glyphs ? world.get<scene::GlyphSet>(e).color_by : world.get<scene::StreamlineSet>(e).color_by;
-  CATENA_ASSERT(color_by);
-  switch (color_by->source) {
-    case scene::ColorBy::Source::field:
-      return {colors, named(color_by->field), labels(*color_by)};
-    case scene::ColorBy::Source::speed:
-      return {colors, with_unit("|" + entity_name(scene, of) + "|", scene::unit_of(scene, of))};
-    case scene::ColorBy::Source::value:
-      break;
-    case scene::ColorBy::Source::arc_length:
-      return {colors, with_unit("arc length", scene::length_unit(scene))};
-  }
-  return {};
-}
-
-/// How the entity's values lie along its colours.
-scene::ValueMapping mapping_of(const scene::EntityStore& world, scene::Entity e) {
-  if (world.has<scene::Volume>(e)) return world.get<scene::Volume>(e).transfer.named.mapping;
-  if (world.has<scene::Slice>(e)) return world.get<scene::Slice>(e).color_by.named.mapping;
-  const auto of = [&](const auto& item) { return item.color_by ? item.color_by->named.mapping : scene::ValueMapping{}; };
-  if (world.has<scene::Isosurface>(e)) return of(world.get<scene::Isosurface>(e));
-  if (world.has<scene::PointsSource>(e)) return of(world.get<scene::PointsSource>(e));
-  if (world.has<scene::CurvesSource>(e)) return of(world.get<scene::CurvesSource>(e));
-  if (world.has<scene::GlyphSet>(e)) return of(world.get<scene::GlyphSet>(e));
-  return world.has<scene::StreamlineSet>(e) ? of(world.get<scene::StreamlineSet>(e)) : scene::ValueMapping{};
-}
-
-Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& packet) {
-  Shown shown = colors_of(scene, e, packet);
-  if (shown.colors.empty()) return shown;
-  // a volume's scale follows from its opacities, too
-  const double lo = shown.colors.front()[0], hi = shown.colors.back()[0];
-  shown.linear_below = scene.entities.has<scene::Volume>(e) && mapping_of(scene.entities, e).kind == scene::ValueMapping::Kind::symlog
-                           ? scene::linear_below(scene.entities.get<scene::Volume>(e).transfer)
-                           : scene::linear_below(mapping_of(scene.entities, e), lo, hi);
-  return shown;
-}
-
 Anchor anchor_of(scene::ImageCorner corner) {
   constexpr Anchor anchors[] = {Anchor::bottom_left, Anchor::bottom_right, Anchor::top_left, Anchor::top_right};
   return anchors[static_cast<int>(corner)];
@@ -263,9 +156,17 @@ void set_legend(const scene::LabelMap& map, ScalarBarItem& item) {
   if (more > 0) item.overflow_text = "and " + std::to_string(more) + " more";
 }
 
+Legend legend_of(const scene::Scene& scene, scene::Entity item, const FramePacket& packet) {
+  const scene::Drawable* kind = scene::find_drawable(scene.entities, item);
+  if (kind == nullptr || is_hidden(scene.entities, item)) return {};
+  for (const DrawableExtraction& extraction : extractions())
+    if (extraction.name == kind->name && extraction.legend != nullptr) return extraction.legend(scene, item, packet);
+  return {};
+}
+
 void extract_scalar_bars(const scene::Scene& scene, const FramePacket& packet, Overlay& overlay) {
   for (const scene::ScalarBar& bar : scene.annotations.scalar_bars) {
-    Shown shown = shown_by(scene, bar.target, packet);
+    Legend shown = legend_of(scene, bar.target, packet);
     if (shown.colors.empty()) continue;
     ScalarBarItem item;
     item.title = bar.title ? scene::substitute_time(*bar.title, scene) : shown.name;

@@ -21,6 +21,7 @@
 #include "engine/io/volume/load_field.h"
 #include "engine/io/volume/units.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/drawable.h"
 #include "engine/scene/ruler.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/time_steps.h"
@@ -150,12 +151,10 @@ Outcome describe_scene(const std::string& path) {
   else
     fmt::print(
         "workspace: not stated; replay takes 1 world unit for 1 m of the hand, view and feel fit the data into the device's reach\n");
-  fmt::print(
-      "drawn: {} volumes, {} isosurfaces, {} slices, {} meshes, {} streamline sets, {} sets of glyphs, {} sets of curves, {} sets of "
-      "points\n",
-      scene.entities.count<scene::Volume>(), scene.entities.count<scene::Isosurface>(), scene.entities.count<scene::Slice>(),
-      scene.entities.count<scene::SurfaceMesh>(), scene.entities.count<scene::StreamlineSet>(), scene.entities.count<scene::GlyphSet>(),
-      scene.entities.count<scene::CurvesSource>(), scene.entities.count<scene::PointsSource>());
+  std::string drawn;
+  for (const scene::Drawable& kind : scene::drawables())
+    drawn += fmt::format("{}{} {}", drawn.empty() ? "" : ", ", kind.items(scene.entities).size(), kind.plural);
+  fmt::print("drawn: {}\n", drawn);
   if (const int steps = scene::step_count(scene); steps > 1) {
     const std::string now = scene::current_step_time(scene) ? ", now at " + scene::format_time(scene) : "";
     fmt::print("time: {} steps{}\n", steps, sanitize_for_terminal(now));

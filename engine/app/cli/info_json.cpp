@@ -13,6 +13,7 @@
 #include "engine/io/curves/load_points.h"
 #include "engine/io/formats.h"
 #include "engine/io/volume/units.h"
+#include "engine/scene/drawable.h"
 #include "engine/scene/time_steps.h"
 #include "engine/scene/units.h"
 #include "engine/scene/widgets.h"
@@ -140,16 +141,12 @@ Result<std::string> json_of_scene(const std::string& path) {
     widgets.push_back(
         JsonObject().add("name", name_of(e)).add("type", std::string(scene::to_string(spec.kind))).add("at", spec.pose.points[0]).text());
   }
-  const auto count = [](std::size_t n) { return std::uint64_t{n}; };
   JsonObject coupling, drawn, out;
   coupling.add("stiffness_n_per_m", program->coupling.stiffness_n_per_m).add("damping_ns_per_m", program->coupling.damping_ns_per_m);
   const bool conservative = program->coupling.force == CouplingForce::conservative;
   coupling.add("max_force_n", program->coupling.max_force_n).add("force", conservative ? "conservative" : "paper");
-  drawn.add("volumes", count(scene.entities.count<scene::Volume>())).add("isosurfaces", count(scene.entities.count<scene::Isosurface>()));
-  drawn.add("slices", count(scene.entities.count<scene::Slice>())).add("meshes", count(scene.entities.count<scene::SurfaceMesh>()));
-  drawn.add("streamlines", count(scene.entities.count<scene::StreamlineSet>()))
-      .add("glyphs", count(scene.entities.count<scene::GlyphSet>()));
-  drawn.add("curves", count(scene.entities.count<scene::CurvesSource>())).add("points", count(scene.entities.count<scene::PointsSource>()));
+  for (const scene::Drawable& kind : scene::drawables())
+    drawn.add(std::string(kind.name), std::uint64_t{kind.items(scene.entities).size()});
   out.add("kind", "scene")
       .add("file", path)
       .add_raw("fields", json_array(fields))

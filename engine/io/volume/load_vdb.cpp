@@ -67,7 +67,7 @@ Outcome write_one_grid(const std::string& path, const AnyField& field, const std
 namespace catena::io {
 
 Format vdb_format() {
-  return {.name = "OpenVDB",
+  return {.name = "VDB grids",
           .extensions = {".vdb"},
           .volume = {.load = field::load_vdb, .describe = field::describe_with_reader, .units = field::read_vdb_units},
           .write_volume = field::write_one_grid,

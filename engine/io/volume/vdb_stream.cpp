@@ -96,7 +96,7 @@ void VdbStreamWriter::write_tile(const nanovdb::Coord& origin, std::int32_t edge
   record.type = edge == 8 ? StreamRecord::tile_8 : edge == 128 ? StreamRecord::tile_128 : StreamRecord::tile_4096;
   record.active = active ? 1 : 0;
   for (int a = 0; a < 3; ++a) record.origin[a] = origin[a];
-  if (value_bytes_ > 0) std::memcpy(record.value, value, value_bytes_);
+  if (value != nullptr) std::memcpy(record.value, value, value_bytes_);  // a mask has no values
   write(&record, sizeof record);
 }
 

@@ -254,12 +254,12 @@ TEST(CurveScenes, MessagesNameThePlace) {
   expect(R"({"curves": [{"name": "a", "file": "a.tck", "color_by": {"value": "fa"}}]})",
          "the file has no values called \"fa\"; known: none");
   expect(R"({"curves": [{"name": "a", "file": "a.tck", "color_by": {}}]})", "exactly one of them was expected");
-  expect(R"({"curves": [{"name": "a", "file": "a.tck"}], "scalar_bars": [{"curves": 0}]})", "show no values");
+  expect(R"({"curves": [{"name": "a", "file": "a.tck"}], "scalar_bars": [{"curves": 0}]})", "shows no values");
   test::write_file(folder / "p.csv", "x,y,z,v\n1,2,3,4\n");
   expect(R"({"points": [{"name": "p", "file": "p.csv", "radius_by": "w"}]})", "no column of numbers called \"w\"; known: v");
   expect(R"({"points": [{"name": "p", "file": "p.csv", "color_by": {"value": "w"}}]})", "no column of numbers called \"w\"; known: v");
   expect(R"({"points": [{"name": "p", "file": "p.csv", "radius": 1, "radius_by": "v"}]})", "stands beside \"radius\"");
-  expect(R"({"points": [{"name": "p", "file": "p.csv"}], "scalar_bars": [{"points": 0}]})", "show no values");
+  expect(R"({"points": [{"name": "p", "file": "p.csv"}], "scalar_bars": [{"points": 0}]})", "shows no values");
   test::write_file(folder / "a.tck", "mrtrix tracks\n");
   expect(R"({"curves": [{"name": "a", "file": "a.tck"}]})", "a line END was expected");
 }

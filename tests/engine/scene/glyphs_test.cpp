@@ -135,7 +135,7 @@ TEST_F(Glyphs, AScalarBarNamesThem) {
   for (const ScalarBar& bar : scene->annotations.scalar_bars) EXPECT_TRUE(scene->entities.has<GlyphSet>(bar.target));
   const auto one_color = parse(sets, R"(, "scalar_bars": [{"glyphs": 1}])");
   ASSERT_FALSE(one_color);
-  EXPECT_NE(one_color.error().message.find("these glyphs have one colour"), std::string::npos) << one_color.error().message;
+  EXPECT_NE(one_color.error().message.find("this set of glyphs shows no values"), std::string::npos) << one_color.error().message;
 }
 
 }  // namespace glyphs_test
