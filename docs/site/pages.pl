@@ -41,7 +41,7 @@ while (<>) {
     s/\]\(#([\w-]+)\)/](#$page-$1)/g;
     s/\]\(((?!http)[\w.\/-]+\.md)(?:#([\w-]+))?\)/'](' . link_to($1, $2) . ')'/ge;
     s{\]\((?:\.\./)+(examples(?:/[\w.-]*)?|LICENSE)\)}{]($1)}g;  # copied beside the pages
-    s/(!\[[^\]]*\]\()[\w.\/-]*\/([\w-]+\.(?:png|gif)\))/$1$2/g;  # Doxygen looks for pictures by their names
+    s/(!\[[^\]]*\]\()(?:[\w.\/-]*\/)?([\w-]+\.(?:png|gif|svg)\))/$1$2/g;  # Doxygen looks for pictures by their names
   }
   print;
 }

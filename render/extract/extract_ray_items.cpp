@@ -2,6 +2,7 @@
 /// Extracts volumes and isosurfaces, the items that rays intersect.
 #include "engine/scene/color_maps.h"
 #include "engine/scene/labels.h"
+#include "render/extract/extract.h"
 #include "render/extract/extract_internal.h"
 
 namespace catena::render {

@@ -196,6 +196,11 @@ TEST(Documents, AGuideIsShortAndHasAPicture) {
   EXPECT_GT(checked, 10);
 }
 
+TEST(Documents, BenchmarksAreMadeFromTheirTables) {
+  const test::ProgramResult made = test::run_program("/usr/bin/python3", {test::source_dir() + "/docs/benchmarks/make.py", "--check"});
+  EXPECT_EQ(made.exit_code, 0) << made.out << made.err;
+}
+
 TEST(Documents, TheReadmeIsShortAndShowsTheFirstScene) {
   const std::string readme = contents("README.md");
   EXPECT_LE(std::count(readme.begin(), readme.end(), '\n'), 85);
