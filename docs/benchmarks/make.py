@@ -115,7 +115,7 @@ def plot(name, title, unit, series):
     lo, hi = math.floor(math.log10(min(values.values()))), math.ceil(math.log10(max(values.values())))
     left, bar, gap, width = 260, 9, 8, 620
     height = 70 + len(cases) * (bar * len(series) + gap)
-    x = lambda v: left + (width - left - 20) * (math.log10(v) - lo) / (hi - lo)
+    x = lambda v: left + (width - left - 45) * (math.log10(v) - lo) / (hi - lo)
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" font-family="sans-serif" font-size="11">',
            f'<rect width="{width}" height="{height}" fill="white"/>', f'<text x="10" y="18" font-size="14">{title}</text>']
     for decade in range(lo, hi + 1):

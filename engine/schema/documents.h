@@ -25,7 +25,9 @@ std::string json_schema(const std::vector<Section>& components, const std::strin
 
 /// Returns a short name of the value type of a key: "number", "3 numbers", "value or map".
 std::string describe_type(const Key& key);
-/// Returns a table | key | type | unit | range | default | meaning | with one row per key. The keys of nested objects are not included.
+/// Returns an example of a key's value as JSON text, of its type and within its limits. Names are placeholders.
+std::string example_value(const Key& key);
+/// Returns a table | key | type | unit | range | default | example | meaning | with one row per key. The keys of nested objects are not included.
 std::string markdown_table(const Keys& keys);
 
 /// Returns all tables of a section with their names: "volumes", "fields/raw" (a variant), "slices.contours" (a nested object).

@@ -78,10 +78,10 @@ std::string describe_type(const Key& key) {
 }
 
 std::string markdown_table(const Keys& keys) {
-  std::string out = "| key | type | unit | range | default | meaning |\n|---|---|---|---|---|---|\n";
+  std::string out = "| key | type | unit | range | default | example | meaning |\n|---|---|---|---|---|---|---|\n";
   for (const Key& key : keys)
     out += "| " + code(key.name) + " | " + describe_type(key) + " | " + key.unit + " | " + range_words(key) + " | " + fallback_words(key) +
-           " | " + key.help + " |\n";
+           " | " + code(example_value(key)) + " | " + key.help + " |\n";
   return out;
 }
 

@@ -98,7 +98,7 @@ TEST_F(ExtensionPoints, AreInTheSchemaAndTheDocument) {
   std::map<std::string, std::string> tables;
   for (const schema::Section& component : app::scene_file_components())
     for (auto& [name, table] : schema::markdown_tables(component)) tables.emplace(name, table);
-  EXPECT_NE(tables["chain/shell"].find("| `glow` | number | candela | > 0 | `1` | Of no effect. |"), std::string::npos)
+  EXPECT_NE(tables["chain/shell"].find("| `glow` | number | candela | > 0 | `1` | `1` | Of no effect. |"), std::string::npos)
       << tables["chain/shell"];
 }
 

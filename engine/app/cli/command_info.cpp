@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "engine/app/cli/command.h"
+#include "engine/app/cli/command_reference.h"
 #include "engine/app/cli/info_json.h"
 #include "engine/app/cli/info_text.h"
 #include "engine/app/cli/options.h"
@@ -16,7 +17,6 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/field/field_display_range.h"
-#include "engine/io/formats.h"
 #include "engine/io/mesh/load_mesh.h"
 #include "engine/io/volume/load_field.h"
 #include "engine/io/volume/units.h"
@@ -36,25 +36,6 @@
 namespace catena::app {
 
 namespace {
-
-/// Prints a table of all formats: extensions, name, and what is read and written.
-void print_formats() {
-  fmt::print("{:<28}{:<36}{:<32}{}\n", "extensions", "format", "read as", "written from");
-  for (const io::Format& format : io::formats()) {
-    std::vector<std::string_view> read, written;
-    for (const auto& [kind, word] : {std::pair{io::DataKind::volume, "volume"},
-                                     {io::DataKind::mesh, "mesh"},
-                                     {io::DataKind::curves, "curves"},
-                                     {io::DataKind::points, "points"}}) {
-      if (format.reads(kind)) read.emplace_back(word);
-      if (format.writes(kind)) written.emplace_back(word);
-    }
-    constexpr std::size_t kAll = 1000;
-    fmt::print("{:<28}{:<36}{:<32}{}\n", join_words(format.extensions, kAll), format.name, join_words(read, kAll),
-               join_words(written, kAll));
-  }
-  fmt::print("A folder is read as DICOM images or as an OpenFOAM case.\n");
-}
 
 /// Prints the pose and the sizes of each widget, and the value that a ruler measures.
 Outcome describe_widgets(scene::Scene& scene) {
@@ -196,7 +177,7 @@ void add_info(CLI::App& program, CommandAction& chosen) {
   command->callback([&chosen, path, grid, step, schema, maps, part, formats, json, cost, measure] {
     chosen = [path, grid, step, schema, maps, part, formats, json, cost, measure]() -> Outcome {
       if (*formats) {
-        print_formats();
+        fmt::print("{}A folder is read as DICOM images or as an OpenFOAM case.\n", format_table());
         return Done{};
       }
       if (*maps) {

@@ -8,6 +8,7 @@
 
 #include "engine/app/cli/command.h"
 #include "engine/app/cli/value_types.h"
+#include "engine/io/formats.h"
 
 namespace catena::app {
 
@@ -204,6 +205,24 @@ std::vector<std::pair<std::string, std::string>> option_tables() {
   std::vector<std::pair<std::string, std::string>> tables;
   for (const CLI::App* command : visible_subcommands(program)) add_tables(*command, command->get_name(), tables);
   return tables;
+}
+
+std::string format_table() {
+  std::string table = "| extensions | format | read as | written from |\n|---|---|---|---|\n";
+  for (const io::Format& format : io::formats()) {
+    std::string extensions, read, written;
+    for (const std::string_view extension : format.extensions)
+      extensions += (extensions.empty() ? "" : ", ") + in_code(std::string(extension));
+    for (const auto& [kind, word] : {std::pair{io::DataKind::volume, "volume"},
+                                     {io::DataKind::mesh, "mesh"},
+                                     {io::DataKind::curves, "curves"},
+                                     {io::DataKind::points, "points"}}) {
+      if (format.reads(kind)) read += (read.empty() ? "" : ", ") + std::string(word);
+      if (format.writes(kind)) written += (written.empty() ? "" : ", ") + std::string(word);
+    }
+    table += "| " + extensions + " | " + std::string(format.name) + " | " + read + " | " + written + " |\n";
+  }
+  return table;
 }
 
 }  // namespace catena::app

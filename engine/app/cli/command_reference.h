@@ -15,6 +15,9 @@ namespace catena::app {
 /// Returns a pair of name and text for each visible command and subcommand: {"study run", purpose, synopsis and table of its options}.
 std::vector<std::pair<std::string, std::string>> option_tables();
 
+/// Returns a table | extensions | format | read as | written from | of all file formats.
+std::string format_table();
+
 /// Returns what an option takes, as `--help` names it: "MB"; empty for a flag.
 std::string value_name(const CLI::Option& option);
 /// Returns the accepted values of an option as Markdown: "1 to 1000", "`on`, `off`"; empty where the option states none.

@@ -12,6 +12,7 @@
 
 #include "engine/app/cli/command_reference.h"
 #include "engine/app/cli/scene_schema.h"
+#include "engine/base/json.h"
 #include "engine/schema/documents.h"
 #include "engine/study/study.h"
 #include "tests/support/support.h"
@@ -64,7 +65,55 @@ std::map<std::string, std::string> key_tables(const std::vector<schema::Section>
 
 TEST(SceneDocument, SaysWhatTheReadersRead) { check_document("docs/reference/scene.md", kKeys, key_tables(app::scene_file_components())); }
 
+/// Whether a JSON value has the type of the key, with numbers within its limits.
+bool has_type(const json::Node& value, const schema::Key& key) {
+  switch (key.value_type) {
+    case schema::ValueType::number:
+    case schema::ValueType::integer:
+      return value.kind == json::Kind::number && key.limits.contains(value.number);
+    case schema::ValueType::boolean:
+      return value.kind == json::Kind::boolean;
+    case schema::ValueType::text:
+      return value.kind == json::Kind::string;
+    case schema::ValueType::choice:
+      return value.kind == json::Kind::string && std::ranges::find(key.options, value.string) != key.options.end();
+    case schema::ValueType::vector:
+      return value.items.size() == static_cast<std::size_t>(key.count) &&
+             std::ranges::all_of(value.items, [&](const json::Node& item) { return key.limits.contains(item.number); });
+    case schema::ValueType::object:
+      return std::ranges::all_of(value.members, [&](const auto& member) {
+        const schema::Key* known = schema::find(*key.members, member.first);
+        return known != nullptr && has_type(member.second, *known);
+      });
+    default:
+      return true;
+  }
+}
+
+TEST(SceneDocument, EveryExampleIsAValueOfItsKey) {
+  int checked = 0;
+  const auto check = [&](const auto& self, const schema::Keys& keys, const std::string& where) -> void {
+    for (const schema::Key& key : keys) {
+      const std::string text = schema::example_value(key);
+      const auto value = json::parse(text, where + "." + key.name);
+      ASSERT_TRUE(value) << value.error().message << "\n" << text;
+      EXPECT_TRUE(has_type(*value, key)) << where << "." << key.name << ": " << text;
+      ++checked;
+      if (key.value_type == schema::ValueType::object) self(self, *key.members, where + "." + key.name);
+    }
+  };
+  for (const schema::Section& section : app::scene_file_components()) {
+    check(check, section.keys, section.name);
+    for (const schema::Variant& variant : section.variants) check(check, variant.keys, section.name + "/" + variant.name);
+  }
+  EXPECT_GT(checked, 300);
+}
+
 TEST(SceneDocument, SaysWhatAStudyMaySay) { check_document("docs/reference/study.md", kKeys, key_tables(study::study_components())); }
+
+TEST(SceneDocument, SaysWhichFormatsThereAre) {
+  check_document("docs/reference/formats.md", "<!-- formats: ", {{"all", app::format_table()}});
+}
 
 TEST(SceneDocument, SaysWhatTheCommandsTake) {
   std::map<std::string, std::string> tables;
