@@ -60,7 +60,7 @@ endif()
 # ---- the library ----
 set(node CATENA_${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/exports.map
-  CONTENT "${node} {\n  global:\n  extern \"C++\" {\n    catena::*;\n    \"vtable for catena::\"*;\n    \"typeinfo for catena::\"*;\n    \"typeinfo name for catena::\"*;\n  };\n  local: *;\n};\n")
+  CONTENT "${node} {\n  global:\n    _ZN6catena*;\n    _ZNK6catena*;\n    _ZT[VIST]N6catena*;\n    _ZTh*_N*6catena*;\n  local: *;\n};\n")
 set(objects "")
 set(third_party "")
 get_property(modules GLOBAL PROPERTY CATENA_MODULES)

@@ -11,7 +11,10 @@ namespace {
 /// Returns a number within the limits of the key, near 1 unless they exclude that.
 double example_number(const Key& key, double step) {
   const Limits& l = key.limits;
-  if (l.lo && l.hi) return *l.lo < 1 && 1 < *l.hi ? 1 : std::floor((*l.lo + *l.hi) / 2 / step) * step;
+  if (l.lo && l.hi) {
+    const double middle = (*l.lo + *l.hi) / 2, rounded = std::floor(middle / step) * step;
+    return l.contains(1) ? 1 : l.contains(rounded) ? rounded : l.contains(*l.hi) ? *l.hi : middle;
+  }
   if (l.lo) return std::max(*l.lo + step, 1.0);
   return l.hi ? std::min(*l.hi - step, 1.0) : 1;
 }

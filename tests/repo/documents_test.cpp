@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace documents_test {
