@@ -12,6 +12,14 @@ function(catena_precompile TARGET)
   target_precompile_headers(${TARGET} REUSE_FROM catena_precompiled)
 endfunction()
 
+# OpenVDB's headers define static members of templates, of which the library and the program must share one: they may not be hidden, and the
+# precompiled headers are made for hidden symbols.
+function(catena_prepare_openvdb TARGET)
+  if(catena_openvdb IN_LIST ARGN)
+    set_target_properties(${TARGET} PROPERTIES CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF DISABLE_PRECOMPILE_HEADERS ON)
+  endif()
+endfunction()
+
 # Sources with compile options of their own.
 function(catena_without_precompiled)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)

@@ -58,8 +58,10 @@ std::string example_value(const Key& key) {
   if (is_list && text.starts_with('[')) return text;
   switch (key.value_type) {
     case ValueType::number: {
-      const auto stated = parse_double(text);
-      return stated && *stated != 0 && key.limits.contains(*stated) ? text : to_text(example_number(key, 0.5));
+      // the default, or the number with which its description begins
+      const std::string first = text.substr(0, text.find_first_of(" ;,:"));
+      const auto stated = parse_double(first);
+      return stated && *stated != 0 && key.limits.contains(*stated) ? first : to_text(example_number(key, 0.5));
     }
     case ValueType::integer:
       return to_text(example_number(key, 1));
@@ -75,6 +77,8 @@ std::string example_value(const Key& key) {
         return "[" + to_text(lo) + ", " + to_text(key.limits.hi ? *key.limits.hi : lo + 1) + "]";
       }
       if (key.limits.lo && *key.limits.lo >= 0) return repeated(to_text(example_number(key, 0.5)), key.count);
+      if (key.name == "min") return repeated("0", key.count);
+      if (key.name == "max") return repeated("1", key.count);
       std::string list = repeated("0", key.count);
       return "[1" + list.substr(2);
     }

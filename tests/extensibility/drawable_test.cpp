@@ -50,7 +50,12 @@ Outcome extract_beads(const scene::Scene& scene, render::FramePacket& packet) {
   scene.entities.each<Bead>([&](scene::Entity e, const Bead& bead) {
     if (is_hidden(scene.entities, e)) return;
     const std::uint32_t id = packet.add_object("bead", "", bead.where.label);
-    packet.tubes.push_back({std::vector<Vec3>{bead.position}, bead.radius, {1, 0, 0}, {}, id});
+    auto ball = std::make_shared<render::SphereSet>();
+    ball->origin = bead.position;
+    ball->offsets = {glm::vec3(0.f)};
+    ball->radii = {static_cast<float>(bead.radius)};
+    ball->colors = {{1, 0, 0}};
+    packet.spheres.push_back({std::move(ball), id});
   });
   return Done{};
 }
@@ -75,7 +80,7 @@ TEST(ADrawableOfATest, IsReadDrawnPickedAndCounted) {
   EXPECT_EQ(scene::drawables().back().items(scene->entities).size(), 2u);
   const auto packet = render::make_frame(*scene, 100, 100);
   ASSERT_TRUE(packet) << packet.error().message;
-  ASSERT_EQ(packet->tubes.size(), 1u);
+  ASSERT_EQ(packet->spheres.size(), 1u);
   EXPECT_EQ(packet->objects.at(0).kind, "bead");
   EXPECT_TRUE(app::pick_on_cpu(*packet, 50, 50)) << "the bead is in the middle of the image";
   EXPECT_NEAR(render::packet_bounds(*packet).diagonal(), std::sqrt(3.0), 1e-9);

@@ -135,7 +135,7 @@ void ServeSession::end_recording() {
 
 void ServeSession::handle(const TuningRequest& wish) {
   if (wish.position) {
-    if (!tuning_.image_tuning && !tuning_.tick_tuning) return send_note("the costs are not measured yet; \"measure\" was expected first");
+    if (!tuning_.image_tuning && !tuning_.tick_tuning) return send_note("the costs are not measured yet; \"tune\" without \"position\" was expected first");
     return send_note_on_error(scene_.apply(tuning_.edits_at(*wish.position), "accuracy"));
   }
   set_default_target(tuning_);

@@ -80,7 +80,7 @@ TEST(Annotations, MistakesAreOneLine) {
   expect_error(R"("scalar_bars": [{}])", {"names nothing", "\"volume\": INDEX", "expected"});
   expect_error(R"("scalar_bars": [{"volume": 0, "field": "d"}])", {"several things", "expected"});
   expect_error(R"("scalar_bars": [{"volume": 1}])", {"\"volume\"", "expected"});
-  expect_error(R"("scalar_bars": [{"streamlines": 0}])", {"one colour", "\"color_by\" was expected"});
+  expect_error(R"("scalar_bars": [{"streamlines": 0}])", {"shows no values", "\"color_by\" was expected"});
   expect_error(R"("scalar_bars": [{"field": "e"}])", {"no volume", "\"e\"", "expected"});
   expect_error(R"("scalar_bars": [{"field": "x"}])", {"unknown field \"x\""});
   expect_error(R"("scalar_bars": [{"volume": 0, "position": "middle"}])", {"right, left, bottom, top"});

@@ -3,8 +3,10 @@
 #include "engine/io/volume/crop.h"
 
 #include <gtest/gtest.h>
+
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
+#include <fstream>
 
 #include "engine/io/volume/load_field.h"
 #include "engine/io/volume/write_field.h"
