@@ -249,7 +249,7 @@ TEST(CurveScenes, MessagesNameThePlace) {
     EXPECT_NE(message(text).find("s.json:1"), std::string::npos) << message(text);
   };
   expect(R"({"curves": [{"name": "a", "file": "b.tck"}]})",
-         "does not exist; a .tck, .trk, .vtp, .vtk, .vtu, .pvd or .series file was expected");
+         "does not exist; a .tck, .trk, .vtu, .vtp, .pvtp, .vtk, .pvd or .series file was expected");
   expect(R"({"curves": [{"name": "a", "file": "a.tck"}, {"name": "a", "file": "a.tck"}]})", "a name of their own was expected");
   expect(R"({"curves": [{"name": "a", "file": "a.tck", "color_by": {"value": "fa"}}]})",
          "the file has no values called \"fa\"; known: none");
