@@ -1,152 +1,149 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Makes the pages and plots of docs/benchmarks from data/*.csv.   make.py [--check]
+"""Writes the tables and plots of docs/benchmarks from data/*.csv.   make.py [--check]
 
-One row of a table is one case, one column one statistic, one cell one number. --check writes nothing and exits with 1 if a page or a plot
-differs from what the tables of data give.
+A page is written by hand but for the block between "<!-- benchmarks: NAME -->" and "<!-- end -->", which holds the rows of data/NAME.csv: a
+section for each measurement, a row for each case, a column for each statistic, and one number in a cell. The block of index.md holds the
+list of pages and data/machines.csv. --check writes nothing and exits with 1 if a page or a plot differs from what the tables give.
 """
 import csv
+import math
+import re
 import sys
 from pathlib import Path
+from xml.sax.saxutils import escape
 
 HERE = Path(__file__).resolve().parent
-
-# name of the table, title, introduction
-PAGES = [
-    ("haptics", "Haptics", "Accuracy of proxies and forces, stability, and the time of a tick."),
-    ("servo", "The servo beside other work", "Deadlines and periods of the haptic thread while both cores are busy."),
-    ("vortex_cores", "Vortex cores",
-     "Flows whose cores are known, on 33 nodes an axis. Recall is the share of the core that a traced line passes within a voxel. Noise is"
-     " independent at every node; its standard deviation is relative to the greatest speed.\n\n"
-     "`sujudi-haimes` is the default because it alone finds every one of these cores whole without noise, to a quarter of a voxel. It draws"
-     " nothing else with 2 % of noise. `vorticity` is as good or better where curl v lies along the core. Where the stream along the core is"
-     " sheared it is 0.6 voxels off. `parallel-vectors` is nine times nearer on the bent core and loses that with 5 % of noise, because it"
-     " takes one derivative more."),
-    ("headset", "The headset", "Scripted trackers, machines and displays; no headset was measured."),
-    ("images", "Images", "Accuracy and cost of images of 1024 x 768 pixels unless stated. Errors are the root mean square of 8-bit RGB over"
-     " covered pixels."),
-    ("peers", "Volumes beside other renderers",
-     "Processor milliseconds of an image of 1024 x 768 at errors of 1, 2 and 4 against each renderer's own converged image, in turns in one"
-     " run. `<` means that the quickest setting is already better, `never` that no setting reaches the error.\n\n"
-     "OSPRay 3.1 was built for vectors of 512 bits, the widest of the machine; lavapipe 22.3 has 256. Converged images agree with those of"
-     " one of both within an error of 1 in all cases but the shaded vessels. Where nothing is shaded they agree with both, except for VTK's"
-     " vessels. OSPRay's shaded ones differ by 2 to 17, because its light is another."),
-    ("gpu", "On a GPU", "Wall milliseconds of an image of 1024 x 768 at errors of 1, 2 and 4, in turns in one run on one GPU."
-     " Only a small part of this kind of GPU runs fragment shaders, of which both renderers are made."),
-    ("library", "The library", "What a program that links Catena sees."),
-]
-# file, table, title, unit, names of the series, statistic of each series
+PAGES = ["haptics", "servo", "vortex_cores", "headset", "images", "peers", "gpu", "tuning", "library"]
+# file, table, measurement, part of the case, statistics, title, label of the axis, scale
 PLOTS = [
-    ("peers.svg", "peers", "Processor time of an image at an error of 2", "ms",
-     ["Catena, error 2", "OSPRay 3.1, error 2", "VTK 9.1, GPU mapper on llvmpipe, error 2"]),
-    ("gpu.svg", "gpu", "Wall time of an image at an error of 2 on a GPU", "ms", ["Catena, error 2", "VTK 9.1, GPU mapper, error 2"]),
+    ("haptics.svg", "haptics", "Time of a tick", "", ["median", "p99.9"], "Time of a tick", "time, us", "linear"),
+    ("vortex_cores.svg", "vortex_cores", "Distance of the lines from the core, root mean square", "linear cells; 2 % noise",
+     ["sujudi-haimes", "parallel-vectors", "vorticity"], "Distance from the core, linear cells, 2 % noise", "distance, voxels", "log"),
+    ("headset.svg", "headset", "Controller sampled slower than the servo, hand at most 0.65 mm a tick", "", ["mean lag"],
+     "Lag of a controller by its rate of sampling", "mean lag, ms", "linear"),
+    ("images.svg", "images", "Time of an image of a sparse grid, shaded", "", ["error=2", "exact rays"], "Sparse grids", "time, ms", "log"),
+    ("peers.svg", "peers", "Processor time of an image at an error of 2", "", ["Catena", "OSPRay 3.1", "VTK 9.1, GPU mapper on llvmpipe"],
+     "Volumes at an error of 2, two cores", "processor time of an image, ms", "log"),
+    ("gpu.svg", "gpu", "Wall time of an image at an error of 2", "", ["Catena", "VTK 9.1, GPU mapper"],
+     "Volumes at an error of 2, NVIDIA H200", "wall time of an image, ms", "log"),
 ]
 COLORS = ["#2b6cb0", "#dd6b20", "#718096"]
 
 
-def rows_of(name):
+def read(name):
     with open(HERE / "data" / f"{name}.csv", newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
 
 
-def cell(row):
-    return f"{row['value']} {row['unit']}".strip().replace("|", "\\|")
+def check(name, rows):
+    """Each value is one number, or its bound says "never"; its machine is known; no number is stated twice."""
+    machines, seen = {m["id"] for m in read("machines")}, set()
+    for row in rows:
+        key = (row["measurement"], row["case"], row["statistic"])
+        number = re.fullmatch(r"-?\d+(\.\d+)?(e-?\d+)?", row["value"]) or (row["value"], row["bound"]) == ("", "never")
+        if not number or row["bound"] not in ("", "<", "<=", ">", "never") or row["machine"] not in machines | {""} or key in seen:
+            sys.exit(f"data/{name}.csv: wrong or repeated row {row}")
+        seen.add(key)
 
 
-def page(name, title, text):
-    """One table for each command: rows are cases, columns statistics."""
-    out = [f"# {title}", ""]
-    for paragraph in text.split("\n\n"):
-        out += [*wrap(paragraph), ""]
-    for file, table, plot_title, _, _ in PLOTS:
-        if table == name:
-            out += [f"![{plot_title}]({file})", ""]
-    rows = rows_of(name)
-    commands = list(dict.fromkeys(row["command"] for row in rows))
-    for command in commands:
-        mine = [row for row in rows if row["command"] == command]
-        statistics = list(dict.fromkeys(row["statistic"] for row in mine))
-        wide = len(statistics) <= 14 and len(mine) > len({row["case"] for row in mine})
-        out += ["Repeat with", "```", command, "```", ""]
-        if wide:
-            out += ["| case | " + " | ".join(statistics) + " |", "|---" * (len(statistics) + 1) + "|"]
-            for case in dict.fromkeys(row["case"] for row in mine):
-                cells = {row["statistic"]: cell(row) for row in mine if row["case"] == case}
-                out.append(f"| {case} | " + " | ".join(cells.get(s, "") for s in statistics) + " |")
-        else:
-            out += ["| case | statistic | value |", "|---|---|---|"]
-            out += [f"| {row['case']} | {row['statistic']} | {cell(row)} |" for row in mine]
-        dates = sorted({row["date"] for row in mine})
-        commits = ", ".join(f"`{c}`" for c in dict.fromkeys(row["commit"] for row in mine))
-        span = dates[0] if len(dates) == 1 else f"{dates[0]} to {dates[-1]}"
-        out += ["", f"Machine `{mine[0]['machine']}`, recorded {span} by {commits}.", ""]
-    return "\n".join(out).rstrip() + "\n"
+def number(row):
+    return f"{row['bound']} {row['value']}{'x' if row['unit'] == 'x' else ''}".strip()
 
 
-def index():
-    """The list of pages and the machines."""
-    out = ["# Benchmarks", "", *wrap("The pages and plots are made from the tables of `docs/benchmarks/data` by `docs/benchmarks/make.py`. Each"
-           " number has its unit, machine, driver, the commit and the date of its record, and the command that repeats it. Compare ratios that"
-           " were measured side by side in one run, never times of two machines. [running.md](running.md) describes how the comparisons run."),
-           "", "| page | numbers |", "|---|---|"]
-    out += [f"| [{title}]({name}.md) | {len(rows_of(name))} |" for name, title, _ in PAGES]
-    machines = rows_of("machines")
+def table(rows):
+    """Cases by statistics, units in the heads of the columns; one row a number where most cells would be empty or units differ."""
+    cases, statistics = (list(dict.fromkeys(row[key] for row in rows)) for key in ("case", "statistic"))
+    units = {(row["statistic"], row["unit"]) for row in rows}
+    if len(units) > len(statistics) or 3 * len(rows) < 2 * len(cases) * len(statistics):
+        lines = [["case", "statistic", "value", "unit"]]
+        lines += [[row["case"], row["statistic"], number(row), row["unit"].removeprefix("x")] for row in rows]
+    else:
+        at = {(row["case"], row["statistic"]): number(row) for row in rows}
+        lines = [["case"] + [", ".join(filter(None, (s, u.removeprefix("x")))) for s in statistics for t, u in units if t == s]]
+        lines += [[case] + [at.get((case, s), "") for s in statistics] for case in cases]
+    lines.insert(1, ["---"] * len(lines[0]))
+    return ["|" + "|".join(line) + "|" if line[0] == "---" else "| " + " | ".join(line) + " |" for line in lines]
+
+
+def sections(name, rows):
+    out = []
+    for measurement in dict.fromkeys(row["measurement"] for row in rows):
+        mine = [row for row in rows if row["measurement"] == measurement]
+        out += [f"## {measurement}", ""]
+        for file, at, which, _, _, title, _, _ in PLOTS:
+            out += [f"![{title}]({file})", ""] if (at, which) == (name, measurement) else []
+        out += [*table(mine), ""]
+        for command in dict.fromkeys(row["command"] for row in mine):
+            out += ["```sh", command, "```", ""] if command else ["No command repeats this measurement.", ""]
+        where = ", ".join(dict.fromkeys(f"`{row['machine']}`" + (f" ({row['driver']})" if row["driver"] else "") for row in mine))
+        when = ", ".join(dict.fromkeys(f"{row['date']} (`{row['commit']}`)" for row in sorted(mine, key=lambda row: row["date"])))
+        out += [f"Machine {where}; recorded {when}.", ""]
+    return out[:-1]
+
+
+def contents():
+    out = ["| page | numbers | last change |", "|---|---|---|"]
+    for name in PAGES:
+        rows = read(name)
+        title = (HERE / f"{name}.md").read_text(encoding="utf-8").splitlines()[0][2:]
+        out.append(f"| [{title}]({name}.md) | {len(rows)} | {max(row['date'] for row in rows)} |")
     out += ["", "| machine | processor | cores | GPU | system |", "|---|---|---|---|---|"]
-    out += [f"| `{m['id']}` | {m['processor']} | {m['cores']} | {m['gpu']} | {m['system']} |" for m in machines]
-    return "\n".join(out) + "\n"
+    return out + [f"| `{m['id']}` | {m['processor']} | {m['cores']} | {m['gpu']} | {m['system']} |" for m in read("machines")]
 
 
-def wrap(text, width=140):
-    lines = [""]
-    for word in text.split():
-        if len(lines[-1]) + len(word) + 1 > width:
-            lines.append("")
-        lines[-1] += (" " if lines[-1] else "") + word
-    return lines
-
-
-def plot(name, title, unit, series):
-    """Horizontal bars on a logarithmic axis; a bound such as "< 18" is drawn to its number, what was never reached has no bar."""
-    import math
-    table = rows_of(name)
-    cases = list(dict.fromkeys(row["case"] for row in table))
-    values = {(row["case"], row["statistic"]): float(row["value"].strip("<> ")) for row in table
-              if row["statistic"] in series and row["value"] != "never"}
-    lo, hi = math.floor(math.log10(min(values.values()))), math.ceil(math.log10(max(values.values())))
-    left, bar, gap, width = 260, 9, 8, 620
-    height = 70 + len(cases) * (bar * len(series) + gap)
-    x = lambda v: left + (width - left - 45) * (math.log10(v) - lo) / (hi - lo)
-    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" font-family="sans-serif" font-size="11">',
-           f'<rect width="{width}" height="{height}" fill="white"/>', f'<text x="10" y="18" font-size="14">{title}</text>']
-    for decade in range(lo, hi + 1):
-        out += [f'<line x1="{x(10 ** decade):.1f}" x2="{x(10 ** decade):.1f}" y1="45" y2="{height - 22}" stroke="#ddd"/>',
-                f'<text x="{x(10 ** decade):.1f}" y="{height - 8}" text-anchor="middle">{10 ** decade:g} {unit}</text>']
-    for k, label in enumerate(series):
-        at = 10 + 190 * k
-        out += [f'<rect x="{at}" y="27" width="10" height="10" fill="{COLORS[k]}"/>',
-                f'<text x="{at + 14}" y="36">{label.replace(", error 2", "")}</text>']
+def plot(rows, measurement, part, series, title, label, scale):
+    """Horizontal bars with their numbers. A pale bar is a bound ("< 18" ends at 18); what was never reached has no bar."""
+    rows = [row for row in rows if row["measurement"] == measurement and part in row["case"] and row["statistic"] in series]
+    cases, at = list(dict.fromkeys(row["case"] for row in rows)), {(row["case"], row["statistic"]): row for row in rows}
+    values = [float(row["value"]) for row in rows if row["value"]]
+    if scale == "log":
+        lo, hi = math.floor(math.log10(min(values))), math.ceil(math.log10(max(values)))
+        ticks, share = [10.0 ** d for d in range(lo, hi + 1)], lambda v: (math.log10(v) - lo) / (hi - lo)
+    else:
+        step = 10.0 ** math.floor(math.log10(max(values)))
+        step = step if max(values) / step > 3 else step / 2
+        ticks, share = [step * k for k in range(math.ceil(max(values) / step) + 1)], lambda v: v / ticks[-1]
+    left, right, bar, gap = 20 + 6 * max(len(c.replace(part, "").strip("; ")) for c in cases), 560, 11, 8
+    pitch, top = bar * len(series) + gap, 52
+    bottom = top + len(cases) * pitch
+    x = lambda v: left + (right - left) * share(v)
+    text = lambda px, py, words, more="": f'<text x="{px:.1f}" y="{py:.1f}"{more}>{escape(words)}</text>'
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="620" height="{bottom + 40}" font-family="sans-serif" font-size="11">',
+           f'<rect width="620" height="{bottom + 40}" fill="white"/>', text(10, 18, title, ' font-size="14"')]
+    for k, name in enumerate(series if len(series) > 1 else []):
+        out += [f'<rect x="{10 + 130 * k}" y="29" width="10" height="10" fill="{COLORS[k]}"/>', text(24 + 130 * k, 38, name)]
+    for tick in ticks:
+        out += [f'<line x1="{x(tick):.1f}" x2="{x(tick):.1f}" y1="{top - 4}" y2="{bottom}" stroke="#ddd"/>',
+                text(x(tick), bottom + 14, f"{tick:g}", ' text-anchor="middle"')]
+    out.append(text((left + right) / 2, bottom + 31, label, ' text-anchor="middle"'))
     for n, case in enumerate(cases):
-        top = 48 + n * (bar * len(series) + gap)
-        out.append(f'<text x="{left - 6}" y="{top + bar * len(series) / 2 + 4:.1f}" text-anchor="end">{case}</text>')
-        for k, label in enumerate(series):
-            if (case, label) in values:
-                end = x(values[case, label])
-                out.append(f'<rect x="{left}" y="{top + k * bar}" width="{max(end - left, 1):.1f}" height="{bar - 1}" fill="{COLORS[k]}"/>')
+        y = top + n * pitch
+        out.append(text(left - 6, y + bar * len(series) / 2 + 4, case.replace(part, "").strip("; "), ' text-anchor="end"'))
+        for k, row in enumerate(at[case, s] for s in series if (case, s) in at):
+            end = x(float(row["value"])) if row["value"] else left
+            out.append(f'<rect x="{left}" y="{y + k * bar}" width="{end - left:.1f}" height="{bar - 1}" fill="{COLORS[k]}"'
+                       + (' fill-opacity="0.5"/>' if row["bound"] else "/>"))
+            out.append(text(end + 3, y + k * bar + 9, number(row), ' font-size="9"'))
     return "\n".join(out + ["</svg>"]) + "\n"
 
 
 def main():
-    made = {f"{name}.md": page(name, title, text) for name, title, text in PAGES}
-    made["index.md"] = index()
-    made.update({file: plot(table, title, unit, series) for file, table, title, unit, series in PLOTS})
-    check = "--check" in sys.argv[1:]
-    stale = [file for file, text in made.items() if not (HERE / file).exists() or (HERE / file).read_text(encoding="utf-8") != text]
-    for file in stale:
-        if check:
+    made = {}
+    for name in [*PAGES, "index"]:
+        rows = read(name) if name != "index" else []
+        check(name, rows)
+        lines = "\n".join(sections(name, rows) if rows else contents())
+        head, rest = (HERE / f"{name}.md").read_text(encoding="utf-8").split(f"<!-- benchmarks: {name} -->\n", 1)
+        made[f"{name}.md"] = f"{head}<!-- benchmarks: {name} -->\n\n{lines}\n\n<!-- end -->{rest.split('<!-- end -->', 1)[1]}"
+        made.update({file: plot(rows, *how) for file, at, *how in PLOTS if at == name})
+    differ = [file for file, text in made.items() if not (HERE / file).exists() or (HERE / file).read_text(encoding="utf-8") != text]
+    for file in differ:
+        if "--check" in sys.argv[1:]:
             print(f"docs/benchmarks/{file} is not current; docs/benchmarks/make.py writes it")
         else:
             (HERE / file).write_text(made[file], encoding="utf-8")
-    sys.exit(1 if check and stale else 0)
+    sys.exit(1 if "--check" in sys.argv[1:] and differ else 0)
 
 
 if __name__ == "__main__":

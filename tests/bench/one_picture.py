@@ -12,7 +12,7 @@ import numpy as np
 from PIL import Image
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.join(HERE, "peers"))
+sys.path.insert(0, os.path.join(HERE, "baselines"))
 from picture_error import rmse
 
 OURS = ("draft", "step=4", "step=2.8", "step=2", "step=1.4", "step=1", "step=0.7", "step=0.5", "step=0.35")

@@ -10,7 +10,7 @@ import argparse, json, os, re, subprocess, sys, tempfile
 import numpy as np
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.join(HERE, "peers"))
+sys.path.insert(0, os.path.join(HERE, "baselines"))
 sys.path.insert(0, HERE)
 from one_picture import over, scene_of
 from picture_error import rmse

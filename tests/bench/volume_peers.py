@@ -17,7 +17,7 @@ where it was, a case whose file, peers or settings changed is done again."""
 import argparse, hashlib, json, math, os, shlex, statistics, subprocess, sys, time
 import numpy as np
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "peers"))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "baselines"))
 from picture_error import flicker, picture_error, rmse
 
 VIEW, LEVELS, AGREE = 30, (1, 2, 4), 1
