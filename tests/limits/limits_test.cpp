@@ -53,10 +53,12 @@ INSTANTIATE_TEST_SUITE_P(Table, LimitTable, testing::ValuesIn(rows_to_run()), []
 constexpr const char* kBegin = R"(# Extremes
 
 What happens at the ends of what can be asked. What a row expects is written before the row is run, and holds word for word in every run of
-the tests; numbers in it are bounds. Where something else happens, that stands here as a known defect, and the last table says what would
-be right. `tests/limits` has the rows as data, beside the functions that run them, and `./run docs` writes this page from what they say.
-The name in the last column is that of the case, `build/release/test_limits --gtest_filter='*NAME*'`, or of a test elsewhere that proves it.
-L is the domain length.
+the tests; numbers in it are bounds. Where something else happens, that stands here as a known defect, and the last table says what would be
+right.
+
+`tests/limits` has the rows as data, beside the functions that run them, and `./run docs` writes this page from what they say. The name in
+the last column is that of the case, `build/release/test_limits --gtest_filter='*NAME*'`, or of a test elsewhere that proves it. L is the
+domain length.
 )";
 
 /// The page, with what the rows said; where they have not run, what they are expected to say.
