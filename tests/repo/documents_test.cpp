@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The documents: every relative link leads to a file and to a heading, every file of the tree that they name is there, every Suite.Case
-/// that they name is a test, prose is short, and README says the scene that assets/scenes/first.json holds.
+/// Tests of the documents, all .md files of the tree: every relative link leads to a file and a heading; every file and every Suite.Case
+/// that they name exists; prose is short; a guide has a picture; README.md shows the scene of assets/scenes/first.json.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ std::vector<std::string> documents() {
 
 std::string contents(const std::string& document) { return test::read_file(test::source_dir() + "/" + document); }
 
-/// The part in groups 1 of all matches.
+/// Returns the first group of each match.
 std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
   const std::regex expression(pattern);
   std::vector<std::string> found;
@@ -46,7 +46,7 @@ std::vector<std::string> matches(const std::string& text, const std::string& pat
   return found;
 }
 
-/// "## The scene's `device`" is linked to as "the-scenes-device".
+/// Returns the anchor of a heading: "the-scenes-device" for "The scene's `device`".
 std::string anchor_of(const std::string& heading) {
   std::string anchor;
   for (const char c : heading) {
@@ -105,7 +105,7 @@ TEST(Documents, EveryFileThatTheyNameIsThere) {
 }
 
 TEST(Documents, EveryTestThatTheyNameIsOne) {
-  std::string cases;  // " Suite.Case" of every test
+  std::string cases;  // " Suite.Case" for every test
   for (const auto& entry : fs::recursive_directory_iterator(test::source_dir() + "/tests")) {
     if (entry.path().extension() != ".cpp") continue;
     const std::string text = test::read_file(entry.path().string());
@@ -118,7 +118,7 @@ TEST(Documents, EveryTestThatTheyNameIsOne) {
   int checked = 0;
   for (const std::string& document : documents())
     for (std::string name : matches(contents(document), R"(`([A-Z]\w+\.[A-Z]\w*\*?|[A-Z]\w+\.\*)`)")) {
-      if (name == "Suite.Case" || name == "NumberN.*") continue;  // how such names are made
+      if (name == "Suite.Case" || name == "NumberN.*") continue;  // patterns of names
       ++checked;
       const bool all = name.ends_with("*");
       if (all) name.pop_back();
@@ -127,15 +127,15 @@ TEST(Documents, EveryTestThatTheyNameIsOne) {
   EXPECT_GT(checked, 20);
 }
 
-/// A paragraph of prose, or an item of a list, with the line on which it begins.
+/// A paragraph of prose or an item of a list, and the line on which it begins.
 struct Paragraph {
   int line = 0;
   std::string text;
 };
 
-/// The prose of a document: without tables, headings, code and comments; of links only the text remains.
+/// Returns the prose of a document: its paragraphs without tables, headings, code blocks and HTML comments, links as their text.
 std::vector<Paragraph> prose(const std::string& document) {
-  static const std::regex item(R"(^\s*(?:[-*+]|\d+[.)])\s+)"), link(R"(!?\[([^\]]*)\]\([^)]*\))");
+  static const std::regex item(R"(^\s*(?:[-*+>]|\d+[.)])\s+)"), link(R"(!?\[([^\]]*)\]\([^)]*\))");
   std::vector<Paragraph> found;
   std::istringstream in(contents(document));
   bool is_code = false, is_comment = false, continues = false;
@@ -153,8 +153,9 @@ std::vector<Paragraph> prose(const std::string& document) {
       continues = false;
       continue;
     }
-    if (!continues && begin >= 4) continue;  // an indented block of code
-    if (!continues || std::regex_search(line, item)) found.push_back({number, {}});
+    const bool begins_item = std::regex_search(line, item);
+    if (!continues && begin >= 4 && !begins_item) continue;  // an indented code block
+    if (!continues || begins_item) found.push_back({number, {}});
     continues = true;
     found.back().text += std::regex_replace(line, item, "") + " ";
   }
