@@ -135,7 +135,7 @@ struct Paragraph {
 
 /// Returns the prose of a document: its paragraphs without tables, headings, code blocks and HTML comments, links as their text.
 std::vector<Paragraph> prose(const std::string& document) {
-  static const std::regex item(R"(^\s*(?:[-*+>]|\d+[.)])\s+)"), link(R"(!?\[([^\]]*)\]\([^)]*\))");
+  static const std::regex item(R"(^\s*(?:[-*+]|\d+[.)])\s+)"), quote(R"(^\s*>\s*)"), link(R"(!?\[([^\]]*)\]\([^)]*\))");
   std::vector<Paragraph> found;
   std::istringstream in(contents(document));
   bool is_code = false, is_comment = false, continues = false;
@@ -144,20 +144,19 @@ std::vector<Paragraph> prose(const std::string& document) {
     ++number;
     const std::size_t begin = line.find_first_not_of(' ');
     const std::string text = begin == std::string::npos ? "" : line.substr(begin);
-    if (text.starts_with("```")) is_code = !is_code;
-    if (text.starts_with("<!--")) is_comment = true;
-    const bool is_prose = !is_code && !is_comment && !text.empty() && text.find_first_of("#|`") != 0;
-    const bool starts_with_code = !is_code && !is_comment && text.starts_with("`") && !text.starts_with("```");
+    const bool is_fence = !is_comment && text.starts_with("```");
+    if (is_fence) is_code = !is_code;
+    if (!is_code && text.starts_with("<!--")) is_comment = true;
+    const bool is_prose = !is_code && !is_fence && !is_comment && !text.empty() && text.find_first_of("#|") != 0;
     if (is_comment && text.find("-->") != std::string::npos) is_comment = false;
-    if (!is_prose && !starts_with_code) {
+    const bool begins_item = std::regex_search(line, item);
+    if (!is_prose || (!continues && begin >= 4 && !begins_item)) {  // or an indented code block
       continues = false;
       continue;
     }
-    const bool begins_item = std::regex_search(line, item);
-    if (!continues && begin >= 4 && !begins_item) continue;  // an indented code block
     if (!continues || begins_item) found.push_back({number, {}});
     continues = true;
-    found.back().text += std::regex_replace(line, item, "") + " ";
+    found.back().text += std::regex_replace(line, begins_item ? item : quote, "") + " ";
   }
   for (Paragraph& paragraph : found) paragraph.text = std::regex_replace(paragraph.text, link, "$1");
   return found;
