@@ -315,7 +315,7 @@ TEST(Replay, TheExamplesOfTheDocumentsRun) {
     const ProgramResult run = catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
   }
-  EXPECT_EQ(examples, 7);
+  EXPECT_EQ(examples, 8);
 }
 
 TEST(Replay, OrientationsComeBackAsRotationalProxiesAndTorque) {
