@@ -68,31 +68,32 @@ const schema::StructSchema<Finding, const Study>& finding_table() {
   using T = Finding;
   static const auto table =
       schema::StructSchema<T, const Study>()
-          .bind(schema::text("claim", "The sentence.").required(), &T::claim)
-          .bind(schema::text("reported", "Its numbers, as the paper prints them.").with_default("none"), &T::reported)
-          .bind(schema::choice("test", kAsks, "What would bear it out; the kinds are described in study.md.").required(), &T::test)
-          .bind(schema::choice("measure", {"error", "time"}, "What is compared."), &T::measure)
+          .bind(schema::text("claim", "Claim of the paper, a sentence.").required(), &T::claim)
+          .bind(schema::text("reported", "Numbers of the claim, as the paper prints them.").with_default("none"), &T::reported)
+          .bind(schema::choice("test", kAsks, "Test that can support the claim; study.md describes each.").required(), &T::test)
+          .bind(schema::choice("measure", {"error", "time"}, "Quantity that is compared."), &T::measure)
           .bind(schema::choice("of", {"mean", "deviation"},
-                               "Of a subject's trials: their mean, or their standard deviation. `difference` only."),
+                               "`difference` only: compares the subjects' means over their trials, or their standard deviations."),
                 &T::uses_deviations)
-          .custom(schema::texts("tasks", "Names of tasks; of `tasks` two, of `largest` one.").with_default("all"),
+          .custom(schema::texts("tasks", "Names of tasks: two for the test `tasks`, one for `largest`.").with_default("all"),
                   [](const Study& study, const json::Node& object, T& finding) -> Outcome {
                     CATENA_TRY(finding.tasks, read_names(object, "tasks", names_in(study.tasks)));
                     return Done{};
                   })
-          .custom(schema::texts("conditions", "Names of conditions.").with_default("all; without the first where that is compared with"),
+          .custom(schema::texts("conditions", "Names of conditions.").with_default("all; without the baseline in tests against it"),
                   [](const Study& study, const json::Node& object, T& finding) -> Outcome {
                     CATENA_TRY(finding.conditions, read_names(object, "conditions", names_in(study.conditions)));
                     return Done{};
                   })
-          .bind(schema::choice("alternative", kExpects,
-                               "`lower` or `higher` than the baseline, or than the second task; intervals `apart` or that `overlap`; a "
-                               "`negative` or `positive` correlation.")
-                    .with_default("the first of these that the test knows"),
-                &T::alternative)
-          .bind(schema::integer("rejected", "", "Trials that the paper left out.", 0, 1'000'000'000), &T::rejected)
-          .bind(schema::integer("trials", "", "Of so many.", 0, 1'000'000'000), &T::trials)
-          .bind(schema::text("reason", "Why these data cannot say.").with_default("none"), &T::reason);
+          .bind(
+              schema::choice("alternative", kExpects,
+                             "Alternative hypothesis: `lower` or `higher` than the baseline or the second task; intervals that are `apart` "
+                             "or `overlap`; a `negative` or `positive` correlation.")
+                  .with_default("the first that the test accepts"),
+              &T::alternative)
+          .bind(schema::integer("rejected", "", "Number of trials that the paper rejected.", 0, 1'000'000'000), &T::rejected)
+          .bind(schema::integer("trials", "", "Number of trials of the paper.", 0, 1'000'000'000), &T::trials)
+          .bind(schema::text("reason", "Reason why these data cannot test the claim.").with_default("none"), &T::reason);
   return table;
 }
 
@@ -139,7 +140,9 @@ Result<std::vector<json::Node>> list_at(const json::Node& root, std::string_view
   return list->items;
 }
 
-schema::Keys pair_keys() { return {schema::texts("tasks", "The two, in every condition and both measures: first - second.").required()}; }
+schema::Keys pair_keys() {
+  return {schema::texts("tasks", "Two tasks, compared in every condition and both measures: first - second.").required()};
+}
 
 }  // namespace
 
@@ -170,7 +173,7 @@ Result<AnalysisPlan> read_analysis_plan(const Study& study) {
 std::vector<schema::Section> analysis_plan_components() {
   using Shape = schema::Section::Layout;
   return {{"compare", "Pairs of tasks that are compared over the subjects.", Shape::list, pair_keys()},
-          {"findings", "What a paper found, each with the test that would bear it out.", Shape::list, finding_table().keys()}};
+          {"findings", "Claims of a paper, each with the test that can support it.", Shape::list, finding_table().keys()}};
 }
 
 }  // namespace catena::study

@@ -38,15 +38,16 @@ Outcome read_chains(const json::Node& object, const std::vector<Task>& tasks, Co
 }
 
 schema::Keys condition_keys() {
-  return {schema::identifier("name", "Its name, in the tables.").required(),
-          array_or_object("chain", "The links that are felt (scene.md, `chain`): an array for all tasks, or an object with one for each.")
+  return {schema::identifier("name", "Name of the condition, in the tables.").required(),
+          array_or_object("chain",
+                          "Links that the subject feels (scene.md, `chain`): one array for all tasks, or an object with an array per task.")
               .required()};
 }
 
 schema::Keys question_keys() {
-  return {schema::identifier("name", "Its name, in the table of answers.").required(),
-          schema::text("question", "What is asked.").required(),
-          schema::texts("answers", "What can be answered: 2 to 9, by the keys 1 to 9.").with_default("any text")};
+  return {schema::identifier("name", "Name of the question, in the table of answers.").required(),
+          schema::text("question", "Text of the question.").required(),
+          schema::texts("answers", "Choices, 2 to 9; the keys 1 to 9 select them.").with_default("any text")};
 }
 
 Outcome read_question(const json::Node& node, Question& question) {
@@ -99,12 +100,15 @@ const StudyTable<Study>& study_table() {
   using T = Study;
   static const auto table = [] {
     StudyTable<T> t;
-    t.bind(schema::text("name", "Its name, for titles.").required(), &T::name);
-    t.bind(integer("seed", "", "Of everything that is drawn by chance.", 0, 1'000'000'000), &T::seed);
-    t.bind(integer("subjects", "", "How many subjects the design is made for.", 1, 9999), &T::subjects);
-    t.bind(integer("trials", "", "Stimuli of a task: so many trials in every condition.", 1, 1000), &T::trials);
-    t.bind(integer("training", "", "Trials before them, of every task in every condition; they are not analysed.", 0, 100), &T::training);
-    t.custom(schema::file("instructions", "A text with the pages of instructions, relative to this file.").with_default("none"),
+    t.bind(schema::text("name", "Name of the study, for titles.").required(), &T::name);
+    t.bind(integer("seed", "", "Seed of all random choices.", 0, 1'000'000'000), &T::seed);
+    t.bind(integer("subjects", "", "Number of subjects that the design is made for.", 1, 9999), &T::subjects);
+    t.bind(integer("trials", "", "Number of stimuli per task; each is done once in every condition.", 1, 1000), &T::trials);
+    t.bind(
+        integer("training", "",
+                "Number of training stimuli per task, each done once in every condition before the trials; they are not analysed.", 0, 100),
+        &T::training);
+    t.custom(schema::file("instructions", "Text file with the pages of instructions, relative to the study file.").with_default("none"),
              [](const NoContext&, const json::Node& root, T& study) -> Outcome {
                CATENA_TRY(study.instructions, json::get_string(root, "instructions", {}));
                if (study.instructions.empty() || std::filesystem::path(study.instructions).is_absolute()) return Done{};
@@ -121,11 +125,11 @@ const StudyTable<Study>& study_table() {
 std::vector<schema::Section> study_components() {
   using Shape = schema::Section::Layout;
   std::vector<schema::Section> all{
-      {"study", "What concerns all of it, at the top of the file.", Shape::object, study_table().keys()},
-      {"tasks", "What is seen and asked.", Shape::list, task_table().keys()},
-      {"conditions", "What is felt. The first is the one that the others are compared with.", Shape::list, condition_keys()},
-      {"operator", "The model of a subject for `study simulate`.", Shape::object, human_model_table().keys()},
-      {"questionnaire", "What is asked at the end of a session.", Shape::list, question_keys()}};
+      {"study", "Keys at the top of the file.", Shape::object, study_table().keys()},
+      {"tasks", "Tasks: what is visible, and what the subject does.", Shape::list, task_table().keys()},
+      {"conditions", "Haptic conditions. The first is the baseline of the comparisons.", Shape::list, condition_keys()},
+      {"operator", "Model of a subject for `study simulate`.", Shape::object, human_model_table().keys()},
+      {"questionnaire", "Questions at the end of a session.", Shape::list, question_keys()}};
   for (schema::Section& component : analysis_plan_components()) all.push_back(std::move(component));
   return all;
 }

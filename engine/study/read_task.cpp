@@ -13,23 +13,28 @@ const StudyTable<StimulusRules>& stimulus_table() {
   using T = StimulusRules;
   static const auto table =
       StudyTable<T>()
-          .bind(number("path_mm", "mm", "Length of every correct path.").with_limits({0.0, 1e4, true}), &T::path_mm)
-          .bind(number("clearance_mm", "mm", "The start is at least so far from every global streamline.").within(0, 1e4), &T::clearance_mm)
-          .bind(integer("context_streamlines", "", "Global streamlines.", 0, 200), &T::context_streamlines)
-          .bind(number("context_length_mm", "mm", "The longest that one is, each way.").with_limits({0.0, 1e5, true}),
+          .bind(number("path_mm", "mm", "Length of the path of every trial.").with_limits({0.0, 1e4, true}), &T::path_mm)
+          .bind(number("clearance_mm", "mm", "Minimum distance of the start from every context streamline.").within(0, 1e4),
+                &T::clearance_mm)
+          .bind(integer("context_streamlines", "", "Number of context streamlines, which show the whole flow.", 0, 200),
+                &T::context_streamlines)
+          .bind(number("context_length_mm", "mm", "Maximum length of a context streamline from its seed, in each direction.")
+                    .with_limits({0.0, 1e5, true}),
                 &T::context_length_mm)
-          .bind(number("parallel", "",
-                       "3D: at least this share of the path's length is seen along the picture plane (across the camera's axis).")
+          .bind(number("parallel", "", "3D: minimum share of the path's length that remains after projection onto the image plane.")
                     .within(0, 1),
                 &T::parallel)
-          .bind(number("crossing_deg", "degrees", "Advection: the path meets its target at this angle or a steeper one.").within(0, 90),
+          .bind(number("crossing_deg", "degrees", "Advection: minimum angle between the path and its target.").within(0, 90),
                 &T::crossing_deg)
-          .bind(number("turn_deg", "degrees", "The path turns at least this much from its start to its middle or its end.").within(0, 180),
+          .bind(number("turn_deg", "degrees", "Minimum angle between the path's tangent at the start and that at the middle or the end.")
+                    .within(0, 180),
                 &T::turn_deg)
-          .bind(number("min_curvature_radius_mm", "mm", "The path's radius of curvature is nowhere smaller.").within(0, 1e4),
+          .bind(number("min_curvature_radius_mm", "mm", "Minimum radius of curvature of the path.").within(0, 1e4),
                 &T::min_curvature_radius_mm)
-          .bind(integer("candidates", "", "Starts that are tried in a field, before another field is.", 1, 10000), &T::candidates)
-          .bind(number("region", "", "Share of the field's box, about its middle, in which starts lie.").with_limits({0.0, 1.0, true}),
+          .bind(integer("candidates", "", "Number of starts that are tried in a field before the next field is generated.", 1, 10000),
+                &T::candidates)
+          .bind(number("region", "", "Share of each edge of the field's box, about its centre, within which the starts lie.")
+                    .with_limits({0.0, 1.0, true}),
                 &T::region);
   return table;
 }
@@ -38,12 +43,15 @@ const StudyTable<Limits>& limits_table() {
   using T = Limits;
   static const auto table =
       StudyTable<T>()
-          .bind(number("announced_limit_s", "s", "What the subject is told; it is not enforced.").with_limits({0.0, 3600, true}),
+          .bind(number("announced_limit_s", "s", "Time limit that the instructions state; it is not enforced.")
+                    .with_limits({0.0, 3600, true}),
                 &T::announced_limit_s)
-          .bind(number("timeout_s", "s", "Here a trial ends.").with_limits({0.0, 3600, true}), &T::timeout_s)
-          .bind(number("reject_error_mm", "mm", "A trial with a larger error is left out of the analysis.").with_limits({0.0, 1e6, true}),
+          .bind(number("timeout_s", "s", "Time after the start of the clock at which a trial ends.").with_limits({0.0, 3600, true}),
+                &T::timeout_s)
+          .bind(number("reject_error_mm", "mm", "Maximum error of a trial that the analysis accepts.").with_limits({0.0, 1e6, true}),
                 &T::reject_error_mm)
-          .bind(number("reject_time_s", "s", "So is one that took longer.").with_limits({0.0, 3600, true}), &T::reject_time_s);
+          .bind(number("reject_time_s", "s", "Maximum time of a trial that the analysis accepts.").with_limits({0.0, 3600, true}),
+                &T::reject_time_s);
   return table;
 }
 
@@ -106,28 +114,33 @@ const StudyTable<Task>& task_table() {
   using T = Task;
   static const auto table = [] {
     StudyTable<T> t;
-    t.bind(schema::identifier("name", "Its name, in the tables.").required(), &T::name);
-    t.bind(
-        schema::choice("kind", {"advection", "tracing"},
-                       "`advection`: follow the flow, of which a short piece is seen at the cursor; `tracing`: follow a path that is seen.")
-            .required(),
-        &T::kind);
-    t.bind(integer("dimensions", "", "2: all is measured in the picture plane.", 2, 3).required(), &T::dimensions);
+    t.bind(schema::identifier("name", "Name of the task, in the tables.").required(), &T::name);
+    t.bind(schema::choice(
+               "kind", {"advection", "tracing"},
+               "What the subject does. `advection`: follow the flow, of which a short piece is visible at the cursor; `tracing`: follow "
+               "a visible path.")
+               .required(),
+           &T::kind);
+    t.bind(integer("dimensions", "", "Dimensions of the task; 2: everything is measured in the image plane.", 2, 3).required(),
+           &T::dimensions);
     t.bind(schema::choice("target", {"circle", "plane", "end"},
-                          "Where a trial ends: a circle about the start or a level plane, which the path crosses at its end, or its end.")
+                          "What ends a trial: crossing a circle about the start, crossing a horizontal plane, or reaching the path's end. "
+                          "Circle and plane pass through the path's end.")
                .with_default("`end`; advection: 2D `circle`, 3D `plane`"),
            &T::target);
-    t.bind(schema::text("field", "The field of the scene that the path follows.").required(), &T::field);
-    bind_object(t, "stimulus", stimulus_table(), &T::rules, "How start and path are chosen.");
-    bind_object(t, "limits", limits_table(), &T::limits, "Times and errors.");
-    t.bind(number("start_radius_mm", "mm", "The clock starts when the cursor leaves this ball about the start; 2D: this circle.")
+    t.bind(schema::text("field", "Name of the field of the scene that the path follows.").required(), &T::field);
+    bind_object(t, "stimulus", stimulus_table(), &T::rules, "Rules by which the start and the path are found.");
+    bind_object(t, "limits", limits_table(), &T::limits, "Time limits, and the limits beyond which the analysis rejects a trial.");
+    t.bind(number("start_radius_mm", "mm", "Radius of the ball (2D: circle) about the start; the clock starts when the cursor leaves it.")
                .with_limits({0.0, 1e4, true}),
            &T::start_radius_mm);
-    t.bind(number("target_radius_mm", "mm", "Tracing: so near, the end is reached.").with_limits({0.0, 1e4, true}), &T::target_radius_mm);
+    t.bind(number("target_radius_mm", "mm", "Tracing: distance from the path's end at which the end counts as reached.")
+               .with_limits({0.0, 1e4, true}),
+           &T::target_radius_mm);
     t.bind(
         number("indicator_mm", "mm", "Advection: length of the local indicator, from the cursor downstream.").with_limits({0.0, 1e4, true}),
         &T::indicator_mm);
-    t.custom(schema::object("scene", {}, "A scene (scene.md) without a chain, in which strings stand for values of the trial.").required(),
+    t.custom(schema::object("scene", {}, "Scene (scene.md) without a chain; some strings stand for values of the trial.").required(),
              [](const NoContext&, const json::Node& object, T& task) -> Outcome {
                const json::Node* scene = object.find("scene");
                if (scene == nullptr) return json::error_at(object, "key \"scene\" is missing; a scene was expected");

@@ -86,7 +86,7 @@ std::string times_at_the_ends_of_doubles() {
     longest = std::max(longest, end - at);
     at = end + 1;
   }
-  return Findings().add(ran(folder, result)).at_most("bytes of the longest line that is said", static_cast<double>(longest), 200);
+  return Findings().add(ran(folder, result)).at_most("bytes in the longest line of output", static_cast<double>(longest), 200);
 }
 
 std::string far_seed() { return trace("1e300,0,0"); }
@@ -172,43 +172,45 @@ Group command_rows() {
   using namespace command_test;
   const std::string exit = "exit code 2: catena: ";
   std::vector<Row> rows{
-      {"TwentyKilohertz", "A servo at 20 kHz",
+      {"TwentyKilohertz", "Haptic rate of 20 kHz",
        exit + "--rate: \"20000\" is out of range; a finite number from 100 to 10000 was expected (see catena feel --help)",
        twenty_kilohertz},
-      {"SlowAndFastServos", "Servos at 100 Hz and 10 kHz", "100 Hz: done, without an output; 10000 Hz: done, without an output",
+      {"SlowAndFastServos", "Haptic rates of 100 Hz and 10 kHz", "100 Hz: done, without an output; 10000 Hz: done, without an output",
        slow_and_fast_servos},
-      {"TooSmall", "9e-31 in a scene", exit + "s.json:2: 9e-31 is too small; 0 or a number from 1e-30 to 1e30 in size was expected",
-       too_small},
+      {"TooSmall", "The number 9e-31 in a scene",
+       exit + "s.json:2: 9e-31 is too small; 0 or a number from 1e-30 to 1e30 in size was expected", too_small},
       {"TooLarge", "1.1e30", exit + "s.json:2: 1.1e+30 is too large; 0 or a number from 1e-30 to 1e30 in size was expected", too_large},
       {"BeyondDoubles", "1e309", exit + "s.json:2: '1e309' is not a number; a finite number was expected", beyond_doubles},
-      {"SmallestAndLargest", "1e-30 and 1e30, the radii of spheres that a hand of size 1 feels", "done; done", smallest_and_largest},
-      {"NanInAPath", "A path with NaN", exit + "p.csv:3: \"nan\" in column \"x\"; a finite number was expected", nan_in_a_path},
-      {"InfinityInAPath", "A path with -inf", exit + "p.csv:3: \"-inf\" in column \"y\"; a finite number was expected", infinity_in_a_path},
-      {"PathBeyondDoubles", "A path with 1e309", exit + "p.csv:2: \"1e309\" in column \"z\"; a finite number was expected",
+      {"SmallestAndLargest", "Sphere links with radii 1e-30 and 1e30, for a workspace of size 1", "done; done", smallest_and_largest},
+      {"NanInAPath", "Probe path with NaN", exit + "p.csv:3: \"nan\" in column \"x\"; a finite number was expected", nan_in_a_path},
+      {"InfinityInAPath", "Probe path with -inf", exit + "p.csv:3: \"-inf\" in column \"y\"; a finite number was expected",
+       infinity_in_a_path},
+      {"PathBeyondDoubles", "Probe path with 1e309", exit + "p.csv:2: \"1e309\" in column \"z\"; a finite number was expected",
        path_beyond_doubles},
-      {"PathAtTheEndsOfDoubles", "A path with 1.7e308 and 5e-324", "done", path_at_the_ends_of_doubles},
-      {"TimesAtTheEndsOfDoubles", "A path whose times rise from 1e-320 to 1.7e308 s",
-       "done; bytes of the longest line that is said at most 200", times_at_the_ends_of_doubles},
-      {"FarSeed", "A line from 1e300 units away", "done", far_seed},
-      {"DenormalSeed", "A line from 1e-320 beside a vortex ring's axis", "done", denormal_seed},
-      {"NanSeed", "A seed that is NaN", exit + "z.csv:2: \"nan\" in column \"x\"; a finite number was expected", nan_seed},
-      {"NoLength", "A line of length 1e-300", exit + "z.csv:2: seed (0.5, 0, 0): the line ends on the spot in both directions", no_length},
-      {"NineTranslucentSurfaces", "A scene of nine translucent isosurfaces",
+      {"PathAtTheEndsOfDoubles", "Probe path with 1.7e308 and 5e-324", "done", path_at_the_ends_of_doubles},
+      {"TimesAtTheEndsOfDoubles", "Probe path with times from 1e-320 to 1.7e308 s", "done; bytes in the longest line of output at most 200",
+       times_at_the_ends_of_doubles},
+      {"FarSeed", "`trace` from a seed 1e300 units away", "done", far_seed},
+      {"DenormalSeed", "`trace` from a seed 1e-320 beside the axis of a vortex ring", "done", denormal_seed},
+      {"NanSeed", "`trace` from a seed with NaN", exit + "z.csv:2: \"nan\" in column \"x\"; a finite number was expected", nan_seed},
+      {"NoLength", "`trace` with `--length 1e-300`", exit + "z.csv:2: seed (0.5, 0, 0): the line ends on the spot in both directions",
+       no_length},
+      {"NineTranslucentSurfaces", "Nine translucent isosurfaces",
        exit + "s.json: the scene has 9 translucent isosurfaces, expected at most 8", nine_translucent_surfaces},
-      {"NotesOfData", "A scene whose data hold 0.1 and 1e300, felt: its note", "d.raw: values of type float64 are rounded to 32-bit floats",
-       notes_of_data},
-      {"VoxelsBeyondPictures", "A picture of voxels of 1e30",
+      {"NotesOfData", "Note about 64-bit data with 0.1 and 1e300, in `replay`",
+       "d.raw: values of type float64 are rounded to 32-bit floats", notes_of_data},
+      {"VoxelsBeyondPictures", "Image of voxels of 1e30",
        exit + "s.json:1: field \"d\": reaches 7e+30 from the origin, which no picture shows; at most 1e+30 was expected",
        voxels_beyond_pictures},
-      {"NoTolerance", "A tolerance of 1e-300", "done", no_tolerance},
+      {"NoTolerance", "`trace` with `--tolerance 1e-300`", "done", no_tolerance},
   };
-  rows.push_back({"FullUnderTheHand", "512^3 voxels of noise under the hand, within 700000 KB of addresses", "done", full_under_the_hand});
-  rows.push_back({"FullWithoutRoom", "A picture of them with 300 MB allowed",
+  rows.push_back({"FullUnderTheHand", "`replay` on 512^3 voxels of noise, with 700000 KB of address space", "done", full_under_the_hand});
+  rows.push_back({"FullWithoutRoom", "`render` of these voxels with `--memory 300`",
                   exit + "s.json:1: field \"d\": d.raw: the grid of 512 x 512 x 512 voxels needs 576 MB of memory, expected at most 300 MB "
                          "(--memory MB allows more)",
                   full_without_room});
-  rows.push_back({"FullUnderTheEye", "The same with 700 MB", "done", full_under_the_eye});
-  return {"The command line", rows};
+  rows.push_back({"FullUnderTheEye", "The same with `--memory 700`", "done", full_under_the_eye});
+  return {"Command line", rows};
 }
 
 }  // namespace catena::extremes

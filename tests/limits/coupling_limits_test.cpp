@@ -48,8 +48,8 @@ std::string the_same_place_at_any_rate() {
   for (std::size_t i = 3; i < proxies.size(); ++i) off = std::max(off, norm(proxies[i] - proxies[i % 3]) / 4);
   for (const Vec3& f : forces) force = std::max(force, norm(f - forces[0]));
   return Findings()
-      .at_most("proxies apart by", off, 1e-9, "L")
-      .at_most("forces apart by", force, 1e-6, "N")
+      .at_most("distance of the proxies between rates", off, 1e-9, "L")
+      .at_most("difference of the forces between rates", force, 1e-6, "N")
       .add(norm(forces[0]) > 0.1 ? "held" : "free");
 }
 
@@ -66,7 +66,7 @@ std::string an_irregular_clock() {
     if (i > 0) off = std::max(off, norm(rig.out.force_n + Vec3(3 * 0.05 * speed, 0, 0)));
     t += std::exp(random.uniform(std::log(1e-5), std::log(0.1)));
   }
-  return Findings().at_most("the damping's force off b v by", off, 1e-9, "N");
+  return Findings().at_most("difference of the damping force from b v", off, 1e-9, "N");
 }
 
 // ---- springs on a mechanism ----
@@ -107,8 +107,8 @@ std::string the_passive_limit_at_any_rate() {
     above = std::min(above, gain(spring(1.01 * limit), 1.01 * limit, 1 / rate, 6000));
   }
   return Findings()
-      .at_most("at 0.99 of it a spring gives back, of what it had,", below, 1, {})
-      .add(above > 1 ? "at 1.01 of it more than it had at every rate" : "at 1.01 of it no more than it had at some rate");
+      .at_most("at 0.99 of the limit, returned per stored energy", below, 1, {})
+      .add(above > 1 ? "at 1.01 of it, more than was stored at every rate" : "at 1.01 of it, no more than was stored at some rate");
 }
 
 std::string far_past(const std::vector<double>& rates, double bound_j) {
@@ -157,7 +157,7 @@ std::string no_spring() {
     some.step_to(probe_at(i));
     same += norm(none.proxy(2) - some.proxy(2)) <= 1e-9 * 4;
   }
-  return Findings().all("no force", zero, kTicks).all("the proxies of a spring of 500 N/m", same, kTicks);
+  return Findings().all("no force", zero, kTicks).all("the same proxies as with 500 N/m", same, kTicks);
 }
 
 std::string springs_beyond_everything() {
@@ -179,36 +179,37 @@ std::string springs_beyond_everything() {
 Group coupling_rows() {
   using namespace coupling_test;
   return {
-      "Clocks and springs",
+      "Clocks and stiffness",
       {
-          {"TheSamePlaceAtAnyRate", "Two seconds of a hand at 100 Hz to 20 kHz on a line, a ball and a plane, then a second of rest",
-           "proxies apart by at most 1e-09 L; forces apart by at most 1e-06 N; held", the_same_place_at_any_rate},
-          {"AnIrregularClock", "Steps from 10 us to 0.1 s in any order, and a hand at an even speed",
-           "the damping's force off b v by at most 1e-09 N", an_irregular_clock},
-          proved_elsewhere("A clock that stands still or runs back", "the time of that tick counts as none",
-                           "Tick.TimeThatRunsBackCountsAsNone"),
-          proved_elsewhere("Ticks that come late, or not at all", "the force is held for five, then ramped out",
+          {"TheSamePlaceAtAnyRate",
+           "The same motion of two seconds at 100 Hz to 20 kHz on a line, a sphere and a plane, then one second at rest",
+           "distance of the proxies between rates at most 1e-09 L; difference of the forces between rates at most 1e-06 N; held",
+           the_same_place_at_any_rate},
+          {"AnIrregularClock", "Time steps of 10 us to 0.1 s in random order; probe at constant velocity v, damping b",
+           "difference of the damping force from b v at most 1e-09 N", an_irregular_clock},
+          proved_elsewhere("A clock that stops or runs backwards", "the tick counts as zero seconds", "Tick.TimeThatRunsBackCountsAsNone"),
+          proved_elsewhere("Late or missing ticks", "the force is held for five ticks, then ramped to zero",
                            "ForceLimiter.LateTicksHoldThenRampOutLinearlyIn20ms"),
-          {"ThePassiveLimitAtAnyRate", "Springs on either side of 2 b / T at 100 Hz to 20 kHz, let go from rest",
-           "at 0.99 of it a spring gives back, of what it had, at most 1; at 1.01 of it more than it had at every rate",
+          {"ThePassiveLimitAtAnyRate", "Springs just below and above the limit 2 b / T at 100 Hz to 20 kHz, released from rest",
+           "at 0.99 of the limit, returned per stored energy at most 1; at 1.01 of it, more than was stored at every rate",
            the_passive_limit_at_any_rate},
-          proved_elsewhere("The largest stable spring at 1 kHz, without and with a sample of delay", "that of the linear theory to 0.1 %",
-                           "ClosedLoopTest.TheLargestStableStiffnessIsTheOneOfTheTable"),
-          proved_elsewhere("Springs of 1.1 to 10 times the limit, with the passivity controller",
-                           "no more than they had, and they die away", "ClosedLoopTest.AboveTheLimitTheControllerKeepsThePeace"),
+          proved_elsewhere("The largest stable stiffness at 1 kHz, without and with a delay of one sample",
+                           "equal to linear theory within 0.1 %", "ClosedLoopTest.TheLargestStableStiffnessIsTheOneOfTheTable"),
+          proved_elsewhere("Stiffness 1.1 to 10 times the limit, with the passivity controller",
+                           "no energy is gained, and the motion dies out", "ClosedLoopTest.AboveTheLimitTheControllerKeepsThePeace"),
           {"FarPastTheLimit",
-           "Springs of 10, 100 and 1000 times the limit at 1 and 10 kHz in a hand, with the device's limits and the controller",
+           "Stiffness 10, 100 and 1000 times the limit at 1 and 10 kHz, with a simulated hand, the device's limits and the controller",
            "forces and energies are finite; force above 10 N by at most 1e-10 N; a second later the grip's kinetic energy is at most 0.015 "
            "J",
            far_past_the_limit},
           {"FarPastTheLimitAt100Hz", "The same at 100 Hz",
            "forces and energies are finite; force above 10 N by at most 1e-10 N; a second later the grip's kinetic energy is at most 0.1 J",
            far_past_the_limit_at_100_hz,
-           "At most 0.015 J, as at higher rates. The controller adds no more damping than m / (4 T), which is too little there. Only who "
-           "states a stiffness_cap of his own meets it: the default is the safe stiffness"},
-          {"NoSpring", "A stiffness of 0", "no force in every one; the proxies of a spring of 500 N/m in every one", no_spring},
-          {"SpringsBeyondEverything", "Stiffnesses of 1e6, 1e12 and 1e30 N/m without a device's limit",
-           "proxies, force and energies are finite, and the force is at most 8 N in every one", springs_beyond_everything},
+           "At most 0.015 J, as at higher rates. The controller adds at most m / (4 T) of damping, which is too little at 100 Hz. It "
+           "occurs only with a `stiffness_cap` above the default, which is the safe stiffness"},
+          {"NoSpring", "Stiffness 0", "no force in every case; the same proxies as with 500 N/m in every case", no_spring},
+          {"SpringsBeyondEverything", "Stiffness 1e6, 1e12 and 1e30 N/m without a device limit",
+           "proxies, force and energies are finite, and the force is at most 8 N in every case", springs_beyond_everything},
       }};
 }
 

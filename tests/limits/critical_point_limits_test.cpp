@@ -32,7 +32,7 @@ std::string over_a_zero(Velocity velocity, const Vec3& seed, Distance off = from
   double missed = 0;
   if (curve->first_end() == flow::Termination::critical) missed = std::max(missed, off(curve->knots().front().p));
   if (curve->last_end() == flow::Termination::critical) missed = std::max(missed, off(curve->knots().back().p));
-  found.at_most("CRITICAL ends off the zero", missed / 4, bounds.zero, "L");
+  found.at_most("distance of CRITICAL ends from the zero", missed / 4, bounds.zero, "L");
 
   const flow::NearestOnCurve nearest(curve);
   Rig rigs[] = {make_online_rig(field, seed), Rig(haptics::make_selected_streamline(curve))};
@@ -49,8 +49,8 @@ std::string over_a_zero(Velocity velocity, const Vec3& seed, Distance off = from
       if (is_finite(rig.state.proxy)) beside = std::max(beside, std::sqrt(nearest.find(rig.state.proxy).distance2));
     }
   }
-  return found.all("under the hand OK, CRITICAL or BUDGET within 257 fetches", good, ticks)
-      .at_most("online off the traced line", beside / 4, bounds.online, "L");
+  return found.all("links OK, CRITICAL or BUDGET within 257 fetches", good, ticks)
+      .at_most("distance of the proxy from the traced line", beside / 4, bounds.online, "L");
 }
 
 std::string attracting_spiral() {
@@ -96,42 +96,44 @@ std::string dipole() {
 Group critical_rows() {
   using namespace critical_test;
   const std::string under =
-      "; under the hand OK, CRITICAL or BUDGET within 257 fetches in every one; online off the traced line at most 1e-06 L";
-  const auto zero = [&](const char* ends) { return ends + std::string("; CRITICAL ends off the zero at most 1e-06 L") + under; };
-  const std::string wide = "; under the hand OK, CRITICAL or BUDGET within 257 fetches in every one; online off the traced line at most ";
+      "; links OK, CRITICAL or BUDGET within 257 fetches in every case; distance of the proxy from the traced line at most 1e-06 L";
+  const auto zero = [&](const char* ends) {
+    return ends + std::string("; distance of CRITICAL ends from the zero at most 1e-06 L") + under;
+  };
+  const std::string wide =
+      "; links OK, CRITICAL or BUDGET within 257 fetches in every case; distance of the proxy from the traced line at most ";
   const std::string parted =
-      "Online at most 1e-06 L off: a hand that comes back from the node leaves it by another line, for there lines lie nearer together "
-      "than a step's tolerance. A line that is traced once (`selected`) keeps its way";
-  return {
-      "Critical points",
-      {
-          proved_elsewhere("Nodes (attracting, repelling, star), saddles on their straight ways, a zero of third order",
-                           "held within 1e-6 L of the zero in 6 ticks, CRITICAL; let go when the hand turns back",
-                           "CriticalPoints.StraightWaysStopOnTheZeroAndLetGo"),
-          proved_elsewhere("A saddle's curved ways", "reached within 1e-4 L when the hand drags along them",
-                           "CriticalPoints.CurvedManifoldsAreReachedWhenDragged"),
-          {"AttractingSpiral", "A hand over an attracting spiral, three radians a unit", zero("from LENGTH to CRITICAL"),
-           attracting_spiral},
-          {"RepellingSpiral", "Over a repelling spiral", zero("from CRITICAL to LENGTH"), repelling_spiral},
-          {"SpiralSaddle", "Over a spiral saddle, in the plane of its spirals", zero("from LENGTH to CRITICAL"), spiral_saddle},
-          {"BesideASpiralSaddle", "The same 0.01 beside that plane: the line passes by", zero("from LENGTH to LENGTH"),
-           beside_a_spiral_saddle},
-          {"ImproperNode", "Over a node with one direction only",
-           "from LENGTH to CRITICAL; CRITICAL ends off the zero at most 1e-06 L" + wide + "0.01 L", improper_node, parted},
-          {"WeakSpiral", "Over a spiral that is a centre but for 0.1 %", zero("from LENGTH to LENGTH"), weak_spiral},
-          {"Centre", "Over a centre of ellipses", zero("from LAP to LAP"), centre},
-          {"LineOfZeros", "Over a line of zeros", "from LENGTH to CRITICAL; CRITICAL ends off the zero at most 1e-06 L" + wide + "0.01 L",
-           line_of_zeros, parted},
-          {"PlaneOfZeros", "Over a plane of zeros", zero("from CRITICAL to LENGTH"), plane_of_zeros},
-          {"CubicZero", "Over a zero that is of third order along one axis",
-           "from LENGTH to CRITICAL; CRITICAL ends off the zero at most 0.001 L" + wide + "0.2 L", cubic_zero,
-           "At most 1e-06 L, both. The line comes in along a way beside which the flow is 1e6 times as fast: the tolerance of a step turns "
-           "it before the zero, and a hand that goes back is thrown off it"},
-          {"MonkeySaddle", "Straight over a saddle of index -2", zero("from LENGTH to LENGTH"), monkey_saddle,
-           "From LENGTH to CRITICAL: the velocity vanishes on the way, but has the same direction on both sides, so that the march does "
-           "not see it"},
-          {"Dipole", "Over a dipole (index 2), whose lines are circles through the zero", zero("from CRITICAL to CRITICAL"), dipole},
-      }};
+      "At most 1e-06 L. An online streamline leaves the zero along another line when the probe returns, because lines near the zero are "
+      "closer than the tolerance of a step. A `selected` streamline is not affected";
+  return {"Critical points",
+          {
+              proved_elsewhere("Attracting, repelling and star nodes, the straight separatrices of saddles, a zero of third order",
+                               "held within 1e-6 L of the zero within 6 ticks, CRITICAL; released when the probe turns back",
+                               "CriticalPoints.StraightWaysStopOnTheZeroAndLetGo"),
+              proved_elsewhere("The curved separatrices of a saddle", "the proxy reaches the zero within 1e-4 L",
+                               "CriticalPoints.CurvedManifoldsAreReachedWhenDragged"),
+              {"AttractingSpiral", "Probe moves across an attracting spiral (3 radians per unit)", zero("from LENGTH to CRITICAL"),
+               attracting_spiral},
+              {"RepellingSpiral", "Repelling spiral", zero("from CRITICAL to LENGTH"), repelling_spiral},
+              {"SpiralSaddle", "Spiral saddle, in the plane of its spirals", zero("from LENGTH to CRITICAL"), spiral_saddle},
+              {"BesideASpiralSaddle", "The same, 0.01 beside that plane: the line passes the saddle", zero("from LENGTH to LENGTH"),
+               beside_a_spiral_saddle},
+              {"ImproperNode", "Improper node (one eigenvector)",
+               "from LENGTH to CRITICAL; distance of CRITICAL ends from the zero at most 1e-06 L" + wide + "0.01 L", improper_node, parted},
+              {"WeakSpiral", "Weak spiral: a centre with 0.1 % of attraction", zero("from LENGTH to LENGTH"), weak_spiral},
+              {"Centre", "Centre with elliptic orbits", zero("from LAP to LAP"), centre},
+              {"LineOfZeros", "Line of zeros",
+               "from LENGTH to CRITICAL; distance of CRITICAL ends from the zero at most 1e-06 L" + wide + "0.01 L", line_of_zeros, parted},
+              {"PlaneOfZeros", "Plane of zeros", zero("from CRITICAL to LENGTH"), plane_of_zeros},
+              {"CubicZero", "Zero of third order along one axis",
+               "from LENGTH to CRITICAL; distance of CRITICAL ends from the zero at most 0.001 L" + wide + "0.2 L", cubic_zero,
+               "At most 1e-06 L, both. Beside the line that enters the zero the flow is 1e6 times as fast: the tolerance of a step turns "
+               "the line before the zero, and a proxy that returns leaves its line"},
+              {"MonkeySaddle", "Monkey saddle (index -2), straight across", zero("from LENGTH to LENGTH"), monkey_saddle,
+               "From LENGTH to CRITICAL. The velocity vanishes on the line but has the same direction on both sides, so the integrator "
+               "does not detect the zero"},
+              {"Dipole", "Dipole (index 2): its streamlines are circles through the zero", zero("from CRITICAL to CRITICAL"), dipole},
+          }};
 }
 
 }  // namespace catena::extremes

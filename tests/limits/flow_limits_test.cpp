@@ -32,7 +32,7 @@ std::string onto_a_limit_cycle() {
     found.add(stop_names(**curve));
     off = std::max(off, off_the_cycle((*curve)->knots().back().p));
   }
-  return found.at_most("the last place off the cycle", off / 4, 1e-9, "L");
+  return found.at_most("distance of the end from the cycle", off / 4, 1e-9, "L");
 }
 
 std::string along_a_limit_cycle(Velocity velocity, double felt_bound) {
@@ -49,8 +49,8 @@ std::string along_a_limit_cycle(Velocity velocity, double felt_bound) {
   }
   return Findings()
       .add(stop_names(**curve))
-      .at_most("off the cycle", off / 4, 1e-7, "L")
-      .at_most("a hand that goes round it three times, off the closest place", felt / 4, felt_bound, "L");
+      .at_most("distance from the cycle", off / 4, 1e-7, "L")
+      .at_most("distance of the proxy from the closest point in three laps", felt / 4, felt_bound, "L");
 }
 std::string along_an_attracting_cycle() { return along_a_limit_cycle(cycle, 1e-7); }
 std::string along_a_repelling_cycle() { return along_a_limit_cycle(repelling_cycle, 1e-6); }
@@ -73,8 +73,8 @@ std::string across_a_jump(double degrees) {
   Rig rig = make_online_rig(field, seed);
   for (int i = 0; i <= 300; ++i) rig.tick(passes ? on(0.005 * i) : Vec3(0.005 * i - 0.7, 0, 0));
   felt = norm(rig.state.proxy - on(1.5));
-  return found.at_most("off the closed form", off / 4, 1e-6, "L")
-      .at_most("under a hand that goes along it", felt / 4, 1e-6, "L")
+  return found.at_most("distance from the closed form", off / 4, 1e-6, "L")
+      .at_most("distance of the proxy from the end", felt / 4, 1e-6, "L")
       .add(to_string(rig.state.status));
 }
 std::string a_kink() { return across_a_jump(45); }
@@ -88,7 +88,9 @@ std::string steep_walls_of_a_grid() {
   });
   const auto curve = flow::trace({grid.get()}, {-1.5, 0.53, 0.1});
   if (!curve) return curve.error().message;
-  return Findings().add(stop_names(**curve)).at_most("its end off the sheet", std::fabs((*curve)->knots().back().p.y) / 4, 1e-9, "L");
+  return Findings()
+      .add(stop_names(**curve))
+      .at_most("distance of its end from the sheet", std::fabs((*curve)->knots().back().p.y) / 4, 1e-9, "L");
 }
 
 // ---- ways out ----
@@ -99,7 +101,7 @@ std::string out_through_a_corner() {
   const auto curve = flow::trace({grid.get()}, {0.3, 0.3, 0.3});
   if (!curve) return curve.error().message;
   const double off = std::max(norm((*curve)->knots().back().p - Vec3(2.0)), norm((*curve)->knots().front().p - Vec3(-2.0)));
-  return Findings().add(stop_names(**curve)).at_most("off the corners", off / 4, 1e-12, "L");
+  return Findings().add(stop_names(**curve)).at_most("distance from the corners", off / 4, 1e-12, "L");
 }
 
 std::string out_and_back_at_ten_metres_a_second() {
@@ -123,8 +125,8 @@ std::string out_and_back_at_ten_metres_a_second() {
   }
   return Findings()
       .all("BOUNDARY with BOX outside, OK again inside,", right, asked)
-      .at_most("off the wall", off / 4, 1e-8, "L")
-      .at_most("off its place when it is back", back / 4, 1e-8, "L");
+      .at_most("distance from the boundary", off / 4, 1e-8, "L")
+      .at_most("distance from the seed after the return", back / 4, 1e-8, "L");
 }
 
 }  // namespace flow_test
@@ -132,38 +134,43 @@ std::string out_and_back_at_ten_metres_a_second() {
 Group flow_rows() {
   using namespace flow_test;
   return {
-      "The flow",
+      "Flow",
       {
-          {"OntoALimitCycle", "Lines onto an attracting limit cycle, from within and from beside it",
-           "from CRITICAL to LENGTH; from LENGTH to LENGTH; the last place off the cycle at most 1e-09 L", onto_a_limit_cycle},
-          {"AlongAnAttractingCycle", "A line on that cycle",
-           "from LAP to LAP; off the cycle at most 1e-07 L; a hand that goes round it three times, off the closest place at most 1e-07 L",
+          {"OntoALimitCycle", "Streamlines onto an attracting limit cycle, from inside and from beside it",
+           "from CRITICAL to LENGTH; from LENGTH to LENGTH; distance of the end from the cycle at most 1e-09 L", onto_a_limit_cycle},
+          {"AlongAnAttractingCycle", "Streamline on that cycle",
+           "from LAP to LAP; distance from the cycle at most 1e-07 L; distance of the proxy from the closest point in three laps at "
+           "most 1e-07 L",
            along_an_attracting_cycle},
-          {"AlongARepellingCycle", "A line on a repelling one, where errors grow 2.9e5 times in a lap",
-           "from LAP to LAP; off the cycle at most 1e-07 L; a hand that goes round it three times, off the closest place at most 1e-06 L",
+          {"AlongARepellingCycle", "Streamline on a repelling limit cycle, where errors grow 2.9e5 times per lap",
+           "from LAP to LAP; distance from the cycle at most 1e-07 L; distance of the proxy from the closest point in three laps at "
+           "most 1e-06 L",
            along_a_repelling_cycle,
-           "The hand at most 1e-07 L off too. A lap closes over a gap of at most 1e-7 L, which lies in its last piece and turns it"},
-          {"AKink", "A velocity that jumps by 45 degrees across a plane",
-           "from LENGTH to LENGTH; off the closed form at most 1e-06 L; under a hand that goes along it at most 1e-06 L; OK", a_kink},
-          {"ASharpTurn", "One that jumps by 120 degrees: the flow there comes back to the plane",
-           "from LENGTH to CRITICAL; off the closed form at most 1e-06 L; under a hand that goes along it at most 1e-06 L; CRITICAL",
+           "At most 1e-07 L for the proxy, too. A lap closes over a gap of at most 1e-7 L in its last piece, which turns that piece"},
+          {"AKink", "Velocity turns by 45 degrees at a plane",
+           "from LENGTH to LENGTH; distance from the closed form at most 1e-06 L; distance of the proxy from the end at most 1e-06 L; OK",
+           a_kink},
+          {"ASharpTurn", "Velocity turns by 120 degrees: the flow returns to the plane",
+           "from LENGTH to CRITICAL; distance from the closed form at most 1e-06 L; distance of the proxy from the end at most 1e-06 L; "
+           "CRITICAL",
            a_sharp_turn},
-          {"HeadOn", "One that turns round",
-           "from LENGTH to CRITICAL; off the closed form at most 1e-06 L; under a hand that goes along it at most 1e-06 L; CRITICAL",
+          {"HeadOn", "Velocity reverses",
+           "from LENGTH to CRITICAL; distance from the closed form at most 1e-06 L; distance of the proxy from the end at most 1e-06 L; "
+           "CRITICAL",
            head_on},
-          {"SteepWallsOfAGrid", "A grid whose flow turns towards a sheet within one voxel on both sides",
-           "from BOUNDARY to BOUNDARY; its end off the sheet at most 1e-09 L", steep_walls_of_a_grid},
-          {"OutThroughACorner", "A line through two corners of its grid", "from BOUNDARY to BOUNDARY; off the corners at most 1e-12 L",
-           out_through_a_corner},
-          {"OutAndBackAtTenMetresASecond", "A hand along a line out of the grid, in mid-step, at 0.2 units a tick, and back",
-           "BOUNDARY with BOX outside, OK again inside, in every one; off the wall at most 1e-08 L; off its place when it is back at most "
-           "1e-08 L",
+          {"SteepWallsOfAGrid", "Grid whose flow turns towards a sheet within one voxel on both sides",
+           "from BOUNDARY to BOUNDARY; distance of its end from the sheet at most 1e-09 L", steep_walls_of_a_grid},
+          {"OutThroughACorner", "Streamline through two corners of its grid",
+           "from BOUNDARY to BOUNDARY; distance from the corners at most 1e-12 L", out_through_a_corner},
+          {"OutAndBackAtTenMetresASecond", "Probe follows a streamline out of the grid and back at 0.2 units a tick",
+           "BOUNDARY with BOX outside, OK again inside, in every case; distance from the boundary at most 1e-08 L; distance from the "
+           "seed after the return at most 1e-08 L",
            out_and_back_at_ten_metres_a_second},
-          proved_elsewhere("A Runge-Kutta stage that lies beyond the wall while the line does not", "the line is that of the grid",
+          proved_elsewhere("A Runge-Kutta stage outside the domain while the line is inside", "the line equals that of the grid",
                            "GridBoundary.AStageBeyondTheWallIsNotTheLineBeyondIt"),
-          proved_elsewhere("A NaN on the way of a line", "the line ends before it, BOUNDARY, and the hand comes back",
+          proved_elsewhere("NaN on the path of a streamline", "the line ends before it, BOUNDARY; the proxy follows the probe back",
                            "NanRegion.AStreamlineEndsBeforeItAndComesBack"),
-          proved_elsewhere("The same on a surface", "it is a wall", "NanRegion.AnIsosurfaceHasAWallThere"),
+          proved_elsewhere("NaN on an isosurface", "the proxy stops there", "NanRegion.AnIsosurfaceHasAWallThere"),
       }};
 }
 

@@ -72,7 +72,7 @@ std::string same_proxies(const std::vector<std::string>& links, const std::vecto
       }
     }
   }
-  return Findings().at_most("proxies off those at the origin by", off, bound, "L").all("the same status", same, asked);
+  return Findings().at_most("distance of the proxies from those at the origin", off, bound, "L").all("the same status", same, asked);
 }
 
 std::string voxels_of_any_size() {
@@ -110,7 +110,7 @@ std::string voxels_a_thousand_times_as_long() {
   }
   return Findings()
       .all("OK", ok, kTicks)
-      .at_most("proxies off the closest place by", off, 1e-9, "of the shortest edge of the domain's 0.03");
+      .at_most("distance of the proxies from the closest point", off, 1e-9, "of the domain's shortest edge, 0.03");
 }
 
 /// Sampled spheres whose values are s times as large, exactly.
@@ -131,7 +131,7 @@ std::string values_of_any_size() {
     const auto scaled = proxies(s);
     for (std::size_t i = 0; i < plain.size(); ++i) off = std::max(off, norm(scaled[i] - plain[i]) / 4);
   }
-  return Findings().at_most("proxies off those of values about 1 by", off, 1e-9, "L");
+  return Findings().at_most("distance of the proxies from those for values near 1", off, 1e-9, "L");
 }
 
 // ---- grids with little or nothing in them ----
@@ -163,8 +163,8 @@ std::string on_surface(const std::function<double(const Vec3&)>& value, double l
     still += haptics::bitwise_equal(before, rig.state.proxy);
   }
   Findings found;
-  found.all("finite and within the work of a tick", bounded, ticks).all("still under a still probe", still, rests);
-  return found.add(nothing == ticks ? "the hand passes to the bit, NO_SURFACE, or BUDGET while it looks for one"
+  found.all("finite and within the work of a tick", bounded, ticks).all("at rest under a probe at rest", still, rests);
+  return found.add(nothing == ticks ? "the probe passes unchanged: NO_SURFACE, or BUDGET during the search"
                    : nothing == 0   ? "held always"
                                     : "held at times");
 }
@@ -200,47 +200,51 @@ std::string lines_without_a_whole_cell() {
 Group world_rows() {
   using namespace world_test;
   return {
-      "The world under the hand",
+      "Fields under the probe",
       {
-          {"VoxelsOfAnySize", "Lines, traced and online, and a surface of grids with voxels of 1e-100 to 1e100, beside those of 0.125",
-           "proxies off those at the origin by at most 1e-09 L; the same status in every one", voxels_of_any_size},
-          {"SurfaceFarFromTheOrigin", "A surface of a grid 1e7 voxels away from the origin, along one axis and all",
-           "proxies off those at the origin by at most 1e-09 L; the same status in every one", surface_far_from_the_origin},
-          {"OnlineLineFarFromTheOrigin", "A line of such a grid, integrated in every tick",
-           "proxies off those at the origin by at most 1e-08 L; the same status in every one", online_line_far_from_the_origin,
-           "At most 1e-09 L. The proxy is rounded to its world coordinates in every step, which adds up along the line"},
-          {"SelectedLineFarFromTheOrigin", "A line of such a grid, traced once",
-           "proxies off those at the origin by at most 1e-09 L; the same status in every one", selected_line_far_from_the_origin},
-          {"VoxelsAThousandTimesAsLong", "A surface across voxels with edges of 1:1:1024",
-           "OK in every one; proxies off the closest place by at most 1e-09 of the shortest edge of the domain's 0.03",
+          {"VoxelsOfAnySize",
+           "Streamlines (selected and online) and an isosurface of grids with voxels of 1e-100 to 1e100, compared with voxels of 0.125",
+           "distance of the proxies from those at the origin at most 1e-09 L; the same status in every case", voxels_of_any_size},
+          {"SurfaceFarFromTheOrigin", "Isosurface of a grid 1e7 voxels from the origin, along one axis and along all",
+           "distance of the proxies from those at the origin at most 1e-09 L; the same status in every case", surface_far_from_the_origin},
+          {"OnlineLineFarFromTheOrigin", "Online streamline of such a grid",
+           "distance of the proxies from those at the origin at most 1e-08 L; the same status in every case",
+           online_line_far_from_the_origin,
+           "At most 1e-09 L. Every step rounds the proxy to world coordinates, and the errors add up along the line"},
+          {"SelectedLineFarFromTheOrigin", "Selected streamline of such a grid",
+           "distance of the proxies from those at the origin at most 1e-09 L; the same status in every case",
+           selected_line_far_from_the_origin},
+          {"VoxelsAThousandTimesAsLong", "Isosurface of a grid with voxel edges of 1:1:1024",
+           "OK in every case; distance of the proxies from the closest point at most 1e-09 of the domain's shortest edge, 0.03",
            voxels_a_thousand_times_as_long},
-          {"ValuesOfAnySize", "A surface of a grid whose values are denormal floats, down to 2^-149, and up to 2^127",
-           "proxies off those of values about 1 by at most 1e-09 L", values_of_any_size},
-          {"OnACheckerboard", "A hand that walks, jumps and rests on a checkerboard of 1 and -1, at the level 1/4",
-           "finite and within the work of a tick in every one; still under a still probe in every one; held always", on_a_checkerboard},
-          {"OnAConstant", "On a grid of one value, at that value",
-           "finite and within the work of a tick in every one; still under a still probe in every one; the hand passes to the bit, "
-           "NO_SURFACE, or BUDGET while it looks for one",
+          {"ValuesOfAnySize", "Isosurface of a grid with values from denormal floats (2^-149) to 2^127",
+           "distance of the proxies from those for values near 1 at most 1e-09 L", values_of_any_size},
+          {"OnACheckerboard", "Probe moves, jumps and rests on a checkerboard of 1 and -1, level 1/4",
+           "finite and within the work of a tick in every case; at rest under a probe at rest in every case; held always",
+           on_a_checkerboard},
+          {"OnAConstant", "The same on a constant grid, at its value",
+           "finite and within the work of a tick in every case; at rest under a probe at rest in every case; the probe passes unchanged: "
+           "NO_SURFACE, or BUDGET during the search",
            on_a_constant},
-          {"WithoutAWholeCell", "On a grid whose every second voxel is NaN",
-           "finite and within the work of a tick in every one; still under a still probe in every one; the hand passes to the bit, "
-           "NO_SURFACE, or BUDGET while it looks for one",
+          {"WithoutAWholeCell", "The same on a grid with NaN in every second voxel",
+           "finite and within the work of a tick in every case; at rest under a probe at rest in every case; the probe passes unchanged: "
+           "NO_SURFACE, or BUDGET during the search",
            without_a_whole_cell},
-          proved_elsewhere("Voxels that are NaN or infinite, at random, under a surface", "nothing of them comes out",
+          proved_elsewhere("Random NaN or infinite voxels in the grid of an isosurface", "all output is finite",
                            "IsosurfaceSemantics.BrokenVoxelsNeverComeOut"),
-          proved_elsewhere("A grid of one layer", "its surface is a curve", "IsosurfaceSemantics.ASliceHasACurve"),
-          {"LinesOfNothing", "Lines of a grid of zeros",
+          proved_elsewhere("Isosurface of a grid with one layer", "it is a curve", "IsosurfaceSemantics.ASliceHasACurve"),
+          {"LinesOfNothing", "Streamlines of a grid of zeros",
            "traced: seed (0.1, 0.2, 0.3): field 'test' is zero there, so no line passes through it; online: CRITICAL, ZERO",
            lines_of_nothing},
-          {"LinesWithoutAWholeCell", "Lines of a grid whose every second voxel is NaN",
+          {"LinesWithoutAWholeCell", "Streamlines of a grid with NaN in every second voxel",
            "traced: seed (0.1, 0.2, 0.3) lies outside the domain of field 'test' (its box goes from (-2, -2, -2) to (2, 2, 2); masked and "
            "non-finite cells do not count); online: BOUNDARY, NOT_FINITE",
            lines_without_a_whole_cell},
-          proved_elsewhere("A formula's line whose velocities are 1e-300 to 1e300", "the same proxies to 1e-9",
+          proved_elsewhere("Streamline of an analytic field with velocities of 1e-300 to 1e300", "the same proxies to 1e-9",
                            "FieldScaleAndBadValues.TheSameStreamlineProxiesAtAnyScaleOfTheField"),
-          proved_elsewhere("A formula's surface whose values are 1e-300 to 1e300", "the same proxies to 1e-9",
+          proved_elsewhere("Isosurface of an analytic field with values of 1e-300 to 1e300", "the same proxies to 1e-9",
                            "FieldScaleAndBadValues.TheSameSurfaceProxiesAtAnyScaleOfTheField"),
-          proved_elsewhere("Spheres of 1e-300 to 1e300, and probes as far away", "the closest place to round-off",
+          proved_elsewhere("Sphere links with radii of 1e-300 to 1e300, and probes as far away", "the closest point, to round-off",
                            "Sphere.FarAndTinyProbesAndRadii"),
           proved_elsewhere("Meshes of any size", "the same as of size 1", "Mesh.HugeAndTinyMeshesBehaveTheSame"),
       }};

@@ -59,8 +59,8 @@ std::string same_pictures(const std::vector<World>& worlds, int more, double bou
     if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
   }
   return Findings()
-      .add(count_covered(plain) > 500 ? "something is seen" : "nothing is seen")
-      .at_most(fmt::format("pixels that differ by more than {}/255", more), most, bound);
+      .add(count_covered(plain) > 500 ? "visible" : "empty image")
+      .at_most(fmt::format("fraction of pixels that differ by more than {}/255", more), most, bound);
 }
 
 std::string voxels_of_any_size() { return same_pictures({{1e-9}, {1e-3}, {1e3}, {1e9}}, 2, 0.002); }
@@ -90,8 +90,8 @@ std::string voxels_a_thousand_times_as_long() {
   const Image8 sticks = draw({1025, 33, 2});
   if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
   return Findings()
-      .add(count_covered(cubes) > 500 ? "something is seen" : "nothing is seen")
-      .at_most("pixels that differ by more than 4/255", count_differing(cubes, sticks, 4), 0.01);
+      .add(count_covered(cubes) > 500 ? "visible" : "empty image")
+      .at_most("fraction of pixels that differ by more than 4/255", count_differing(cubes, sticks, 4), 0.01);
 }
 
 // ---- grids with little or nothing in them ----
@@ -107,7 +107,7 @@ Image8 grid_of(const std::array<int, 3>& n, const std::function<double(int, int,
 
 std::string seen(const Image8& picture) {
   if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
-  return count_covered(picture) > 0 ? "something is seen" : "nothing is seen";
+  return count_covered(picture) > 0 ? "visible" : "empty image";
 }
 
 constexpr const char* kAll =
@@ -187,34 +187,33 @@ std::string beyond_floats() {
 
 Group grid_rendering_rows() {
   using namespace eye_test;
-  return {"The world under the eye",
-          {
-              {"PicturesOfVoxelsOfAnySize",
-               "A volume, a surface, a slice, a line and a box of grids with voxels of 1e-9 to 1e9, beside those of 1/16",
-               "something is seen; pixels that differ by more than 2/255 at most 0.002", voxels_of_any_size},
-              {"PicturesFarFromTheOrigin", "The same 1e7 voxels away from the origin, along one axis and all: 24/255 is a tenth of a pixel",
-               "something is seen; pixels that differ by more than 24/255 at most 0.002", far_from_the_origin},
-              {"PicturesOfVoxelsAThousandTimesAsLong", "A linear field on voxels of 1:32:1024, beside cubes",
-               "something is seen; pixels that differ by more than 4/255 at most 0.01", voxels_a_thousand_times_as_long},
-              {"PicturesOfValuesOfAnySize", "The same scene with values of 1e-29 and 1e29",
-               "something is seen; pixels that differ by more than 2/255 at most 0.002", values_of_any_size},
-              {"AllNan", "A grid of NaN", "s.json:1: field \"s\": s.raw: the data has no finite value in any active voxel", all_nan},
-              {"EverySecondNan", "A grid whose every second voxel is NaN: no cell is whole", "nothing is seen", every_second_nan},
-              proved_elsewhere("Holes of NaN in a volume", "cells that touch one are transparent", "Volume.NotANumberIsTransparent"),
-              {"Checkerboard", "A checkerboard of 1 and -1, and its level 0", "something is seen", checkerboard},
-              {"Constant", "A grid of one value, its surface at that value, its slice and its volume",
-               "its surface: nothing is seen; its slice: something is seen; its volume: something is seen", constant},
-              {"OneVoxel", "A .raw file of one voxel", "s.json:1: \"shape\" holds 1; three whole numbers from 2 to 65536 were expected",
-               one_voxel},
-              {"TwoVoxelsEachWay", "One cell", "something is seen", two_voxels_each_way},
-              {"FlatArrays", "Arrays of NumPy's of one voxel, and flat along one axis or two",
-               "1x1x1: something is seen; 1x1x5: something is seen; 1x5x1: something is seen; 5x1x1: something is seen; 1x5x5: something "
-               "is seen; 5x5x1: something is seen",
-               flat_arrays},
-              {"BeyondFloats", "Numbers of 64 bits that 32-bit floats do not hold",
-               "s.raw: values of type float64 are rounded to 32-bit floats; s.raw: 256 values are beyond 32-bit floats: they are holes",
-               beyond_floats},
-          }};
+  return {
+      "Rendered fields",
+      {
+          {"PicturesOfVoxelsOfAnySize",
+           "Volume, isosurface, slice, streamline and box of grids with voxels of 1e-9 to 1e9, compared with voxels of 1/16",
+           "visible; fraction of pixels that differ by more than 2/255 at most 0.002", voxels_of_any_size},
+          {"PicturesFarFromTheOrigin", "The same 1e7 voxels from the origin, along one axis and along all; 24/255 is a tenth of a pixel",
+           "visible; fraction of pixels that differ by more than 24/255 at most 0.002", far_from_the_origin},
+          {"PicturesOfVoxelsAThousandTimesAsLong", "A linear field on voxels of 1:32:1024, compared with cubes",
+           "visible; fraction of pixels that differ by more than 4/255 at most 0.01", voxels_a_thousand_times_as_long},
+          {"PicturesOfValuesOfAnySize", "The same scene with values of 1e-29 and 1e29",
+           "visible; fraction of pixels that differ by more than 2/255 at most 0.002", values_of_any_size},
+          {"AllNan", "A grid of NaN", "s.json:1: field \"s\": s.raw: the data has no finite value in any active voxel", all_nan},
+          {"EverySecondNan", "NaN in every second voxel: every cell has one", "empty image", every_second_nan},
+          proved_elsewhere("NaN holes in a volume", "cells that touch one are transparent", "Volume.NotANumberIsTransparent"),
+          {"Checkerboard", "Isosurface of a checkerboard of 1 and -1 at level 0", "visible", checkerboard},
+          {"Constant", "Isosurface, slice and volume of a constant grid, at its value",
+           "its surface: empty image; its slice: visible; its volume: visible", constant},
+          {"OneVoxel", "A .raw file of one voxel", "s.json:1: \"shape\" holds 1; three whole numbers from 2 to 65536 were expected",
+           one_voxel},
+          {"TwoVoxelsEachWay", "A grid of one cell", "visible", two_voxels_each_way},
+          {"FlatArrays", "NumPy arrays of one voxel, and flat along one or two axes",
+           "1x1x1: visible; 1x1x5: visible; 1x5x1: visible; 5x1x1: visible; 1x5x5: visible; 5x5x1: visible", flat_arrays},
+          {"BeyondFloats", "64-bit numbers beyond the range of 32-bit floats",
+           "s.raw: values of type float64 are rounded to 32-bit floats; s.raw: 256 values are beyond 32-bit floats: they are holes",
+           beyond_floats},
+      }};
 }
 
 }  // namespace catena::extremes

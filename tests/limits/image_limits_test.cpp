@@ -40,7 +40,7 @@ std::string any_field_of_view() {
     if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
     off = std::max(off, off_the_disk(picture, 0.5 * kSide * std::tan(std::asin(1 / distance)) / half));
   }
-  return Findings().at_most("pixels of the ball off those of the disk, of them,", off, 0.01);
+  return Findings().at_most("difference from the area of the disk", off, 0.01);
 }
 
 std::string any_size() {
@@ -56,7 +56,7 @@ std::string any_size() {
     if (picture.width != size.width || picture.height != size.height) found.add("a picture of another size");
     off = std::max(off, off_the_disk(picture, 0.25 * size.height));
   }
-  return found.at_most("pixels of the ball off those of the disk, of them,", off, 0.01);
+  return found.at_most("difference from the area of the disk", off, 0.01);
 }
 
 std::string any_height_of_an_orthographic_picture() {
@@ -77,7 +77,7 @@ std::string any_height_of_an_orthographic_picture() {
 std::string as_far_away_as_can_be() {
   const Image8 picture = ball(R"("position": [0, -1e15, 0], "target": [0, 0, 0], "fovy_deg": 0.001)", 32, 24);
   if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
-  return count_covered(picture) == 0 ? "nothing is seen" : "something is seen";
+  return count_covered(picture) == 0 ? "empty image" : "visible";
 }
 
 std::string on_the_target() {
@@ -94,9 +94,9 @@ std::string in_the_plane_of_a_slice() {
     if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
     most = std::max(most, count_covered(picture));
   }
-  found.at_most("pixels of it that are seen", most, 0);
+  found.at_most("visible pixels", most, 0);
   const Image8 above = ball(from({0, -1, 1e-3}, 60), 64, 48, slice);
-  return found.add(count_covered(above) > 300 ? "from 0.001 above it is seen" : "from 0.001 above it is not seen");
+  return found.add(count_covered(above) > 300 ? "from 0.001 above, it is visible" : "from 0.001 above, it is not visible");
 }
 
 // ---- lines ----
@@ -114,7 +114,7 @@ std::string lines(const std::string& seeds, const std::string& more = {}) {
   const Outcome drawn = TestRenderer::instance().renderer->draw(*packet);
   if (!drawn) return drawn.error().message;
   const auto picture = TestRenderer::instance().renderer->read_back();
-  return fmt::format("{} lines, {}", packet->tubes.size(), picture && count_covered(*picture) > 100 ? "seen" : "not seen");
+  return fmt::format("{} lines, {}", packet->tubes.size(), picture && count_covered(*picture) > 100 ? "visible" : "not visible");
 }
 
 std::string no_lines() { return lines("[]"); }
@@ -129,28 +129,27 @@ std::string hundred_thousand_lines() {
 
 Group image_rows() {
   using namespace pictures_test;
-  return {
-      "Pictures",
-      {
-          {"AnyFieldOfView", "A ball under fields of view from 0.001 to 179 degrees, from as far as it needs",
-           "pixels of the ball off those of the disk, of them, at most 0.01", any_field_of_view},
-          {"AnySize", "Pictures of 1x1, 1x8192, 8192x1 and 3x1000 pixels",
-           "pixels of the ball off those of the disk, of them, at most 0.01", any_size},
-          {"AnyHeightOfAnOrthographicPicture", "Orthographic pictures of 1e-15, 1e-9 and 1e15 units",
-           "1e-15: the ball everywhere; 1e-9: the ball everywhere; 1e15: the ball is smaller than a pixel",
-           any_height_of_an_orthographic_picture},
-          {"AsFarAwayAsCanBe", "An eye 1e15 units away", "nothing is seen", as_far_away_as_can_be},
-          {"OnTheTarget", "An eye on its target",
-           "s.json:1: \"target\": the target is at the position, or too near to it; two different points were expected", on_the_target},
-          {"InThePlaneOfASlice", "An eye in the very plane of a slice, beside its field and within it",
-           "pixels of it that are seen at most 0; from 0.001 above it is seen", in_the_plane_of_a_slice},
-          {"NoLines", "No seeds", "s.json:2: \"seeds\" is missing or empty; at least one seed [x, y, z], or a pattern, was expected",
-           no_lines},
-          {"NoLinesOfAPattern", "A pattern of 0 seeds", "s.json:2: \"count\" is 0; a whole number from 1 to 100000 was expected",
-           no_lines_of_a_pattern},
-          {"TooManyLines", "One of 100001", "s.json:2: \"count\" is 100001; a whole number from 1 to 100000 was expected", too_many_lines},
-          {"HundredThousandLines", "One of 100000", "100000 lines, seen", hundred_thousand_lines},
-      }};
+  return {"Images",
+          {
+              {"AnyFieldOfView", "A sphere with fields of view of 0.001 to 179 degrees, from a matching distance",
+               "difference from the area of the disk at most 0.01", any_field_of_view},
+              {"AnySize", "Images of 1x1, 1x8192, 8192x1 and 3x1000 pixels", "difference from the area of the disk at most 0.01", any_size},
+              {"AnyHeightOfAnOrthographicPicture", "Orthographic images with heights of 1e-15, 1e-9 and 1e15 units",
+               "1e-15: the ball everywhere; 1e-9: the ball everywhere; 1e15: the ball is smaller than a pixel",
+               any_height_of_an_orthographic_picture},
+              {"AsFarAwayAsCanBe", "Camera 1e15 units away", "empty image", as_far_away_as_can_be},
+              {"OnTheTarget", "Camera at its target",
+               "s.json:1: \"target\": the target is at the position, or too near to it; two different points were expected", on_the_target},
+              {"InThePlaneOfASlice", "Camera in the plane of a slice, outside its field and inside",
+               "visible pixels at most 0; from 0.001 above, it is visible", in_the_plane_of_a_slice},
+              {"NoLines", "No seeds", "s.json:2: \"seeds\" is missing or empty; at least one seed [x, y, z], or a pattern, was expected",
+               no_lines},
+              {"NoLinesOfAPattern", "A pattern of 0 seeds", "s.json:2: \"count\" is 0; a whole number from 1 to 100000 was expected",
+               no_lines_of_a_pattern},
+              {"TooManyLines", "A pattern of 100001 seeds", "s.json:2: \"count\" is 100001; a whole number from 1 to 100000 was expected",
+               too_many_lines},
+              {"HundredThousandLines", "A pattern of 100000 seeds", "100000 lines, visible", hundred_thousand_lines},
+          }};
 }
 
 }  // namespace catena::extremes

@@ -52,7 +52,7 @@ class Findings {
   }
   /// "WHAT at most BOUND UNIT", or what it is instead: then the row fails, and its message has the figure.
   Findings& at_most(const std::string& what, double value, double bound, const std::string& unit = {});
-  /// "WHAT in every one", or how many of how many.
+  /// "WHAT in every case", or how many of how many.
   Findings& all(const std::string& what, long long count, long long of);
   const std::string& text() const { return text_; }
   operator std::string() const { return text_; }

@@ -18,7 +18,7 @@ Findings& Findings::at_most(const std::string& what, double value, double bound,
 }
 
 Findings& Findings::all(const std::string& what, long long count, long long of) {
-  return add(what + (count == of ? " in every one" : " in " + std::to_string(count) + " of " + std::to_string(of)));
+  return add(what + (count == of ? " in every case" : " in " + std::to_string(count) + " of " + std::to_string(of)));
 }
 
 namespace extremes_test {
@@ -50,22 +50,23 @@ TEST_P(LimitTable, Row) { EXPECT_EQ(said()[GetParam().name] = GetParam().run(), 
 
 INSTANTIATE_TEST_SUITE_P(Table, LimitTable, testing::ValuesIn(rows_to_run()), [](const auto& test) { return test.param.name; });
 
-constexpr const char* kBegin = R"(# Extremes
+constexpr const char* kBegin = R"(# Limits
 
-What happens at the ends of what can be asked. What a row expects is written before the row is run, and holds word for word in every run of
-the tests; numbers in it are bounds. Where something else happens, that stands here as a known defect, and the last table says what would be
-right.
+This page lists what Catena does with extreme input: values that are not finite, grids far from the origin, very large images. Every row
+is a test case of `tests/limits`. It states its result in advance, word for word; the numbers in it are bounds.
 
-`tests/limits` has the rows as data, beside the functions that run them, and `./run docs` writes this page from what they say. The name in
-the last column is that of the case, `build/release/test_limits --gtest_filter='*NAME*'`, or of a test elsewhere that proves it. L is the
-domain length.
+**Known defect** marks a result that is wrong, and the last table gives the correct one. The last column names the test:
+`build/release/test_limits --gtest_filter='*NAME*'` runs it. A name with a dot is a test of another program. `./run docs` writes this page.
+
+L is the domain length, the longest edge of the domain. Words in capitals are [statuses and reasons](chain.md#statuses). "From LENGTH to
+CRITICAL" states how a traced streamline ends upstream and downstream. "Visible" means that the image is not empty.
 )";
 
 /// The page, with what the rows said; where they have not run, what they are expected to say.
 std::string document() {
   std::string text = kBegin, defects;
   for (const Group& group : table()) {
-    text += "\n## " + group.title + "\n\n| what is asked | what happens | case |\n|---|---|---|\n";
+    text += "\n## " + group.title + "\n\n| input | result | test |\n|---|---|---|\n";
     for (const Row& row : group.rows) {
       const auto found = said().find(row.name);
       const std::string happens = row.run != nullptr && found != said().end() ? found->second : row.expected;
@@ -75,7 +76,7 @@ std::string document() {
     }
   }
   text += "\n## Known defects\n\n";
-  return text + (defects.empty() ? "None is known.\n" : "| case | what would be right |\n|---|---|\n" + defects);
+  return text + (defects.empty() ? "None is known.\n" : "| test | correct result |\n|---|---|\n" + defects);
 }
 
 const std::string& path() {

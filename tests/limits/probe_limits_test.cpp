@@ -47,8 +47,8 @@ std::string bad_probes_between_good_ones() {
     ++ticks;
   }
   return Findings()
-      .all("BAD_PROBE, NOT_FINITE, no force and every proxy kept to the bit", right, ticks)
-      .at_most("in the good ticks between, proxies of a hand without bad ones off by", off, 0, "L");
+      .all("BAD_PROBE, NOT_FINITE, no force, proxies unchanged", right, ticks)
+      .at_most("distance of the proxies in finite ticks from those of a path without bad ticks", off, 0, "L");
 }
 
 std::string thrown_to_the_end_of_numbers_and_back() {
@@ -63,7 +63,9 @@ std::string thrown_to_the_end_of_numbers_and_back() {
       for (int i = 0; i < 60; ++i) force = std::max(force, norm(thrown.step_to(home).force_n));
       for (std::size_t k = 0; k < 3; ++k) off = std::max(off, norm(still.proxy(k) - thrown.proxy(k)) / 4);
     }
-  return Findings().at_most("force above 8 N by", force - 8, 1e-11, "N").at_most("60 ms after it is back, proxies off by", off, 1e-9, "L");
+  return Findings()
+      .at_most("force above 8 N by", force - 8, 1e-11, "N")
+      .at_most("distance of the proxies from their positions 60 ms after the return", off, 1e-9, "L");
 }
 
 std::string ten_metres_a_second() {
@@ -84,7 +86,7 @@ std::string ten_metres_a_second() {
   }
   return Findings()
       .all("OK", ok, kTicks)
-      .at_most("proxies off the closed form by", off, 1e-9, "L")
+      .at_most("distance of the proxies from the closed form", off, 1e-9, "L")
       .at_most("force above 8 N by", force - 8, 1e-11, "N");
 }
 
@@ -139,7 +141,7 @@ std::string still_for_an_hour() {
   }
   return Findings()
       .at_most("ticks until the state repeats", rest, 100)
-      .all("every 360000 ticks the same bits,", same, ticks / 360'000)
+      .all("identical bits every 360000 ticks,", same, ticks / 360'000)
       .add(force > 1 ? "the force is still there" : "the force is gone");
 }
 
@@ -170,33 +172,32 @@ std::string every_link_comes_to_rest() {
 
 Group probe_rows() {
   using namespace hand_test;
-  return {"The hand",
+  return {"Probe and proxies",
           {
-              {"BadProbesBetweenGoodOnes", "A probe that is NaN or infinite in every second tick, on a line, a ball and a floor",
-               "BAD_PROBE, NOT_FINITE, no force and every proxy kept to the bit in every one; in the good ticks between, proxies of a hand "
-               "without bad ones off by at most 0 L",
+              {"BadProbesBetweenGoodOnes", "Probe NaN or infinite in every second tick; a streamline, an isosurface and a plane",
+               "BAD_PROBE, NOT_FINITE, no force, proxies unchanged in every case; distance of the proxies in finite ticks from those of a "
+               "path without bad ticks at most 0 L",
                bad_probes_between_good_ones},
-              proved_elsewhere("NaN, infinities, 1e300 and denormals at random, over every kind of link and chain, 1e7 ticks",
-                               "nothing that is not finite comes out, no force above its limit, no allocation",
-                               "Endurance.NothingBreaksInHostileTicks"),
-              {"ThrownToTheEndOfNumbersAndBack", "A probe that teleports 1e3 to 1.7e308 units away for 3 ticks, and back",
-               "force above 8 N by at most 1e-11 N; 60 ms after it is back, proxies off by at most 1e-09 L",
+              proved_elsewhere("Random NaN, infinity, 1e300 and denormal values, for every type of link and chain, 1e7 ticks",
+                               "all output is finite, no force exceeds its limit, no allocation", "Endurance.NothingBreaksInHostileTicks"),
+              {"ThrownToTheEndOfNumbersAndBack", "Probe jumps 1e3 to 1.7e308 units away for 3 ticks, and back",
+               "force above 8 N by at most 1e-11 N; distance of the proxies from their positions 60 ms after the return at most 1e-09 L",
                thrown_to_the_end_of_numbers_and_back},
-              proved_elsewhere("A probe that teleports about the domain in every tick, over every kind of link",
+              proved_elsewhere("Probe jumps across the domain in every tick, for every type of link",
                                "at most 257 fetches and 4096 units of work in every tick", "Conformance.WorkIsBoundedUnderTeleports"),
-              {"TenMetresASecond", "A hand that runs round a line and through a plane at 10 m/s (0.2 units a tick)",
-               "OK in every one; proxies off the closed form by at most 1e-09 L; force above 8 N by at most 1e-11 N", ten_metres_a_second},
-              proved_elsewhere("A hand that is so fast that it is beyond a thin sheet within one tick", "it is held on the near side",
+              {"TenMetresASecond", "Probe circles a streamline and crosses a plane at 10 m/s (0.2 units a tick)",
+               "OK in every case; distance of the proxies from the closed form at most 1e-09 L; force above 8 N by at most 1e-11 N",
+               ten_metres_a_second},
+              proved_elsewhere("Probe crosses a thin sheet within one tick", "the proxy stays on the near side",
                                "IsosurfaceSemantics.AFastHandDoesNotTunnelAThinSheet"),
-              proved_elsewhere("The same with triangles", "it is held on the near side", "Mesh.FastHandsDoNotTunnel"),
-              {"StillForAnHour", "A probe that is still for 3.6e6 ticks, on a line, a ball and a floor",
-               "ticks until the state repeats at most 100; every 360000 ticks the same bits, in every one; the force is still there",
+              proved_elsewhere("The same with triangles", "the proxy stays on the near side", "Mesh.FastHandsDoNotTunnel"),
+              {"StillForAnHour", "Probe at rest for 3.6e6 ticks; a streamline, an isosurface and a plane",
+               "ticks until the state repeats at most 100; identical bits every 360000 ticks, in every case; the force is still there",
                still_for_an_hour},
               {"EveryLinkComesToRest",
-               "A still probe at 8 places, on every kind of link in every example. State, probe and step make the next state: one that "
-               "repeats "
-               "once never changes again",
-               "the state repeats within 1 s in every one; with viscosity within a minute in every one", every_link_comes_to_rest},
+               "Probe at rest at 8 positions, for every type of link. The next state depends only on state, probe and time step: a state "
+               "that repeats once never changes again",
+               "the state repeats within 1 s in every case; with viscosity within a minute in every case", every_link_comes_to_rest},
           }};
 }
 

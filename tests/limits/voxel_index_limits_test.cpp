@@ -64,7 +64,7 @@ std::string under_the_hand(const std::string& link, double bound) {
     off = std::max(off, norm(rigs[0].proxy() - rigs[1].proxy()) / 4);
     same += rigs[0].status() == rigs[1].status();
   }
-  return Findings().at_most("proxies off those of indices from 0 by", off, bound, "L").all("the same status", same, kTicks);
+  return Findings().at_most("distance of the proxies from those for indices from 0", off, bound, "L").all("the same status", same, kTicks);
 }
 
 std::string surface() { return under_the_hand(R"("type": "isosurface", "field": "s", "level": 0.9)", 1e-9); }
@@ -87,8 +87,8 @@ std::string under_the_eye() {
     if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
   }
   return Findings()
-      .add(count_covered(pictures[0]) > 500 ? "something is seen" : "nothing is seen")
-      .at_most("pixels that differ by more than 24/255", count_differing(pictures[0], pictures[1], 24), 0.002);
+      .add(count_covered(pictures[0]) > 500 ? "visible" : "empty image")
+      .at_most("fraction of pixels that differ by more than 24/255", count_differing(pictures[0], pictures[1], 24), 0.002);
 }
 
 // ---- points of a table ----
@@ -116,7 +116,7 @@ std::string points_under_the_hand() {
     rig.tick(kFarPlace + place(i) + Vec3(0.02, -0.01, 0.01));
     off = std::max(off, norm(rig.state.proxy - (kFarPlace + place(i))));
   }
-  return Findings().at_most("off its place", off, 1e-6);
+  return Findings().at_most("distance from the point", off, 1e-6);
 }
 
 std::string curves_under_the_hand() {
@@ -133,7 +133,7 @@ std::string curves_under_the_hand() {
     for (int tick = 0; tick < 3; ++tick) rig.tick(probe);
     off = std::max(off, norm(rig.state.proxy - probe));
   }
-  return Findings().at_most("off the middle of its pieces", off, 0.5);
+  return Findings().at_most("distance from the middle of a segment", off, 0.5);
 }
 
 std::string points_under_the_eye() {
@@ -149,35 +149,35 @@ std::string points_under_the_eye() {
     if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
   }
   return Findings()
-      .add(count_covered(pictures[0]) > 100 ? "something is seen" : "nothing is seen")
-      .at_most("pixels that differ by more than 24/255", count_differing(pictures[0], pictures[1], 24), 0.002);
+      .add(count_covered(pictures[0]) > 100 ? "visible" : "empty image")
+      .at_most("fraction of pixels that differ by more than 24/255", count_differing(pictures[0], pictures[1], 24), 0.002);
 }
 
 }  // namespace index_test
 
 Group index_rows() {
   using namespace index_test;
-  const std::string same = "proxies off those of indices from 0 by at most 1e-09 L; the same status in every one";
-  return {"Indices and points from far away",
+  const std::string same = "distance of the proxies from those for indices from 0 at most 1e-09 L; the same status in every case";
+  return {"Far indices and positions",
           {
-              {"SurfaceOfFarIndices", "A surface of a .vdb grid whose indices begin at 1e7, -1e7, 1e7, at the same place of the world",
-               same, surface},
-              {"SelectedLineOfFarIndices", "A line of such a grid, traced once", same, selected_line},
-              {"OnlineLineOfFarIndices", "A line of such a grid, integrated in every tick", same, online_line},
-              {"PicturesOfFarIndices", "A volume, a surface, a slice and a line of such a grid: 24/255 is a tenth of a pixel",
-               "something is seen; pixels that differ by more than 24/255 at most 0.002", under_the_eye},
-              {"FarPointsUnderTheHand",
-               "Twenty points of a table within a unit of each other, at (625000, -5250000, 1250000), as maps have them",
-               "off its place at most 1e-06", points_under_the_hand},
-              {"PicturesOfFarPoints", "The same as balls, beside those about the origin",
-               "something is seen; pixels that differ by more than 24/255 at most 0.002", points_under_the_eye},
-              {"FarCurvesUnderTheHand", "A line through those points, of a .tck file of 64-bit numbers",
-               "off the middle of its pieces at most 0.5", curves_under_the_hand,
-               "At most 1e-06. Curves are kept in single precision from the world's origin, as most of their files have them"},
-              proved_elsewhere("Indices at the ends of 32-bit numbers", "an error that says which were expected",
+              {"SurfaceOfFarIndices", "Isosurface of a .vdb grid whose indices start at (1e7, -1e7, 1e7), at the same world position", same,
+               surface},
+              {"SelectedLineOfFarIndices", "Selected streamline of such a grid", same, selected_line},
+              {"OnlineLineOfFarIndices", "Online streamline of such a grid", same, online_line},
+              {"PicturesOfFarIndices",
+               "Image of a volume, an isosurface, a slice and a streamline of such a grid; 24/255 is a tenth of a pixel",
+               "visible; fraction of pixels that differ by more than 24/255 at most 0.002", under_the_eye},
+              {"FarPointsUnderTheHand", "`points` link to twenty points within one unit, at map coordinates (625000, -5250000, 1250000)",
+               "distance from the point at most 1e-06", points_under_the_hand},
+              {"PicturesOfFarPoints", "Image of these points as balls, compared with the same points at the origin",
+               "visible; fraction of pixels that differ by more than 24/255 at most 0.002", points_under_the_eye},
+              {"FarCurvesUnderTheHand", "`curves` link to a polyline through these points, from a 64-bit .tck file",
+               "distance from the middle of a segment at most 0.5", curves_under_the_hand,
+               "At most 1e-06. Curves are stored in single precision relative to the world's origin, like most curve files"},
+              proved_elsewhere("Voxel indices near the limits of 32-bit integers", "an error states the valid range",
                                "LoadVdb.VoxelsAtTheEndsOfTheIndexRange"),
-              proved_elsewhere("A .vdb grid without an active voxel", "an error that says so", "LoadVdb.EveryBadGridHasItsSentence"),
-              proved_elsewhere("Tiles of 2^36 voxels of one value", "they cost nothing", "LoadVdb.TilesOfAnyExtentCostNothing"),
+              proved_elsewhere("A .vdb grid without active voxels", "an error says so", "LoadVdb.EveryBadGridHasItsSentence"),
+              proved_elsewhere("Tiles of 2^36 voxels", "they cost no time or memory", "LoadVdb.TilesOfAnyExtentCostNothing"),
           }};
 }
 
