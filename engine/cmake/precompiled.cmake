@@ -3,13 +3,21 @@
 # the very options that it was made with, so files with options of their own are named in catena_without_precompiled().
 add_library(catena_precompiled OBJECT ${PROJECT_SOURCE_DIR}/engine/base/precompiled.cpp)
 target_link_libraries(catena_precompiled PUBLIC catena_flags)
-target_precompile_headers(catena_precompiled PRIVATE
+set(catena_common_headers
   <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <cstring> <filesystem> <fstream> <functional> <limits> <map> <memory> <mutex>
   <optional> <random> <set> <span> <sstream> <string> <string_view> <thread> <utility> <vector>
   <fmt/format.h> ${PROJECT_SOURCE_DIR}/engine/base/vec.h)
+target_precompile_headers(catena_precompiled PRIVATE ${catena_common_headers})
 
 function(catena_precompile TARGET)
   target_precompile_headers(${TARGET} REUSE_FROM catena_precompiled)
+endfunction()
+
+# A module of many files without inner loops: lightly optimized, which takes two thirds of the time to build, with headers of its own
+# precompiled.
+function(catena_precompile_cold TARGET)
+  target_compile_options(${TARGET} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_precompile_headers(${TARGET} PRIVATE ${catena_common_headers} ${ARGN})
 endfunction()
 
 # OpenVDB's headers define static members of templates, of which the library and the program must share one: they may not be hidden, and the
