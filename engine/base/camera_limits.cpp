@@ -9,7 +9,7 @@ namespace catena {
 
 namespace {
 // smallest distance of position and target, as a fraction of the largest coordinate: the view direction keeps four digits
-constexpr double kLeastShare = 1e-12;
+constexpr double kMinShare = 1e-12;
 }  // namespace
 
 std::string validate_view(const Vec3& position, const Vec3& target) {
@@ -17,7 +17,7 @@ std::string validate_view(const Vec3& position, const Vec3& target) {
   if (!is_finite(position) || !is_finite(target) || size > kMaxCameraCoordinate)
     return "the position or the target is too far away; numbers of at most " + to_text(kMaxCameraCoordinate) + " in size were expected";
   const double distance = norm(target - position);
-  if (!(distance >= kMinOrthoHeight) || distance < kLeastShare * size)
+  if (!(distance >= kMinOrthoHeight) || distance < kMinShare * size)
     return "the target is at the position, or too near to it; two different points were expected";
   return {};
 }

@@ -28,21 +28,21 @@ void keep_output_error(int descriptor, int code) noexcept {
   if (descriptor == STDOUT_FILENO) output_error.compare_exchange_strong(none, code);
 }
 
-void tell_line(std::string_view before, std::string_view line) noexcept {
+void print_sanitized(std::string_view prefix, std::string_view line) noexcept {
   try {
-    const std::string whole = std::string(before) + sanitize_for_terminal(one_line(std::string(line.substr(0, 2 * kMaxLineBytes))));
-    print_nonblocking(STDERR_FILENO, truncate_utf8(whole, kMaxLineBytes) + "\n", kPatienceMs);
+    const std::string full_line = std::string(prefix) + sanitize_for_terminal(one_line(std::string(line.substr(0, 2 * kMaxLineBytes))));
+    print_nonblocking(STDERR_FILENO, truncate_utf8(full_line, kMaxLineBytes) + "\n", kPatienceMs);
   } catch (...) {
-    char words[256];
-    std::snprintf(words, sizeof words, "catena: %s\n", out_of_memory_message());
-    print_nonblocking(STDERR_FILENO, words, kPatienceMs);
+    char buffer[256];
+    std::snprintf(buffer, sizeof buffer, "catena: %s\n", out_of_memory_message());
+    print_nonblocking(STDERR_FILENO, buffer, kPatienceMs);
   }
 }
 
 }  // namespace
 
-void print_line(std::string_view line) noexcept { tell_line({}, line); }
-void print_message(std::string_view line) noexcept { tell_line("catena: ", line); }
+void print_line(std::string_view line) noexcept { print_sanitized({}, line); }
+void print_message(std::string_view line) noexcept { print_sanitized("catena: ", line); }
 
 void print_nonblocking(int descriptor, std::string_view text, int wait_ms) noexcept {
   struct stat about {};
@@ -53,28 +53,28 @@ void print_nonblocking(int descriptor, std::string_view text, int wait_ms) noexc
   std::fflush(descriptor == STDERR_FILENO ? stderr : stdout);
 
   // opens the terminal or pipe separately: O_NONBLOCK on the shared file description would also affect the shell
-  const bool waits = S_ISCHR(about.st_mode) || S_ISFIFO(about.st_mode);
-  int own = -1;
-  if (waits) {
+  const bool can_block = S_ISCHR(about.st_mode) || S_ISFIFO(about.st_mode);
+  int own_descriptor = -1;
+  if (can_block) {
     char name[32];
     std::snprintf(name, sizeof name, "/proc/self/fd/%d", descriptor);
-    own = ::open(name, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    own_descriptor = ::open(name, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
   }
-  const int to = own >= 0 ? own : descriptor;
+  const int target = own_descriptor >= 0 ? own_descriptor : descriptor;
   while (!text.empty()) {
-    const ssize_t n =
-        S_ISSOCK(about.st_mode) ? ::send(to, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL) : ::write(to, text.data(), text.size());
+    const ssize_t n = S_ISSOCK(about.st_mode) ? ::send(target, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL)
+                                              : ::write(target, text.data(), text.size());
     if (n > 0) {
       text.remove_prefix(static_cast<std::size_t>(n));
       continue;
     }
     if (n < 0 && errno == EINTR) continue;
-    pollfd again{to, POLLOUT, 0};
+    pollfd again{target, POLLOUT, 0};
     if (n < 0 && errno == EAGAIN && wait_ms > 0 && ::poll(&again, 1, wait_ms) == 1 && (again.revents & POLLOUT) != 0) continue;
     if (n < 0 && errno != EAGAIN) keep_output_error(descriptor, errno);
     break;
   }
-  if (own >= 0) ::close(own);
+  if (own_descriptor >= 0) ::close(own_descriptor);
 }
 
 int stdout_errno() noexcept { return output_error; }

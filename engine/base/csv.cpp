@@ -13,26 +13,26 @@ namespace {
 
 constexpr std::size_t kNotAsked = static_cast<std::size_t>(-1);
 
-/// Removes the text up to the next `separator` from the front of `rest` and returns it.
-std::string_view take(std::string_view& rest, char separator, bool& last) {
-  const std::size_t at = rest.find(separator);
+/// Removes the text up to the next `separator` from the front of `remaining` and returns it.
+std::string_view take_piece(std::string_view& remaining, char separator, bool& last) {
+  const std::size_t at = remaining.find(separator);
   last = at == std::string_view::npos;
-  const std::string_view piece = rest.substr(0, at);
-  rest.remove_prefix(last ? rest.size() : at + 1);
+  const std::string_view piece = remaining.substr(0, at);
+  remaining.remove_prefix(last ? remaining.size() : at + 1);
   return piece;
 }
 
-std::string header_words(const std::vector<std::string_view>& required, const std::vector<std::string_view>& optional) {
-  std::string words;
-  for (std::string_view name : required) words.append(words.empty() ? "" : ",").append(name);
-  for (std::string_view name : optional) words.append("[,").append(name).append("]");
-  return "\"" + words + "\"";
+std::string expected_header(const std::vector<std::string_view>& required, const std::vector<std::string_view>& optional) {
+  std::string text;
+  for (std::string_view name : required) text.append(text.empty() ? "" : ",").append(name);
+  for (std::string_view name : optional) text.append("[,").append(name).append("]");
+  return "\"" + text + "\"";
 }
 
 /// Splits an optional group into its columns: "qw,qx" is two columns that must appear together.
 std::vector<std::string_view> columns_of(std::string_view group) {
   std::vector<std::string_view> columns;
-  for (bool last = false; !last;) columns.push_back(take(group, ',', last));
+  for (bool last = false; !last;) columns.push_back(take_piece(group, ',', last));
   return columns;
 }
 
@@ -46,10 +46,10 @@ struct Reader {
 
   /// Returns the column names of the header line in file order; an Error if they are not the expected ones.
   Result<std::vector<std::string_view>> header(std::string_view line) const {
-    const std::string expected = "; the header " + header_words(required, optional) + " was expected";
+    const std::string expected = "; the header " + expected_header(required, optional) + " was expected";
     std::vector<std::string_view> names;
     for (bool last = false; !last;) {
-      const std::string_view name = trim(take(line, ',', last));
+      const std::string_view name = trim(take_piece(line, ',', last));
       if (std::count(all.begin(), all.end(), name) == 0) return error(1, "unknown column " + in_quotes(name) + expected);
       if (std::count(names.begin(), names.end(), name) > 0) return error(1, "duplicate column " + in_quotes(name) + expected);
       names.push_back(name);
@@ -86,10 +86,10 @@ Result<NumberTable> parse_csv(std::string_view text, const std::string& file, co
   // blank lines at the end are ignored
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
   if (text.empty())
-    return reader.error(1, "is empty; the header " + header_words(required, optional) + " and rows of numbers were expected");
+    return reader.error(1, "is empty; the header " + expected_header(required, optional) + " and rows of numbers were expected");
 
   bool last_line = false;
-  CATENA_TRY(const auto names, reader.header(take(text, '\n', last_line)));
+  CATENA_TRY(const auto names, reader.header(take_piece(text, '\n', last_line)));
   if (last_line) return reader.error(1, "holds a header only; at least one row of numbers was expected");
 
   // columns in the requested order; `slots` maps each cell of a row to its column
@@ -109,7 +109,7 @@ Result<NumberTable> parse_csv(std::string_view text, const std::string& file, co
   for (auto& column : table.values) column.reserve(rows);
 
   for (int line = 2; !last_line; ++line) {
-    std::string_view row = take(text, '\n', last_line);
+    std::string_view row = take_piece(text, '\n', last_line);
     const auto cells = static_cast<std::size_t>(std::count(row.begin(), row.end(), ',')) + 1;
     if (trim(row).empty()) return reader.error(line, "is blank; " + std::to_string(names.size()) + " numbers were expected");
     if (cells != names.size())
@@ -117,7 +117,7 @@ Result<NumberTable> parse_csv(std::string_view text, const std::string& file, co
           line, "has " + std::to_string(cells) + (cells == 1 ? " cell; " : " cells; ") + std::to_string(names.size()) + " were expected");
     bool last = false;
     for (std::size_t i = 0; i < cells; ++i) {
-      const std::string_view cell = take(row, ',', last);
+      const std::string_view cell = take_piece(row, ',', last);
       const auto value = parse_double(cell);
       if (!value || !std::isfinite(*value))
         return reader.error(line, in_quotes(trim(cell)) + " in column " + in_quotes(names[i]) + "; a finite number was expected");
@@ -129,7 +129,7 @@ Result<NumberTable> parse_csv(std::string_view text, const std::string& file, co
 
 Result<NumberTable> read_csv(const std::string& path, const std::vector<std::string_view>& required,
                              const std::vector<std::string_view>& optional) {
-  CATENA_TRY(const std::string text, read_text_file(path, "a CSV file with the header " + header_words(required, optional)));
+  CATENA_TRY(const std::string text, read_text_file(path, "a CSV file with the header " + expected_header(required, optional)));
   return parse_csv(text, path, required, optional);
 }
 
@@ -155,8 +155,8 @@ Vec3 position_of(const NumberTable& table, std::size_t first_column, std::size_t
   return {table.values[first_column][row], table.values[first_column + 1][row], table.values[first_column + 2][row]};
 }
 
-/// Checks the memory budget for the rows of a table. The rows exist beside the table; later, without the table, they exist beside at most
-/// kLater bytes for each row (a sample for the tick and the results of that tick).
+/// Checks the memory budget for the rows of a table. The rows exist at the same time as the table; later, without the table, at the same
+/// time as at most kLater bytes for each row (a sample for the tick and the results of that tick).
 Outcome ask_for_rows(const NumberTable& table, std::size_t row_bytes) {
   constexpr std::size_t kLater = 128;
   return check_text_memory_available(

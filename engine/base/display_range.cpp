@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kFillGap = 2, kFewGap = 10, kSpikeGap = 50, kWildGap = 1e6;  // in lengths of the interval so far
 constexpr double kWildShare = 0.1, kWildSize = 1e9, kHugeSize = 1e15, kHugeRatio = 1e6;
-constexpr std::size_t kMostSampled = 1u << 20;
-constexpr std::size_t kFewestInside = 8;  // fewer distinct values may be materials
+constexpr std::size_t kMaxSampled = 1u << 20;
+constexpr std::size_t kMinInside = 8;  // fewer distinct values may be materials
 constexpr std::uint64_t kFewValues = 4, kFewDivisor = 10000, kSmallDivisor = 64;
 constexpr double kManyShare = 0.001;  // fraction of the values from which a single repeated value may be a fill value
 
@@ -64,30 +64,30 @@ class RangeSearch {
       if (!values_[i].fill) inner.push_back(i);
     if (inner.empty())
       for (std::size_t i = 0; i < values_.size(); ++i) inner.push_back(i);
-    const std::size_t reach = (inner.size() + 1) / 2 - 1;
+    const std::size_t half_count = (inner.size() + 1) / 2 - 1;
     double shortest = std::numeric_limits<double>::infinity();
-    std::uint64_t most = 0;
-    for (std::size_t i = 0; i + reach < inner.size(); ++i) {
-      const double length = values_[inner[i + reach]].value - values_[inner[i]].value;
+    std::uint64_t best_count = 0;
+    for (std::size_t i = 0; i + half_count < inner.size(); ++i) {
+      const double length = values_[inner[i + half_count]].value - values_[inner[i]].value;
       const std::uint64_t count = values_[inner[i]].count;
-      if (length > shortest || (length == shortest && count <= most)) continue;
+      if (length > shortest || (length == shortest && count <= best_count)) continue;
       shortest = length;
-      most = count;
+      best_count = count;
       first_ = inner[i];
-      last_ = inner[i + reach];
+      last_ = inner[i + half_count];
     }
   }
 
   /// Extends the interval by one value; returns false if only outliers are left.
   bool grow_once() {
-    const bool can_fall = first_ > 0, can_rise = last_ + 1 < values_.size();
-    const double down = can_fall ? values_[first_].value - values_[first_ - 1].value : 0,
-                 up = can_rise ? values_[last_ + 1].value - values_[last_].value : 0;
-    const bool down_first = can_fall && (!can_rise || down <= up);
-    for (const bool falls : {down_first, !down_first}) {
-      if (!(falls ? can_fall : can_rise)) continue;
-      if (is_beyond(falls, falls ? down : up)) continue;
-      falls ? --first_ : ++last_;
+    const bool can_extend_down = first_ > 0, can_extend_up = last_ + 1 < values_.size();
+    const double down = can_extend_down ? values_[first_].value - values_[first_ - 1].value : 0,
+                 up = can_extend_up ? values_[last_ + 1].value - values_[last_].value : 0;
+    const bool down_first = can_extend_down && (!can_extend_up || down <= up);
+    for (const bool downward : {down_first, !down_first}) {
+      if (!(downward ? can_extend_down : can_extend_up)) continue;
+      if (is_beyond(downward, downward ? down : up)) continue;
+      downward ? --first_ : ++last_;
       return true;
     }
     return false;
@@ -112,7 +112,7 @@ class RangeSearch {
     if (!(length > 0)) return (others == 0 && !integers) || (others <= few_ && nearest >= kHugeSize && nearest >= kHugeRatio * inside);
     if (others == 0) return gap >= kFillGap * length;
     if (others <= few_ && gap > kFewGap * length) return true;
-    if (others - spike <= few_ && spike > 0 && last_ - first_ >= kFewestInside && gap > kSpikeGap * length) return true;
+    if (others - spike <= few_ && spike > 0 && last_ - first_ >= kMinInside && gap > kSpikeGap * length) return true;
     return static_cast<double>(all) <= kWildShare * static_cast<double>(all_) && nearest >= kWildSize && nearest >= kWildSize * inside &&
            gap > kWildGap * length;
   }
@@ -125,50 +125,50 @@ class RangeSearch {
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// Returns the boundary between the last value in the range and the first outlier.
-double fence(double shown, double beyond, double length) {
-  const double half = 0.5 * shown + 0.5 * beyond, reach = kFewGap * length;
+double fence(double inner, double outlier, double length) {
+  const double half = 0.5 * inner + 0.5 * outlier, distance = kFewGap * length;
   if (!(length > 0)) return half;
-  return beyond > shown ? std::min(half, shown + reach) : std::max(half, shown - reach);
+  return outlier > inner ? std::min(half, inner + distance) : std::max(half, inner - distance);
 }
 
-void add_beyond(DisplayRange::Outliers& beyond, double value, std::uint64_t count, bool low) {
-  if (beyond.count == 0) beyond.nearest = beyond.farthest = value;
-  beyond.nearest = low ? std::max(beyond.nearest, value) : std::min(beyond.nearest, value);
-  beyond.farthest = low ? std::min(beyond.farthest, value) : std::max(beyond.farthest, value);
-  beyond.count += count;
+void add_outlier(DisplayRange::Outliers& outliers, double value, std::uint64_t count, bool low) {
+  if (outliers.count == 0) outliers.nearest = outliers.farthest = value;
+  outliers.nearest = low ? std::max(outliers.nearest, value) : std::min(outliers.nearest, value);
+  outliers.farthest = low ? std::min(outliers.farthest, value) : std::max(outliers.farthest, value);
+  outliers.count += count;
 }
 
 template <class T>
 DisplayRange range_of_all(std::span<const T> values) {
-  const std::size_t step = 1 + values.size() / kMostSampled;
+  const std::size_t step = 1 + values.size() / kMaxSampled;
   std::vector<float> sample;
-  double least = kNone, most = -kNone;
+  double minimum = kNone, maximum = -kNone;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const T v = values[i];
     if (!std::isfinite(v)) continue;
-    least = std::min(least, static_cast<double>(v));
-    most = std::max(most, static_cast<double>(v));
+    minimum = std::min(minimum, static_cast<double>(v));
+    maximum = std::max(maximum, static_cast<double>(v));
     if (i % step == 0) sample.push_back(static_cast<float>(v));
   }
-  if (least > most) return {};
-  RangeCounter counter(display_range(std::move(sample), least, most));
+  if (minimum > maximum) return {};
+  RangeCounter counter(display_range(std::move(sample), minimum, maximum));
   for (const T v : values) counter.add(static_cast<double>(v));
   return counter.range();
 }
 
-std::string count_text(const DisplayRange::Outliers& beyond, std::string_view noun) {
-  if (beyond.nearest == beyond.farthest)
-    return fmt::format("{}{} of {}", beyond.count,
-                       noun.empty()        ? ""
-                       : beyond.count == 1 ? " value"
-                                           : " values",
-                       format_readable(beyond.nearest));
-  return fmt::format("{}{} of {} to {}", beyond.count, noun.empty() ? "" : " values",
-                     format_readable(std::min(beyond.nearest, beyond.farthest)),
-                     format_readable(std::max(beyond.nearest, beyond.farthest)));
+std::string count_text(const DisplayRange::Outliers& outliers, std::string_view noun) {
+  if (outliers.nearest == outliers.farthest)
+    return fmt::format("{}{} of {}", outliers.count,
+                       noun.empty()          ? ""
+                       : outliers.count == 1 ? " value"
+                                             : " values",
+                       format_readable(outliers.nearest));
+  return fmt::format("{}{} of {} to {}", outliers.count, noun.empty() ? "" : " values",
+                     format_readable(std::min(outliers.nearest, outliers.farthest)),
+                     format_readable(std::max(outliers.nearest, outliers.farthest)));
 }
 
-std::string beyond_text(const DisplayRange& range) {
+std::string outlier_text(const DisplayRange& range) {
   if (range.below.count > 0 && range.above.count > 0)
     return count_text(range.below, "values") + " below, " + count_text(range.above, "") + " above";
   return count_text(range.below.count > 0 ? range.below : range.above, "values") + " beyond";
@@ -186,8 +186,8 @@ RangeCounter::RangeCounter(const DisplayRange& of_sample)
 void RangeCounter::add(double value, std::uint64_t count) {
   if (!std::isfinite(value)) return;
   counted_.count += count;
-  if (value < lower_fence_) return add_beyond(counted_.below, value, count, true);
-  if (value > upper_fence_) return add_beyond(counted_.above, value, count, false);
+  if (value < lower_fence_) return add_outlier(counted_.below, value, count, true);
+  if (value > upper_fence_) return add_outlier(counted_.above, value, count, false);
   counted_.lo = std::min(counted_.lo, value);
   counted_.hi = std::max(counted_.hi, value);
 }
@@ -197,10 +197,10 @@ void RangeCounter::merge(const RangeCounter& part) {
   counted_.lo = std::min(counted_.lo, part.counted_.lo);
   counted_.hi = std::max(counted_.hi, part.counted_.hi);
   for (const auto side : {&DisplayRange::below, &DisplayRange::above}) {
-    const DisplayRange::Outliers& beyond = part.counted_.*side;
-    if (beyond.count == 0) continue;
-    add_beyond(counted_.*side, beyond.nearest, beyond.count, side == &DisplayRange::below);
-    add_beyond(counted_.*side, beyond.farthest, 0, side == &DisplayRange::below);
+    const DisplayRange::Outliers& outliers = part.counted_.*side;
+    if (outliers.count == 0) continue;
+    add_outlier(counted_.*side, outliers.nearest, outliers.count, side == &DisplayRange::below);
+    add_outlier(counted_.*side, outliers.farthest, 0, side == &DisplayRange::below);
   }
 }
 
@@ -217,13 +217,13 @@ bool is_fill_value(float value) {
   return is_integer_fill(value);
 }
 
-DisplayRange display_range(std::vector<float> sample, double least, double most) {
-  DisplayRange range{least, most, least, most, 0, {}, {}};
-  std::erase_if(sample, [&](float v) { return !std::isfinite(v) || v < least || v > most; });
+DisplayRange display_range(std::vector<float> sample, double min_value, double max_value) {
+  DisplayRange range{min_value, max_value, min_value, max_value, 0, {}, {}};
+  std::erase_if(sample, [&](float v) { return !std::isfinite(v) || v < min_value || v > max_value; });
   range.count = sample.size();
-  if (!std::isfinite(least) || !std::isfinite(most) || !(least < most)) return range;
-  sample.push_back(static_cast<float>(least));
-  sample.push_back(static_cast<float>(most));
+  if (!std::isfinite(min_value) || !std::isfinite(max_value) || !(min_value < max_value)) return range;
+  sample.push_back(static_cast<float>(min_value));
+  sample.push_back(static_cast<float>(max_value));
   std::ranges::sort(sample);
   const std::vector<DistinctValue> values = distinct_values(sample);
   RangeSearch search(values);
@@ -241,23 +241,23 @@ DisplayRange display_range(std::span<const double> values) { return range_of_all
 DisplayRange display_range(std::span<const float> values) { return range_of_all(values); }
 
 std::string format_range(const DisplayRange& range) {
-  const std::string shown = format_readable(range.lo) + " .. " + format_readable(range.hi);
-  return range.has_outliers() ? shown + " (" + beyond_text(range) + ")" : shown;
+  const std::string text = format_readable(range.lo) + " .. " + format_readable(range.hi);
+  return range.has_outliers() ? text + " (" + outlier_text(range) + ")" : text;
 }
 
 std::string outlier_note(const DisplayRange& range) {
   constexpr std::uint64_t kFewValues = 10;  // minimum count at which outliers of one value are reported as a possible code for missing data
   if (!range.has_outliers()) return {};
-  std::string text = fmt::format("{} the others, {} .. {}, which colours span where no range is stated", beyond_text(range),
+  std::string text = fmt::format("{} the others, {} .. {}, which colours span where no range is stated", outlier_text(range),
                                  format_readable(range.lo), format_readable(range.hi));
-  for (const DisplayRange::Outliers& beyond : {range.below, range.above}) {
-    const double share = static_cast<double>(beyond.count) / static_cast<double>(std::max<std::uint64_t>(range.count, 1));
-    if (beyond.count == 0 || beyond.nearest != beyond.farthest) continue;
-    if (share >= kManyShare && beyond.count >= kFewValues)
-      text += fmt::format("; {:.3g} % of the values are exactly {}: perhaps missing data, which a mask (\"valid\") leaves out", 100 * share,
-                          format_readable(beyond.nearest));
-    else if (is_fill_value(static_cast<float>(beyond.nearest)))
-      text += fmt::format("; {} often stands for missing data", format_readable(beyond.nearest));
+  for (const DisplayRange::Outliers& outliers : {range.below, range.above}) {
+    const double fraction = static_cast<double>(outliers.count) / static_cast<double>(std::max<std::uint64_t>(range.count, 1));
+    if (outliers.count == 0 || outliers.nearest != outliers.farthest) continue;
+    if (fraction >= kManyShare && outliers.count >= kFewValues)
+      text += fmt::format("; {:.3g} % of the values are exactly {}: perhaps missing data, which a mask (\"valid\") leaves out",
+                          100 * fraction, format_readable(outliers.nearest));
+    else if (is_fill_value(static_cast<float>(outliers.nearest)))
+      text += fmt::format("; {} often stands for missing data", format_readable(outliers.nearest));
   }
   return text;
 }

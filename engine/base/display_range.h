@@ -49,10 +49,10 @@ struct DisplayRange {
 /// Returns true for values that files commonly use for missing data: -999, -9999, -32768, 1e20, 9.96921e36 (NetCDF), the largest float, ...
 CATENA_EXPORT bool is_fill_value(float value);
 
-/// Returns the display range estimated from a sample, passed by value because it is sorted. `least` and `most` are the minimum and maximum
-/// of all values; the sample may have missed them. Sample values that are not finite or outside of least..most are ignored. Counts refer to
-/// the sample. Returns least..most without outliers when least < most does not hold.
-CATENA_EXPORT DisplayRange display_range(std::vector<float> sample, double least, double most);
+/// Returns the display range estimated from a sample, passed by value because it is sorted. `min_value` and `max_value` are the minimum and
+/// maximum of all values; the sample may have missed them. Sample values that are not finite or outside of min_value..max_value are
+/// ignored. Counts refer to the sample. Returns min_value..max_value without outliers when min_value < max_value does not hold.
+CATENA_EXPORT DisplayRange display_range(std::vector<float> sample, double min_value, double max_value);
 /// Refines the display range of a sample to the exact range and counts of all values. A value that the sample missed counts as an outlier
 /// when it is nearer to the outliers than to the displayed values, or more than 10 lengths of the range away from it.
 class CATENA_EXPORT RangeCounter {
@@ -74,7 +74,7 @@ class CATENA_EXPORT RangeCounter {
 
 /// Returns the exact display range of all finite values; 0 to 0 when there is none.
 CATENA_EXPORT DisplayRange display_range(std::span<const double> values);
-/// The same for single precision.
+/// Returns the exact display range of all finite values, given in single precision; 0 to 0 when there is none.
 CATENA_EXPORT DisplayRange display_range(std::span<const float> values);
 
 /// Returns the range as text, for example "0 .. 1 (1 value of 1e20 beyond)".

@@ -12,7 +12,7 @@
 
 namespace catena {
 
-inline constexpr int kMaxWidgets = 8;  ///< maximum number of widgets of a scene
+inline constexpr int kMaxWidgets = 8;  ///< maximum number of widgets of a scene; more are an error
 
 /// Mode of a widget in a tick. A cutting plane uses idle to turn; the other widgets use idle, hover and drag.
 enum class WidgetMode : std::uint8_t {
@@ -46,7 +46,7 @@ struct WidgetReport {
   std::uint8_t active_planes = 0;  ///< bit i: the plane across axis i of the widget is active
 };
 
-/// How the links are combined into one force: the proxy chain, or one of the baselines of the paper (haptics/chain/baseline.h).
+/// Method that combines the links into one force: the proxy chain, or one of the baselines of the paper (haptics/chain/baseline.h).
 enum class CouplingMethod {
   chain,    ///< proxy chain, one proxy per link
   pipe,     ///< one proxy: the constraints are applied in turn until all are satisfied
@@ -54,7 +54,7 @@ enum class CouplingMethod {
   closest,  ///< one proxy: the nearest of the constraints' own projections of the probe
   linear    ///< one proxy that moves with the probe as far as the linear primitives leave it free
 };
-/// How the contributions of the links are combined into one force.
+/// Rule that combines the contributions of the links into one force.
 enum class CouplingForce {
   paper,        ///< sum as in the paper
   conservative  ///< negative gradient of the chain's energy, by virtual work (haptics/chain/virtual_work.h)
@@ -145,7 +145,7 @@ struct HapticState {
   std::int32_t widget_count = 0;                    ///< number of widgets of the program
   std::array<WidgetReport, kMaxWidgets> widgets{};  ///< the first widget_count entries are used
   Quat orientation{kIdentityRotation};              ///< orientation of the probe
-  Vec3 torque_nm{0.0};                              ///< torque on the user, world axes
+  Vec3 torque_nm{0.0};                              ///< torque on the user after all limits, N m, world axes
   /// Force commanded by the chain before the limits of the device; equal to force_n without a device.
   Vec3 coupling_force_n{0.0};
   double energy_j = 0;      ///< energy of the passivity observer that the user may still get back, joules

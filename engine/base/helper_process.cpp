@@ -53,12 +53,12 @@ struct Plan {
 constexpr int kAway = 64;  ///< lowest number of the temporary descriptors, clear of the final ones
 
 /// Returns the path of the running program; where /proc is not mounted, the name with which the kernel executed it.
-std::filesystem::path program_itself() {
+std::filesystem::path program_path() {
   std::error_code code;
   const std::filesystem::path linked = std::filesystem::read_symlink("/proc/self/exe", code);
   if (!code) return linked;
-  const char* const asked = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
-  return asked != nullptr ? std::filesystem::weakly_canonical(asked, code) : std::filesystem::path();
+  const char* const executed = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
+  return executed != nullptr ? std::filesystem::weakly_canonical(executed, code) : std::filesystem::path();
 }
 
 }  // namespace
@@ -73,20 +73,20 @@ std::string descriptor_limit_message() {
 std::string helper_path(const std::string& name) {
   namespace fs = std::filesystem;
   std::error_code code;
-  std::vector<fs::path> places;
-  const auto look_in = [&](const fs::path& folder) {
-    for (const fs::path& at : {folder, folder / kInstalled, folder / ".." / kInstalled}) places.push_back(at / name);
+  std::vector<fs::path> candidates;
+  const auto add_folder = [&](const fs::path& folder) {
+    for (const fs::path& at : {folder, folder / kInstalled, folder / ".." / kInstalled}) candidates.push_back(at / name);
   };
   // first the folder of the shared library that contains this code, so that both have one version; l_name is empty for the program itself
   Dl_info info;
   link_map* map = nullptr;
   if (::dladdr1(reinterpret_cast<const void*>(&helper_path), &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) != 0 &&
       map != nullptr && map->l_name[0] != '\0')
-    look_in(fs::canonical(map->l_name, code).parent_path());
-  look_in(program_itself().parent_path());
-  for (const fs::path& place : places)
-    if (::access(place.c_str(), X_OK) == 0) return place.lexically_normal().string();
-  return places.front().string();
+    add_folder(fs::canonical(map->l_name, code).parent_path());
+  add_folder(program_path().parent_path());
+  for (const fs::path& candidate : candidates)
+    if (::access(candidate.c_str(), X_OK) == 0) return candidate.lexically_normal().string();
+  return candidates.front().string();
 }
 
 FileDescriptor& FileDescriptor::operator=(FileDescriptor&& other) noexcept {
@@ -114,15 +114,15 @@ Result<HelperProcess> HelperProcess::start(const std::string& path, std::span<co
   };
   // descriptors: duplicated to high numbers first, so that none overwrites another
   Plan plan;
-  std::vector<FileDescriptor> away;
+  std::vector<FileDescriptor> duplicates;
   for (const int fd : descriptors) {
-    away.emplace_back(::fcntl(fd, F_DUPFD_CLOEXEC, kAway));
-    if (!away.back()) return failed(errno);
+    duplicates.emplace_back(::fcntl(fd, F_DUPFD_CLOEXEC, kAway));
+    if (!duplicates.back()) return failed(errno);
   }
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (standard != STDERR_FILENO || !kKeepsErrors) posix_spawn_file_actions_addopen(&plan.files, standard, "/dev/null", O_RDWR, 0);
   int next = kFirstDescriptor;
-  for (const FileDescriptor& fd : away) posix_spawn_file_actions_adddup2(&plan.files, fd.get(), next++);
+  for (const FileDescriptor& fd : duplicates) posix_spawn_file_actions_adddup2(&plan.files, fd.get(), next++);
   posix_spawn_file_actions_addclosefrom_np(&plan.files, next);
   // signals: default handlers, none blocked
   sigset_t all, none;
@@ -149,7 +149,7 @@ HelperProcess::~HelperProcess() {
 
 ProcessExit HelperProcess::wait(double limit_s, const std::function<void(double)>& while_waiting) {
   const std::int64_t start = now_ns(), until = start + static_cast<std::int64_t>(1e9 * limit_s);
-  const FileDescriptor ended(static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0)));
+  const FileDescriptor process_fd(static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0)));
   int status = 0;
   rusage used{};
   bool too_long = false;
@@ -165,9 +165,10 @@ ProcessExit HelperProcess::wait(double limit_s, const std::function<void(double)
       break;
     }
     // a kernel without pidfd: the process is polled every kPollMs
-    constexpr int kPollMs = 2, kLongestMs = 1000;
-    pollfd poller{ended.get(), POLLIN, 0};
-    ::poll(&poller, ended ? 1 : 0, ended ? static_cast<int>(std::min<std::int64_t>(left_ns / 1'000'000 + 1, kLongestMs)) : kPollMs);
+    constexpr int kPollMs = 2, kMaxWaitMs = 1000;
+    pollfd poller{process_fd.get(), POLLIN, 0};
+    ::poll(&poller, process_fd ? 1 : 0,
+           process_fd ? static_cast<int>(std::min<std::int64_t>(left_ns / 1'000'000 + 1, kMaxWaitMs)) : kPollMs);
     if (while_waiting) while_waiting(1e-3 * ms_since(start));
   }
   pid_ = -1;

@@ -22,7 +22,7 @@ std::string helper_path(const std::string& name);
 /// Returns "at most 6 files may be open at a time (ulimit -n), expected at least 128", for a system error.
 std::string descriptor_limit_message();
 
-/// How a helper process ended.
+/// End of a helper process: cause, exit code and CPU time.
 struct ProcessExit {
   /// End of the process: by itself, by a signal, or killed by wait() at its time limit.
   enum class Cause { exited, killed, timed_out } cause = Cause::exited;

@@ -16,7 +16,7 @@ namespace catena::json {
 namespace {
 
 constexpr int kDeepest = 64;
-constexpr std::size_t kLongestLabel = 24;  ///< maximum length of the name shown in an item's label
+constexpr std::size_t kMaxLabel = 24;  ///< maximum length of the name shown in an item's label
 
 /// Turns offsets into 1-based line numbers; CR, LF and CRLF each end a line.
 class Lines {
@@ -87,7 +87,7 @@ Shape shape_of(std::string_view text) {
 /// Replaces comments by blanks, so that they may stand wherever blanks may: the library accepts none in an empty array. Every other byte
 /// keeps its value and offset. A comment without an end is kept; the library rejects it.
 std::string without_comments(std::string_view text) {
-  std::string plain(text);
+  std::string cleaned(text);
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] == '"') {
       for (++i; i < text.size() && text[i] != '"'; ++i)
@@ -100,13 +100,13 @@ std::string without_comments(std::string_view text) {
     if (close == std::string_view::npos) break;
     const std::size_t end = two == "//" ? close : close + 2;
     for (; i < end; ++i)
-      if (plain[i] != '\n' && plain[i] != '\r') plain[i] = ' ';
+      if (cleaned[i] != '\n' && cleaned[i] != '\r') cleaned[i] = ' ';
     --i;
   }
-  return plain;
+  return cleaned;
 }
 
-/// Estimates the memory in bytes that parsing needs beside the text: each value in the library (a map node) and as a Node with its label;
+/// Estimates the memory in bytes that parsing needs besides the text: each value in the library (a map node) and as a Node with its label;
 /// the strings, keys and labels; the text without its comments; the list of line ends, which grows. Copies that readers cache later
 /// replace the library's part; what they create from an object is about a kilobyte.
 double bytes_to_parse(std::string_view text, const Shape& shape) {
@@ -126,8 +126,8 @@ bool is_json_number(std::string_view text) {
   };
   if (i < text.size() && text[i] == '-') ++i;
   const bool zero = i < text.size() && text[i] == '0';
-  const std::size_t whole = digits();
-  if (whole == 0 || (zero && whole > 1)) return false;
+  const std::size_t integer_digits = digits();
+  if (integer_digits == 0 || (zero && integer_digits > 1)) return false;
   if (i < text.size() && text[i] == '.' && (++i, digits() == 0)) return false;
   if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
     ++i;
@@ -197,7 +197,7 @@ class Converter {
         node.kind = Kind::array;
         node.items.reserve(value.size());
         for (Json::ArrayIndex i = 0; i < value.size(); ++i) {
-          CATENA_TRY(Node item, convert(value[i], node.label.substr(0, kLongestLabel) + "[" + std::to_string(i) + "]"));
+          CATENA_TRY(Node item, convert(value[i], node.label.substr(0, kMaxLabel) + "[" + std::to_string(i) + "]"));
           node.items.push_back(std::move(item));
         }
         break;
@@ -254,7 +254,7 @@ bool is_equal_value(const Node& a, const Node& b) {
 }
 
 Result<Node> parse(std::string_view text, const std::string& file) {
-  const std::size_t whole = text.size();
+  const std::size_t full_size = text.size();
   text = strip_bom(text);
   const Shape shape = shape_of(text);
   CATENA_CHECK(check_text_memory_available(one_line(file), bytes_to_parse(text, shape)));
@@ -275,9 +275,9 @@ Result<Node> parse(std::string_view text, const std::string& file) {
   std::string report;
   try {
     const std::unique_ptr<Json::CharReader> reader(builder.newCharReader());
-    const std::string plain = without_comments(text);
-    if (!reader->parse(plain.data(), plain.data() + plain.size(), &root, &report)) return first_error(file, report);
-    return Converter(text, whole - text.size(), file).convert(root, {});
+    const std::string cleaned = without_comments(text);
+    if (!reader->parse(cleaned.data(), cleaned.data() + cleaned.size(), &root, &report)) return first_error(file, report);
+    return Converter(text, full_size - text.size(), file).convert(root, {});
   } catch (const std::exception& e) {
     return error_on_line(file, 1, std::string("is not valid JSON: ") + e.what() + "; JSON (comments allowed) was expected");
   }

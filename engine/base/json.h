@@ -57,7 +57,7 @@ CATENA_EXPORT Error error_at(const Node& node, const std::string& what);
 
 /// Error for the first member whose key is not in `keys`; the message lists the known keys and suggests a similar one.
 CATENA_EXPORT Outcome check_known_keys(const Node& object, std::initializer_list<std::string_view> keys);
-/// The same for keys that are known only at run time.
+/// Error for the first member whose key is not in `keys`, a list that is made at run time; the message is the same.
 CATENA_EXPORT Outcome check_known_keys(const Node& object, const std::vector<std::string_view>& keys);
 /// Error unless the node is an object; `what` names it in the message.
 CATENA_EXPORT Outcome expect_object(const Node& node, std::string_view what);
@@ -76,8 +76,8 @@ CATENA_EXPORT Result<double> get_number(const Node& object, std::string_view key
 /// Returns the number at `key`, or nullopt when it is absent.
 CATENA_EXPORT Result<std::optional<double>> get_optional_number(const Node& object, std::string_view key,
                                                                 NumberRange range = NumberRange::any);
-/// Returns the integer at `key`, which must be in `least`..`most`, or `fallback` when it is absent.
-CATENA_EXPORT Result<int> get_integer(const Node& object, std::string_view key, int fallback, int least, int most);
+/// Returns the integer at `key`, which must be in `minimum`..`maximum`, or `fallback` when it is absent.
+CATENA_EXPORT Result<int> get_integer(const Node& object, std::string_view key, int fallback, int minimum, int maximum);
 /// Returns the boolean at `key`, or `fallback` when it is absent.
 CATENA_EXPORT Result<bool> get_boolean(const Node& object, std::string_view key, bool fallback);
 /// Returns the string at `key`; an Error when it is absent.

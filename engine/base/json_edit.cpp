@@ -86,7 +86,7 @@ Result<std::string> value_text(const Node& root, std::string_view pointer, std::
 
 /// Returns the text unchanged if it parses, else the parser's Error.
 Result<std::string> checked(std::string text, const std::string& file) {
-  if (const auto again = parse(text, file); !again) return again.error();
+  if (const auto reparsed = parse(text, file); !reparsed) return reparsed.error();
   return text;
 }
 
@@ -94,29 +94,29 @@ Result<std::string> checked(std::string text, const std::string& file) {
 
 Result<std::string> set_value(std::string_view text, const std::string& file, std::string_view pointer, std::string_view value) {
   CATENA_TRY(const Node root, parse(text, file));
-  CATENA_TRY(std::string put, value_text(root, pointer, value));
+  CATENA_TRY(std::string inserted, value_text(root, pointer, value));
   CATENA_TRY(const Walk w, walk(root, pointer));
   if (w.arrived()) {
     std::string out(text);
-    return checked(out.replace(w.at->begin, w.at->end - w.at->begin, put), file);
+    return checked(out.replace(w.at->begin, w.at->end - w.at->begin, inserted), file);
   }
   for (std::size_t i = w.steps.size() - 1; i > w.taken; --i) {
     const std::string& step = w.steps[i];
-    put = step == "-" || step == "0" ? "[" + put + "]" : "{" + serialize_string(step) + ": " + put + "}";
+    inserted = step == "-" || step == "0" ? "[" + inserted + "]" : "{" + serialize_string(step) + ": " + inserted + "}";
   }
   const std::string key = w.at->kind == Kind::object ? serialize_string(w.steps[w.taken]) : "";
-  return checked(with_item_appended(text, root, *w.at, key, put), file);
+  return checked(with_item_appended(text, root, *w.at, key, inserted), file);
 }
 
 Result<std::string> insert_item(std::string_view text, const std::string& file, std::string_view pointer, std::string_view value) {
   CATENA_TRY(const Node root, parse(text, file));
-  CATENA_TRY(const std::string put, value_text(root, pointer, value));
+  CATENA_TRY(const std::string inserted, value_text(root, pointer, value));
   CATENA_TRY(const Walk w, walk(root, pointer));
   const Node* array = w.arrived() ? w.parent : w.taken + 1 == w.steps.size() ? w.at : nullptr;
   if (array == nullptr || array->kind != Kind::array)
     return error_at(root, in_quotes(pointer) + " is no item of an array; a place in one was expected");
-  if (!w.arrived()) return checked(with_item_appended(text, root, *array, "", put), file);
-  return checked(with_item_inserted(text, w.at->begin, put), file);
+  if (!w.arrived()) return checked(with_item_appended(text, root, *array, "", inserted), file);
+  return checked(with_item_inserted(text, w.at->begin, inserted), file);
 }
 
 Result<std::string> remove_value(std::string_view text, const std::string& file, std::string_view pointer) {

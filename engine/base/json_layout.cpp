@@ -34,13 +34,13 @@ std::size_t next_token(std::string_view text, std::size_t at) {
 
 /// Returns the offset after the comments that follow on the same line.
 std::size_t past_line_comments(std::string_view text, std::size_t at) {
-  std::size_t after = at;
+  std::size_t end_of_comments = at;
   while (at < text.size()) {
     const std::size_t end = comment_end(text, at);
     if (end == kNone && !is_blank(text[at])) break;
-    at = end == kNone ? at + 1 : after = end;
+    at = end == kNone ? at + 1 : end_of_comments = end;
   }
-  return after;
+  return end_of_comments;
 }
 
 std::size_t line_begin(std::string_view text, std::size_t at) {
@@ -119,7 +119,7 @@ std::string into_empty(std::string_view text, const Node& root, const Node& cont
 }
 
 /// Returns the text between the key and the value of a new member, copied from its neighbor.
-std::string colon_like(std::string_view text, const Item& neighbour) {
+std::string separator_like(std::string_view text, const Item& neighbour) {
   const std::string_view between = text.substr(neighbour.key_end, neighbour.value - neighbour.key_end);
   return between.find_first_not_of(": \t") == kNone ? std::string(between) : ": ";
 }
@@ -131,12 +131,12 @@ struct Cut {
 };
 
 /// Extends the cut by the blanks that it would leave behind; a line that would become blank is removed completely.
-Cut tidy(std::string_view text, Cut cut) {
+Cut with_blanks(std::string_view text, Cut cut) {
   const bool starts = starts_line(text, cut.begin);
-  const std::size_t after = past_blanks(text, cut.end);
-  const bool ends = after == text.size() || is_line_end(text[after]);
-  if (starts && ends) return {line_begin(text, cut.begin), past_line_end(text, after)};
-  if (!ends) return {cut.begin, after};
+  const std::size_t next = past_blanks(text, cut.end);
+  const bool ends = next == text.size() || is_line_end(text[next]);
+  if (starts && ends) return {line_begin(text, cut.begin), past_line_end(text, next)};
+  if (!ends) return {cut.begin, next};
   while (cut.begin > 0 && is_blank(text[cut.begin - 1])) --cut.begin;
   return cut;
 }
@@ -153,7 +153,7 @@ std::string with_item_appended(std::string_view text, const Node& root, const No
   const std::vector<Item> items = items_of(text, container);
   if (items.empty()) return into_empty(text, root, container, key.empty() ? value : key + ": " + value);
   const Item& last = items.back();
-  const std::string item = key.empty() ? value : key + colon_like(text, last) + value;
+  const std::string item = key.empty() ? value : key + separator_like(text, last) + value;
   std::string out(text);
   if (starts_line(text, last.begin)) {
     const std::string_view indent = text.substr(line_begin(text, last.begin), last.begin - line_begin(text, last.begin));
@@ -162,8 +162,8 @@ std::string with_item_appended(std::string_view text, const Node& root, const No
   }
   std::string gap = " ";
   if (items.size() > 1) {
-    const std::size_t after = items[items.size() - 2].comma + 1;
-    const std::string_view between = text.substr(after, last.begin - after);
+    const std::size_t next = items[items.size() - 2].comma + 1;
+    const std::string_view between = text.substr(next, last.begin - next);
     if (between.find_first_not_of(" \t") == kNone) gap = between;
   }
   return out.insert(last.end, "," + gap + item);
@@ -184,22 +184,22 @@ std::string with_item_removed(std::string_view text, const Node& container, std:
   if (items.size() == 1) {
     const std::size_t first = container.begin + 1, close = container.end - 1;
     const bool comments = !space(first, item.begin) || !space(item.end, close);
-    cut(comments ? tidy(text, {item.begin, item.end}) : Cut{first, close});
+    cut(comments ? with_blanks(text, {item.begin, item.end}) : Cut{first, close});
   } else if (item.comma == kNone) {
     const std::size_t comma = items[index - 1].comma;
     if (space(comma + 1, item.begin)) {
       cut({comma, item.end});
     } else {
-      cut(tidy(text, {item.begin, item.end}));
+      cut(with_blanks(text, {item.begin, item.end}));
       cut({comma, comma + 1});
     }
   } else if (!space(item.end, item.comma)) {
     cut({item.comma, item.comma + 1});
-    cut(tidy(text, {item.begin, item.end}));
+    cut(with_blanks(text, {item.begin, item.end}));
   } else if (index == 0 && !starts_line(text, item.begin) && space(item.comma + 1, items[1].begin)) {
     cut({item.begin, items[1].begin});
   } else {
-    cut(tidy(text, {item.begin, item.comma + 1}));
+    cut(with_blanks(text, {item.begin, item.comma + 1}));
   }
   return out;
 }

@@ -7,7 +7,7 @@ namespace catena::json {
 namespace {
 
 /// Returns a description of the node's value for messages "... but X was found".
-std::string shown(const Node& node) {
+std::string describe_value(const Node& node) {
   switch (node.kind) {
     case Kind::null:
       return "null";
@@ -38,7 +38,7 @@ const char* range_words(NumberRange range) {
 }
 
 Error unlike(const Node& node, std::string_view what, const std::string& expected) {
-  return error_at(node, in_quotes(what) + " is " + shown(node) + "; " + expected + " was expected");
+  return error_at(node, in_quotes(what) + " is " + describe_value(node) + "; " + expected + " was expected");
 }
 
 std::string place_words(const Node& object) { return object.label.empty() ? "at the top level" : "in " + in_quotes(object.label); }
@@ -72,9 +72,9 @@ Outcome expect_object(const Node& node, std::string_view what) {
 // ---- numbers ----
 
 Result<double> as_number(const Node& node, std::string_view what, NumberRange range) {
-  const bool good = node.kind == Kind::number && std::isfinite(node.number) && !(range == NumberRange::positive && node.number <= 0) &&
-                    !(range == NumberRange::non_negative && node.number < 0);
-  if (!good) return unlike(node, what, range_words(range));
+  const bool valid = node.kind == Kind::number && std::isfinite(node.number) && !(range == NumberRange::positive && node.number <= 0) &&
+                     !(range == NumberRange::non_negative && node.number < 0);
+  if (!valid) return unlike(node, what, range_words(range));
   return node.number;
 }
 
@@ -95,11 +95,11 @@ Result<std::optional<double>> get_optional_number(const Node& object, std::strin
   return std::optional<double>(value);
 }
 
-Result<int> get_integer(const Node& object, std::string_view key, int fallback, int least, int most) {
+Result<int> get_integer(const Node& object, std::string_view key, int fallback, int minimum, int maximum) {
   const Node* node = object.find(key);
   if (node == nullptr) return fallback;
-  if (node->kind != Kind::number || std::floor(node->number) != node->number || node->number < least || node->number > most)
-    return unlike(*node, key, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+  if (node->kind != Kind::number || std::floor(node->number) != node->number || node->number < minimum || node->number > maximum)
+    return unlike(*node, key, "a whole number from " + std::to_string(minimum) + " to " + std::to_string(maximum));
   return static_cast<int>(node->number);
 }
 
@@ -146,7 +146,7 @@ Result<Vec3> as_vec3(const Node& node, std::string_view what) {
   for (int i = 0; i < 3; ++i) {
     const Node& item = node.items[static_cast<std::size_t>(i)];
     if (item.kind != Kind::number || !std::isfinite(item.number))
-      return error_at(item, in_quotes(what) + " holds " + shown(item) + "; " + expected + " were expected");
+      return error_at(item, in_quotes(what) + " holds " + describe_value(item) + "; " + expected + " were expected");
     v[i] = item.number;
   }
   return v;
@@ -175,11 +175,11 @@ Result<std::vector<std::vector<double>>> as_rows(const Node& node, std::string_v
   std::vector<std::vector<double>> rows;
   for (const Node& row : node.items) {
     if (row.kind != Kind::array || row.items.size() != width)
-      return error_at(row, in_quotes(what) + " holds " + shown(row) + "; " + expected + " were expected");
+      return error_at(row, in_quotes(what) + " holds " + describe_value(row) + "; " + expected + " were expected");
     auto& out = rows.emplace_back();
     for (const Node& item : row.items) {
       if (item.kind != Kind::number || !std::isfinite(item.number))
-        return error_at(item, in_quotes(what) + " holds " + shown(item) + "; " + expected + " were expected");
+        return error_at(item, in_quotes(what) + " holds " + describe_value(item) + "; " + expected + " were expected");
       out.push_back(item.number);
     }
   }
@@ -219,10 +219,10 @@ Result<Mat3> as_rotation(const Node& node, std::string_view what) {
     }
     for (int column = 0; column < 3; ++column) rotation[column][row] = values[column];
   }
-  double worst = 0;
+  double max_deviation = 0;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) worst = std::max(worst, std::fabs(dot(rotation[i], rotation[j]) - (i == j ? 1.0 : 0.0)));
-  if (!(worst <= 1e-6) || dot(cross(rotation[0], rotation[1]), rotation[2]) < 0)
+    for (int j = 0; j < 3; ++j) max_deviation = std::max(max_deviation, std::fabs(dot(rotation[i], rotation[j]) - (i == j ? 1.0 : 0.0)));
+  if (!(max_deviation <= 1e-6) || dot(cross(rotation[0], rotation[1]), rotation[2]) < 0)
     return error_at(node, in_quotes(what) + " is no rotation; " + expected);
   return rotation;
 }

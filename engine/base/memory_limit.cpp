@@ -19,11 +19,11 @@ namespace {
 
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
 std::atomic<std::uint64_t> chosen_limit{kNoLimit};
-std::atomic<std::uint64_t> held_bytes{0}, refusals{0};
+std::atomic<std::uint64_t> reserved_bytes{0}, refusals{0};
 std::atomic<bool> chosen_of_addresses{false};
 
 /// Returns MemAvailable of /proc/meminfo in bytes; kNoLimit if it cannot be read, so that no request is refused.
-std::uint64_t free_on_the_machine() {
+std::uint64_t free_system_memory() {
   std::ifstream file("/proc/meminfo");
   std::string word;
   while (file >> word)
@@ -32,11 +32,11 @@ std::uint64_t free_on_the_machine() {
 }
 
 /// Returns the free bytes in the memory limit of this process's control group; kNoLimit if there is none ("max").
-std::uint64_t free_in_the_group() {
-  std::uint64_t most = 0, current = 0;
-  std::ifstream limit("/sys/fs/cgroup/memory.max"), used("/sys/fs/cgroup/memory.current");
-  if (!(limit >> most) || !(used >> current)) return kNoLimit;
-  return most > current ? most - current : 0;
+std::uint64_t free_group_memory() {
+  std::uint64_t maximum = 0, current = 0;
+  std::ifstream limit("/sys/fs/cgroup/memory.max"), current_file("/sys/fs/cgroup/memory.current");
+  if (!(limit >> maximum) || !(current_file >> current)) return kNoLimit;
+  return maximum > current ? maximum - current : 0;
 }
 
 /// Returns the free bytes below RLIMIT_AS. Without /proc the address space in use is unknown; half of the limit counts as free.
@@ -59,7 +59,7 @@ void set_memory_limit(std::optional<std::uint64_t> bytes, bool of_addresses) {
 bool memory_limit_is_address_space() {
   if (chosen_limit != kNoLimit) return chosen_of_addresses;
   const std::uint64_t addresses = free_addresses();
-  return addresses != kNoLimit && addresses <= std::min(free_on_the_machine(), free_in_the_group()) / 4 * 3;
+  return addresses != kNoLimit && addresses <= std::min(free_system_memory(), free_group_memory()) / 4 * 3;
 }
 
 std::uint64_t memory_refusal_count() { return refusals; }
@@ -70,9 +70,9 @@ std::optional<std::uint64_t> memory_limit() {
 }
 
 std::uint64_t available_memory() {
-  const std::uint64_t limit = chosen_limit, held = held_bytes;
-  if (limit != kNoLimit) return limit > held ? limit - held : 0;
-  const std::uint64_t available = std::min(free_on_the_machine(), free_in_the_group());
+  const std::uint64_t limit = chosen_limit, reserved = reserved_bytes;
+  if (limit != kNoLimit) return limit > reserved ? limit - reserved : 0;
+  const std::uint64_t available = std::min(free_system_memory(), free_group_memory());
   return std::min(available == kNoLimit ? available : available / 4 * 3, free_addresses());
 }
 
@@ -95,8 +95,8 @@ Outcome check_text_memory_available(const std::string& what, double bytes) {
   return check_memory_available(what, bytes);
 }
 
-MemoryReservation::MemoryReservation(std::uint64_t bytes) : bytes_(bytes) { held_bytes += bytes; }
-MemoryReservation::~MemoryReservation() { held_bytes -= bytes_; }
+MemoryReservation::MemoryReservation(std::uint64_t bytes) : bytes_(bytes) { reserved_bytes += bytes; }
+MemoryReservation::~MemoryReservation() { reserved_bytes -= bytes_; }
 
 void retain_freed_memory() {
 #if defined(__GLIBC__)

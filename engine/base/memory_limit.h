@@ -31,11 +31,11 @@ CATENA_EXPORT std::uint64_t available_memory();
 /// Checks that `bytes` are available; nothing is allocated or reserved. Error: "WHAT needs 274878 MB of memory, expected at most 15123 MB
 /// (--memory MB allows more)"; a system failure that names the limit when the address-space limit determines it. `bytes` may have any size.
 CATENA_EXPORT Outcome check_memory_available(const std::string& what, double bytes);
-/// The same against `allowed`, an earlier result of available_memory().
+/// Checks that `bytes` are at most `allowed`, an earlier result of available_memory(); errors as above.
 CATENA_EXPORT Outcome check_memory_available(const std::string& what, double bytes, std::uint64_t allowed);
 
-/// The same for texts and what is read from them. Less than 1 MB is never refused, so that a scene can be read and edited while data fill
-/// the limit.
+/// Checks that `bytes` are available for a text and the objects read from it; errors as above. Less than 1 MB is never refused, so that a
+/// scene can be read and edited while data fill the limit.
 CATENA_EXPORT Outcome check_text_memory_available(const std::string& what, double bytes);
 
 /// Lets the allocator retain up to 64 MB of freed memory instead of returning it to the system at once: a software renderer allocates and

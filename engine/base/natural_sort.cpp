@@ -18,7 +18,7 @@ struct Token {
   bool minus = false;          ///< the number has a minus sign
   bool doubtful_sign = false;  ///< the sign follows a letter and may be a hyphen
   std::string digits;          ///< integer digits, without leading zeros
-  bool whole = true;           ///< has neither a fraction nor an exponent
+  bool is_integer = true;      ///< has neither a fraction nor an exponent
   double value = 0;            ///< absolute value
 };
 
@@ -34,7 +34,7 @@ std::size_t read_number(std::string_view name, std::size_t at, bool decimals, To
   if (decimals && !in_sequence && end + 1 < name.size() && name[end] == '.' && is_digit(name[end + 1])) {
     const std::size_t fraction_end = digits_end(name, end + 1);
     const bool sequence = fraction_end + 1 < name.size() && name[fraction_end] == '.' && is_digit(name[fraction_end + 1]);
-    if (!sequence) end = fraction_end, token.whole = false;
+    if (!sequence) end = fraction_end, token.is_integer = false;
   }
   if (end < name.size() && (name[end] == 'e' || name[end] == 'E')) {
     const std::size_t first = end + 1 < name.size() && (name[end + 1] == '-' || name[end + 1] == '+') ? end + 2 : end + 1;
@@ -42,11 +42,11 @@ std::size_t read_number(std::string_view name, std::size_t at, bool decimals, To
     constexpr std::size_t kMaxExponentDigits = 3;
     if (exponent_end > first && exponent_end - first <= kMaxExponentDigits &&
         (exponent_end == name.size() || !is_letter(name[exponent_end])))
-      end = exponent_end, token.whole = false;
+      end = exponent_end, token.is_integer = false;
   }
   const std::string number(name.substr(at, end - at));
   token.value = std::strtod(number.c_str(), nullptr);
-  if (token.whole) token.digits = number.substr(std::min(number.find_first_not_of('0'), number.size()));
+  if (token.is_integer) token.digits = number.substr(std::min(number.find_first_not_of('0'), number.size()));
   return end;
 }
 
@@ -54,10 +54,10 @@ std::vector<Token> tokens_of(std::string_view name, bool decimals) {
   std::vector<Token> tokens;
   for (std::size_t at = 0; at < name.size();) {
     Token token;
-    const char before = at == 0 ? '_' : name[at - 1];
-    const bool minus = name[at] == '-' && at + 1 < name.size() && is_digit(name[at + 1]) && !is_digit(before);
-    if (minus) token.minus = true, token.doubtful_sign = is_letter(before), ++at;
-    if (name[at] == '+' && at + 1 < name.size() && is_digit(name[at + 1]) && !is_digit(before)) ++at;
+    const char previous = at == 0 ? '_' : name[at - 1];
+    const bool minus = name[at] == '-' && at + 1 < name.size() && is_digit(name[at + 1]) && !is_digit(previous);
+    if (minus) token.minus = true, token.doubtful_sign = is_letter(previous), ++at;
+    if (name[at] == '+' && at + 1 < name.size() && is_digit(name[at + 1]) && !is_digit(previous)) ++at;
     if (is_digit(name[at]))
       at = read_number(name, at, decimals, token);
     else
@@ -79,7 +79,7 @@ int compare(const Token& a, const Token& b) {
     return a.minus ? -1 : 1;
   }
   int order = 0;
-  if (a.whole && b.whole) {
+  if (a.is_integer && b.is_integer) {
     if (a.digits.size() != b.digits.size())
       order = a.digits.size() < b.digits.size() ? -1 : 1;
     else
@@ -96,14 +96,14 @@ struct Name {
 };
 
 int compare(const Name& a, const Name& b) {
-  const std::size_t both = std::min(a.tokens.size(), b.tokens.size());
-  for (std::size_t i = 0; i < both; ++i)
+  const std::size_t common_count = std::min(a.tokens.size(), b.tokens.size());
+  for (std::size_t i = 0; i < common_count; ++i)
     if (const int order = compare(a.tokens[i], b.tokens[i]); order != 0) return order;
   return a.tokens.size() == b.tokens.size() ? 0 : a.tokens.size() < b.tokens.size() ? -1 : 1;
 }
 
 /// Resolves doubtful signs: a minus after a letter is a sign only if another name has a number without a sign at the same position.
-void settle_signs(std::vector<Name>& names) {
+void resolve_signs(std::vector<Name>& names) {
   std::size_t longest = 0;
   for (const Name& name : names) longest = std::max(longest, name.tokens.size());
   for (std::size_t i = 0; i < longest; ++i) {
@@ -118,7 +118,7 @@ void settle_signs(std::vector<Name>& names) {
 std::vector<Name> ordered(const std::vector<std::string>& texts, bool decimals) {
   std::vector<Name> names;
   for (const std::string& text : texts) names.push_back({text, tokens_of(text, decimals)});
-  settle_signs(names);
+  resolve_signs(names);
   std::ranges::sort(names, [](const Name& a, const Name& b) {
     const int order = compare(a, b);
     return order != 0 ? order < 0 : a.text < b.text;
@@ -130,11 +130,12 @@ std::vector<Name> ordered(const std::vector<std::string>& texts, bool decimals) 
 
 void natural_sort(std::vector<std::string>& names) {
   std::vector<Name> sorted = ordered(names, true);
-  const auto tie = std::ranges::adjacent_find(sorted, [](const Name& a, const Name& b) { return compare(a, b) == 0; });
-  if (tie != sorted.end()) {
-    std::vector<Name> whole = ordered(names, false);
-    const auto whole_tie = std::ranges::adjacent_find(whole, [](const Name& a, const Name& b) { return compare(a, b) == 0; });
-    if (whole_tie == whole.end()) sorted = std::move(whole);
+  const auto equal_names = std::ranges::adjacent_find(sorted, [](const Name& a, const Name& b) { return compare(a, b) == 0; });
+  if (equal_names != sorted.end()) {
+    std::vector<Name> without_decimals = ordered(names, false);
+    const auto equal_whole_names =
+        std::ranges::adjacent_find(without_decimals, [](const Name& a, const Name& b) { return compare(a, b) == 0; });
+    if (equal_whole_names == without_decimals.end()) sorted = std::move(without_decimals);
   }
   for (std::size_t i = 0; i < names.size(); ++i) names[i] = std::move(sorted[i].text);
 }
@@ -149,7 +150,7 @@ bool is_numbered_series(const std::vector<std::string>& names) {
 }
 
 std::array<std::string, 2> split_at_last_number(const std::string& name) {
-  std::array<std::string, 2> around{name, ""};
+  std::array<std::string, 2> parts{name, ""};
   for (std::size_t at = 0; at < name.size();) {
     if (!is_digit(name[at])) {
       ++at;
@@ -157,10 +158,10 @@ std::array<std::string, 2> split_at_last_number(const std::string& name) {
     }
     Token token;
     const std::size_t end = read_number(name, at, true, token);
-    around = {name.substr(0, at), name.substr(end)};
+    parts = {name.substr(0, at), name.substr(end)};
     at = end;
   }
-  return around;
+  return parts;
 }
 
 }  // namespace catena

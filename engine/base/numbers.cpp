@@ -25,13 +25,13 @@ std::string to_text(double value) {
 }
 
 std::string format_readable(double value, int digits) {
-  constexpr double kMostWritten = 1e10, kMostFixed = 1e7, kLeastFixed = 1e-4;
+  constexpr double kMaxWritten = 1e10, kMaxFixedSize = 1e7, kMinFixedSize = 1e-4;
   if (!std::isfinite(value) || value == 0) return to_text(value + 0.0);
   const double rounded = round_to_digits(value, digits), size = std::fabs(rounded);
-  if (value == std::floor(value) && std::fabs(value) < kMostWritten && (size < kMostFixed || rounded != value))
+  if (value == std::floor(value) && std::fabs(value) < kMaxWritten && (size < kMaxFixedSize || rounded != value))
     return fmt::format("{:.0f}", value);
   char buffer[40];
-  const bool fixed = size >= kLeastFixed && size < kMostFixed;
+  const bool fixed = size >= kMinFixedSize && size < kMaxFixedSize;
   const auto format = fixed ? std::chars_format::fixed : std::chars_format::scientific;
   const std::string text(buffer, std::to_chars(buffer, buffer + sizeof buffer, rounded, format).ptr);
   const std::size_t e = text.find('e');
@@ -117,11 +117,12 @@ std::string exponent_text(long long count, int exponent) {
 }
 
 /// Returns the largest number of digits in a label.
-std::size_t most_digits(const std::vector<std::string>& labels) {
-  std::size_t most = 0;
+std::size_t max_digits(const std::vector<std::string>& labels) {
+  std::size_t maximum = 0;
   for (const std::string& label : labels)
-    most = std::max(most, static_cast<std::size_t>(std::count_if(label.begin(), label.end(), [](char c) { return c >= '0' && c <= '9'; })));
-  return most;
+    maximum =
+        std::max(maximum, static_cast<std::size_t>(std::count_if(label.begin(), label.end(), [](char c) { return c >= '0' && c <= '9'; })));
+  return maximum;
 }
 
 }  // namespace
@@ -146,9 +147,9 @@ std::vector<AxisTick> nice_ticks(double lo, double hi, int about) {
     if (readable) fixed.push_back(fixed_text(k * mantissa, exponent));
     scientific.push_back(exponent_text(k * mantissa, exponent));
   }
-  const std::size_t digits = most_digits(fixed);
-  const bool plain = readable && (digits <= kMaxFixed || digits <= most_digits(scientific));
-  const std::vector<std::string>& labels = plain ? fixed : scientific;
+  const std::size_t digits = max_digits(fixed);
+  const bool uses_fixed = readable && (digits <= kMaxFixed || digits <= max_digits(scientific));
+  const std::vector<std::string>& labels = uses_fixed ? fixed : scientific;
   std::vector<AxisTick> ticks;
   for (const std::string& label : labels) ticks.push_back({parse_double(label).value_or(0), label});
   return ticks;

@@ -44,7 +44,7 @@ T quantile(std::vector<T>& values, double q) {
 /// labels", Graphics Gems (1990), 61-63; here only ticks in [lo, hi].
 struct AxisTick {
   double value = 0;  ///< double nearest to the number in the label
-  /// Fewest digits that show the value exactly: the same number of decimals on all ticks, or an exponent on each.
+  /// Text with the minimum number of digits that show the value exactly: the same number of decimals on all ticks, or an exponent on each.
   std::string label;
 };
 

@@ -36,17 +36,17 @@ std::optional<Identity> identity_of(const std::string& name) {
   }
   // a dangling symbolic link stands for the path that it names
   std::error_code code;
-  fs::path place = fs::absolute(name, code);
-  for (int k = 0; k < kMaxSymlinks && fs::is_symlink(place, code); ++k) {
-    const fs::path to = fs::read_symlink(place, code);
-    place = to.is_absolute() ? to : place.parent_path() / to;
+  fs::path path = fs::absolute(name, code);
+  for (int k = 0; k < kMaxSymlinks && fs::is_symlink(path, code); ++k) {
+    const fs::path to = fs::read_symlink(path, code);
+    path = to.is_absolute() ? to : path.parent_path() / to;
   }
-  const fs::path folder = place.parent_path();
-  if (::stat(folder.c_str(), &about) == 0) return Identity{about.st_dev, about.st_ino, "/" + place.filename().string()};
-  return Identity{0, 0, fs::weakly_canonical(place, code).string()};
+  const fs::path folder = path.parent_path();
+  if (::stat(folder.c_str(), &about) == 0) return Identity{about.st_dev, about.st_ino, "/" + path.filename().string()};
+  return Identity{0, 0, fs::weakly_canonical(path, code).string()};
 }
 
-Outcome check_place(const std::string& path) {
+Outcome check_target(const std::string& path) {
   std::error_code code;
   if (fs::is_directory(path, code)) return Error{path + ": is a folder: expected a file name to write to"};
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
@@ -61,9 +61,9 @@ bool is_same_file(const std::string& a, const std::string& b) {
   return first && first == identity_of(b);
 }
 
-bool is_path_within(const std::string& place, const std::string& folder) {
+bool is_path_within(const std::string& path, const std::string& folder) {
   std::error_code code;
-  const fs::path inner = fs::weakly_canonical(fs::absolute(place, code), code),
+  const fs::path inner = fs::weakly_canonical(fs::absolute(path, code), code),
                  outer = fs::weakly_canonical(fs::absolute(folder, code), code);
   const auto [end, ignored] = std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end());
   return !code && end == outer.end() && inner != outer;
@@ -76,12 +76,12 @@ Outcome check_outputs(const std::vector<PlannedOutput>& outputs, const std::vect
   std::map<Identity, const PlannedOutput*> written;
   for (const PlannedOutput& output : outputs) {
     if (output.path.empty()) continue;
-    CATENA_CHECK(check_place(output.path));
+    CATENA_CHECK(check_target(output.path));
     const auto identity = identity_of(output.path);
     if (!identity) continue;
     if (read.contains(*identity)) return Error{output.path + ": is also an input: expected another name for the output"};
-    const auto [at, fresh] = written.emplace(*identity, &output);
-    if (!fresh)
+    const auto [at, inserted] = written.emplace(*identity, &output);
+    if (!inserted)
       return Error{output.path + ": " + at->second->option + " and " + output.option + " name one file: expected " +
                    (at->second->option == output.option ? "one a frame" : "two")};
   }
@@ -147,12 +147,12 @@ Result<OutputFile> OutputFile::open(const std::string& name) {
   }
   CATENA_TRY(TemporaryFile part, TemporaryFile::create(path));
   // the stream gets a duplicate descriptor: the temporary file's own keeps the lock until the end
-  const int own = ::fcntl(part.descriptor(), F_DUPFD_CLOEXEC, 0);
-  std::FILE* const file = own < 0 ? nullptr : ::fdopen(own, "wb");
+  const int stream_descriptor = ::fcntl(part.descriptor(), F_DUPFD_CLOEXEC, 0);
+  std::FILE* const file = stream_descriptor < 0 ? nullptr : ::fdopen(stream_descriptor, "wb");
   if (file == nullptr) {
-    const int why = errno;
-    if (own >= 0) ::close(own);
-    return cannot_write(path, why);
+    const int error_number = errno;
+    if (stream_descriptor >= 0) ::close(stream_descriptor);
+    return cannot_write(path, error_number);
   }
   return OutputFile(path, std::move(part), file);
 }

@@ -27,14 +27,14 @@ struct PlannedOutput {
 /// Checks the outputs of a run. Error (one line): the folder does not exist, the path is a folder, an output is one of the inputs, or two
 /// outputs are the same file.
 Outcome check_outputs(const std::vector<PlannedOutput>& outputs, const std::vector<std::string>& inputs);
-/// The same for one output; an empty path is an Error.
+/// Checks one output as check_outputs() does; an empty path is an Error.
 Outcome check_output(const std::string& path, const std::vector<std::string>& inputs);
 
 /// Returns true when two names lead to the same file, existing or not. False for devices and pipes.
 bool is_same_file(const std::string& a, const std::string& b);
 
 /// Returns true when a path, existing or not, is anywhere below a folder.
-bool is_path_within(const std::string& place, const std::string& folder);
+bool is_path_within(const std::string& path, const std::string& folder);
 
 /// Temporary file to which an output is written before it is renamed to its final path, so that the final path always has the complete old
 /// or the complete new content. It is in the same folder and is called NAME.part<pid>-<random>. It is created exclusively (O_EXCL: never an
@@ -54,7 +54,7 @@ class TemporaryFile {
   const std::string& name() const { return name_; }
   /// Returns the descriptor; -1 after release().
   int descriptor() const { return descriptor_; }
-  /// Renames the file to its final path, replacing what is there. On an Error the old content stays.
+  /// Renames the file to its final path, and replaces an existing file. On an Error the old content stays.
   Outcome commit();
   /// Like commit(), but never replaces a file: returns false when something exists at the final path.
   Result<bool> commit_new();

@@ -10,14 +10,14 @@
 namespace catena {
 
 namespace {
-std::atomic<bool> spoken{false};
+std::atomic<bool> reported{false};
 }  // namespace
 
-bool assertion_was_reported() noexcept { return spoken; }
+bool assertion_was_reported() noexcept { return reported; }
 
 void assertion_failed(const char* expression, const char* file, int line) {
   std::fprintf(stderr, "catena: a bug: %s at %s:%d\n", expression, file, line);
-  spoken = true;
+  reported = true;
   std::abort();
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// Status of a field sample: why a line ends or a link cannot continue at a position, in addition to its own status.
+/// Status of a field sample: the reason that a line ends or a link cannot continue at a position, in addition to the status of the line or
+/// link.
 #pragma once
 #include <cstdint>
 
 namespace catena {
 
-/// Why the field has no usable sample at a position.
+/// Reason that the field has no usable sample at a position.
 enum class SampleStatus : std::uint8_t {
   ok,           ///< usable sample
   zero,         ///< no direction: |v| (or the gradient) vanishes, or the speed is not above min_speed

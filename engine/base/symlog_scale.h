@@ -4,7 +4,7 @@
 ///   s(v) = v / c                         |v| <= c
 ///   s(v) = sign(v) (1 + ln(|v| / c))     |v| > c
 /// The scale and its slope are continuous. For values >= c it is a logarithm plus a constant, so a logarithmic scale is this scale with c =
-/// the smallest value. linear_below = 0 stands for the linear scale, s(v) = v. Pure functions, any thread.
+/// the smallest value. linear_below = 0 means the linear scale, s(v) = v. Pure functions, any thread.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -20,11 +20,11 @@ inline double symlog(double value, double linear_below) {
   return ratio <= 1 ? value / linear_below : std::copysign(1 + std::log(ratio), value);
 }
 
-/// Returns the value v with s(v) = `place`.
-inline double symlog_inverse(double place, double linear_below) {
-  if (!(linear_below > 0)) return place;
-  const double size = std::fabs(place);
-  return size <= 1 ? place * linear_below : std::copysign(linear_below * std::exp(size - 1), place);
+/// Returns the value v with s(v) = `coordinate`, a position on the scale.
+inline double symlog_inverse(double coordinate, double linear_below) {
+  if (!(linear_below > 0)) return coordinate;
+  const double size = std::fabs(coordinate);
+  return size <= 1 ? coordinate * linear_below : std::copysign(linear_below * std::exp(size - 1), coordinate);
 }
 
 /// Returns the value at the fraction t, 0 to 1, of the distance from lo to hi on the scale; exactly lo and hi at the ends.
@@ -40,19 +40,19 @@ inline double symlog_interpolate(double lo, double hi, double t, double linear_b
 /// segment over an interval of length h of s deviates by h^2 / 8 of the slope there.
 template <std::size_t N>
 std::vector<std::array<double, N>> refine_for_symlog(const std::vector<std::array<double, N>>& rows, double linear_below, double share) {
-  constexpr double kMost = 1024;
+  constexpr double kMaxParts = 1024;
   if (!(linear_below > 0) || rows.size() < 2) return rows;
-  std::array<double, N> most{};
+  std::array<double, N> maxima{};
   for (const auto& row : rows)
-    for (std::size_t c = 1; c < N; ++c) most[c] = std::max(most[c], std::fabs(row[c]));
+    for (std::size_t c = 1; c < N; ++c) maxima[c] = std::max(maxima[c], std::fabs(row[c]));
   std::vector<std::array<double, N>> out{rows.front()};
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const auto &a = rows[i - 1], &b = rows[i];
     double change = 0;
     for (std::size_t c = 1; c < N; ++c)
-      if (most[c] > 0) change = std::max(change, std::fabs(b[c] - a[c]) / most[c]);
+      if (maxima[c] > 0) change = std::max(change, std::fabs(b[c] - a[c]) / maxima[c]);
     const double length = symlog(b[0], linear_below) - symlog(a[0], linear_below);
-    const double parts = std::clamp(std::ceil(std::sqrt(change * length / (8 * share))), 1.0, kMost);
+    const double parts = std::clamp(std::ceil(std::sqrt(change * length / (8 * share))), 1.0, kMaxParts);
     for (double k = 1; k < parts; ++k) {
       std::array<double, N> row;
       row[0] = symlog_interpolate(a[0], b[0], k / parts, linear_below);

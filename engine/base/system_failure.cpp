@@ -34,7 +34,7 @@ constexpr std::array<SystemFailure, 11> kCauses{{
     {EAGAIN, RLIMIT_NPROC, kProcesses},  // from fork and thread creation; elsewhere another exhausted resource
 }};
 
-std::string limit_words(const SystemFailure& cause) {
+std::string limit_text(const SystemFailure& cause) {
   const auto value = cause.limit < 0 ? std::nullopt : resource_limit(cause.limit);
   if (!value) return {};
   return fmt::format(fmt::runtime(cause.limit_format), cause.limit == RLIMIT_AS ? *value / 1024 : *value);
@@ -53,7 +53,7 @@ bool is_system_failure(int code) { return find_cause(code) != nullptr; }
 
 std::string describe_errno(int code) {
   const SystemFailure* cause = find_cause(code);
-  const std::string limit = cause != nullptr ? limit_words(*cause) : std::string();
+  const std::string limit = cause != nullptr ? limit_text(*cause) : std::string();
   return limit.empty() ? std::strerror(code) : fmt::format("{} ({})", std::strerror(code), limit);
 }
 
@@ -67,25 +67,25 @@ std::optional<unsigned long long> resource_limit(int limit) {
 }
 
 const char* out_of_memory_message() noexcept {
-  static thread_local char words[200];
+  static thread_local char message[200];
   const auto limit = resource_limit(RLIMIT_AS);
   if (limit)
     std::snprintf(
-        words, sizeof words,
+        message, sizeof message,
         "out of memory: this process may have at most %llu KiB of addresses: ulimit -v; expected more, or less to load or to draw",
         *limit / 1024);
   else
-    std::snprintf(words, sizeof words,
+    std::snprintf(message, sizeof message,
                   "out of memory: this machine gives no more; expected less to load or to draw, or fewer programs beside this one");
-  return words;
+  return message;
 }
 
 std::string describe_resource_limits() {
   std::string all;
   for (const SystemFailure& cause : kCauses)
     // only limits that are rarely set: every user has a limit on processes, and every shell one on open files
-    if (const std::string words = cause.limit == RLIMIT_AS || cause.limit == RLIMIT_FSIZE ? limit_words(cause) : ""; !words.empty())
-      all += (all.empty() ? "" : "; ") + words;
+    if (const std::string text = cause.limit == RLIMIT_AS || cause.limit == RLIMIT_FSIZE ? limit_text(cause) : ""; !text.empty())
+      all += (all.empty() ? "" : "; ") + text;
   return all;
 }
 

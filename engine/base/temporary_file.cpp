@@ -31,16 +31,16 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kDigits = 12;
-constexpr std::size_t kLongestStem = 200;  // of the output's name, in bytes: a file name is limited to 255
+constexpr std::size_t kMaxStem = 200;  // of the output's name, in bytes: a file name is limited to 255
 
 Error cannot_write_part(const std::string& path, int code) { return system_error(path + ": cannot write", code); }
 
 /// Returns ".../flow.json.part", the common prefix of the output's temporary files.
-std::string beginning_of(const std::string& path) {
-  const fs::path place(path);
-  std::string name = place.filename().string();
-  name.resize(std::min(name.size(), kLongestStem));
-  return (place.parent_path() / (name + ".part")).string();
+std::string prefix_of(const std::string& path) {
+  const fs::path full_path(path);
+  std::string name = full_path.filename().string();
+  name.resize(std::min(name.size(), kMaxStem));
+  return (full_path.parent_path() / (name + ".part")).string();
 }
 
 /// Returns the process ID from "<pid>-<12 hexadecimal digits>"; 0 for any other text: the file is not one of Catena's.
@@ -52,7 +52,7 @@ pid_t process_of(std::string_view after_part) {
   return std::all_of(end + 1, last, [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); }) ? pid : 0;
 }
 
-bool runs(pid_t pid) { return ::kill(pid, 0) == 0 || errno != ESRCH; }
+bool is_running(pid_t pid) { return ::kill(pid, 0) == 0 || errno != ESRCH; }
 
 /// Returns true for a folder of at least 60 s of age; a younger one may not be locked yet by its creator. If an old folder's lock is free,
 /// its program has ended, even if another process has that ID (in containers all programs may have the same one).
@@ -64,25 +64,25 @@ bool is_old_folder(const fs::path& path) {
 
 /// Returns the files that ended programs may have left in a folder. The folder is read at most once a second: the images of a long
 /// sequence go into one folder.
-std::vector<std::string> left_in(const fs::path& folder) {
+std::vector<std::string> leftover_files(const fs::path& folder) {
   static std::mutex mutex;
   static fs::path last_folder;
   static std::chrono::steady_clock::time_point last_time;
-  static std::vector<std::string> left;
+  static std::vector<std::string> files;
   const std::lock_guard lock(mutex);
   const auto now = std::chrono::steady_clock::now();
-  if (folder == last_folder && now - last_time < std::chrono::seconds(1)) return left;
+  if (folder == last_folder && now - last_time < std::chrono::seconds(1)) return files;
   last_folder = folder;
   last_time = now;
-  left.clear();
+  files.clear();
   std::error_code code;
   for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code)) {
     const std::string name = it->path().filename().string();
     const auto at = name.rfind(".part");
     const pid_t pid = at == std::string::npos ? 0 : process_of(std::string_view(name).substr(at + 5));
-    if (pid != 0 && (!runs(pid) || is_old_folder(it->path()))) left.push_back(it->path().string());
+    if (pid != 0 && (!is_running(pid) || is_old_folder(it->path()))) files.push_back(it->path().string());
   }
-  return left;
+  return files;
 }
 
 }  // namespace
@@ -91,19 +91,19 @@ std::string temporary_name(const std::string& path) {
   static std::mutex mutex;
   static std::mt19937_64 random{std::random_device{}()};
   const std::lock_guard lock(mutex);
-  char tail[64];
-  std::snprintf(tail, sizeof tail, "%d-%0*llx", static_cast<int>(::getpid()), static_cast<int>(kDigits),
+  char suffix[64];
+  std::snprintf(suffix, sizeof suffix, "%d-%0*llx", static_cast<int>(::getpid()), static_cast<int>(kDigits),
                 static_cast<unsigned long long>(random() & 0xffffffffffffULL));
-  return beginning_of(path) + tail;
+  return prefix_of(path) + suffix;
 }
 
 void remove_stale_temporaries(const std::string& path) {
-  const std::string beginning = beginning_of(path);
+  const std::string prefix = prefix_of(path);
   const fs::path folder = fs::path(path).parent_path();
-  for (const std::string& name : left_in(folder.empty() ? fs::path(".") : folder)) {
-    const std::string mine = fs::path(name).filename().string();
-    if (!mine.starts_with(fs::path(beginning).filename().string()) ||
-        process_of(mine.substr(fs::path(beginning).filename().string().size())) == 0)
+  for (const std::string& name : leftover_files(folder.empty() ? fs::path(".") : folder)) {
+    const std::string file_name = fs::path(name).filename().string();
+    if (!file_name.starts_with(fs::path(prefix).filename().string()) ||
+        process_of(file_name.substr(fs::path(prefix).filename().string().size())) == 0)
       continue;
     // another machine or container may write into the same folder: its files are locked
     const int descriptor = ::open(name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
@@ -129,10 +129,10 @@ Result<TemporaryFile> TemporaryFile::create(const std::string& path, bool owner_
     TemporaryFile part(path, temporary_name(path), -1);
     part.descriptor_ = ::open(part.name_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
     if (part.descriptor_ < 0) {
-      const int why = errno;
+      const int code = errno;
       part.name_.clear();
-      if (why == EEXIST && attempt < 100) continue;
-      return cannot_write_part(path, why);
+      if (code == EEXIST && attempt < 100) continue;
+      return cannot_write_part(path, code);
     }
     if (replaces && !owner_only) static_cast<void>(::fchmod(part.descriptor_, mode));
     static_cast<void>(::flock(part.descriptor_, LOCK_EX | LOCK_NB));

@@ -19,7 +19,7 @@ namespace catena {
 namespace {
 
 /// Returns a message fragment for a file that is not regular.
-const char* kind_of_place(mode_t mode) {
+const char* describe_kind(mode_t mode) {
   if (S_ISDIR(mode)) return "is a folder";
   if (S_ISFIFO(mode)) return "is a pipe";
   if (S_ISSOCK(mode)) return "is a socket";
@@ -38,18 +38,18 @@ struct Closer {
 
 }  // namespace
 
-Result<std::string> read_text_file(const std::string& path, std::string_view expected, std::uint64_t most_bytes) {
-  const auto failed = [&](const std::string& why) {
-    return Error{one_line(path + ": " + why + "; " + std::string(expected) + " was expected")};
+Result<std::string> read_text_file(const std::string& path, std::string_view expected, std::uint64_t max_bytes) {
+  const auto failed = [&](const std::string& problem) {
+    return Error{one_line(path + ": " + problem + "; " + std::string(expected) + " was expected")};
   };
-  const auto unreadable = [&](int why) {
-    Error error = failed("cannot be read: " + describe_errno(why));
-    error.system_failure = is_system_failure(why);
+  const auto unreadable = [&](int code) {
+    Error error = failed("cannot be read: " + describe_errno(code));
+    error.system_failure = is_system_failure(code);
     return error;
   };
   const auto too_large = [&](std::uint64_t bytes) {
     return Error{one_line(path + ": is " + size_in_words(bytes) + " large; " + std::string(expected) + " of at most " +
-                          size_in_words(most_bytes) + " was expected")};
+                          size_in_words(max_bytes) + " was expected")};
   };
   // opens a pipe without a writer without blocking; it is rejected below
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
@@ -60,13 +60,13 @@ Result<std::string> read_text_file(const std::string& path, std::string_view exp
   const Closer closer{descriptor};
   struct stat about {};
   if (::fstat(descriptor, &about) != 0) return unreadable(errno);
-  if (!S_ISREG(about.st_mode)) return failed(kind_of_place(about.st_mode));
+  if (!S_ISREG(about.st_mode)) return failed(describe_kind(about.st_mode));
   const auto size = static_cast<std::uint64_t>(about.st_size);
-  if (size > most_bytes) return too_large(size);
+  if (size > max_bytes) return too_large(size);
   // a sparse file is no text: it is rejected before it is read
-  constexpr std::uint64_t kLarge = 16 << 20, kMostRatio = 100;
+  constexpr std::uint64_t kLarge = 16 << 20, kMaxRatio = 100;
   const std::uint64_t on_disk = 512 * static_cast<std::uint64_t>(about.st_blocks);
-  if (size > kLarge && on_disk < size / kMostRatio)
+  if (size > kLarge && on_disk < size / kMaxRatio)
     return failed("is " + size_in_words(size) + " large, with " + size_in_words(on_disk) + " on the disk and nothing else");
   CATENA_CHECK(check_text_memory_available(one_line(path), static_cast<double>(size)));
   std::string text;
@@ -78,7 +78,7 @@ Result<std::string> read_text_file(const std::string& path, std::string_view exp
     if (got < 0) return unreadable(errno);
     if (got == 0) return text;
     // the file has grown while it was read
-    if (text.size() + static_cast<std::size_t>(got) > most_bytes) return too_large(text.size() + static_cast<std::size_t>(got));
+    if (text.size() + static_cast<std::size_t>(got) > max_bytes) return too_large(text.size() + static_cast<std::size_t>(got));
     text.append(buffer, static_cast<std::size_t>(got));
   }
 }
@@ -89,10 +89,10 @@ std::string_view strip_bom(std::string_view text) {
 }
 
 std::string in_quotes(std::string_view text) {
-  constexpr std::size_t longest = 60;
+  constexpr std::size_t max_length = 60;
   std::string out = "\"";
-  for (char c : text.substr(0, longest)) out += (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) ? '?' : c;
-  return out + (text.size() > longest ? "...\"" : "\"");
+  for (char c : text.substr(0, max_length)) out += (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) ? '?' : c;
+  return out + (text.size() > max_length ? "...\"" : "\"");
 }
 
 std::string one_line(std::string text) {
@@ -115,8 +115,8 @@ std::size_t utf8_character(std::string_view text, std::uint32_t& number) {
     number = number << 6 | (byte(i) & 0x3f);
   }
   // rejects overlong encodings, surrogates and code points above 0x10ffff
-  constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
-  return number >= kLeast[length] && number <= 0x10ffff && (number < 0xd800 || number > 0xdfff) ? length : 0;
+  constexpr std::uint32_t kMinCodePoint[] = {0, 0, 0x80, 0x800, 0x10000};
+  return number >= kMinCodePoint[length] && number <= 0x10ffff && (number < 0xd800 || number > 0xdfff) ? length : 0;
 }
 
 bool is_control(std::uint32_t c) {
@@ -154,21 +154,21 @@ bool has_extension(std::string_view name, std::string_view lower_case) {
   return std::equal(name.begin(), name.end(), lower_case.begin(), [&](char a, char b) { return lower(a) == b; });
 }
 
-std::string join_words(const std::vector<std::string_view>& words, std::size_t most) {
+std::string join_words(const std::vector<std::string_view>& words, std::size_t max_count) {
   std::string out;
-  const std::size_t shown = std::min(words.size(), most);
-  for (std::size_t i = 0; i < shown; ++i) out.append(i == 0 ? "" : ", ").append(words[i]);
-  if (shown < words.size()) out += " and " + std::to_string(words.size() - shown) + " more";
+  const std::size_t listed = std::min(words.size(), max_count);
+  for (std::size_t i = 0; i < listed; ++i) out.append(i == 0 ? "" : ", ").append(words[i]);
+  if (listed < words.size()) out += " and " + std::to_string(words.size() - listed) + " more";
   return out;
 }
 
 std::string strip_addresses(std::string text) {
   const auto is_hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); };
-  constexpr std::size_t kLeastDigits = 6;
+  constexpr std::size_t kMinDigits = 6;
   for (std::size_t at = 0; (at = text.find("0x", at)) != std::string::npos;) {
     std::size_t begin = at, end = at + 2;
     while (end < text.size() && is_hex(text[end])) ++end;
-    if (end - at < 2 + kLeastDigits) {
+    if (end - at < 2 + kMinDigits) {
       at = end;
       continue;
     }
@@ -181,9 +181,9 @@ std::string strip_addresses(std::string text) {
   return text;
 }
 
-std::string truncate_utf8(std::string text, std::size_t most) {
-  if (text.size() <= most) return text;
-  std::size_t end = most - std::min<std::size_t>(most, 3);
+std::string truncate_utf8(std::string text, std::size_t max_bytes) {
+  if (text.size() <= max_bytes) return text;
+  std::size_t end = max_bytes - std::min<std::size_t>(max_bytes, 3);
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
   text.resize(end);
   return text + "...";
@@ -208,9 +208,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string make_unique_name(const std::string& name, const std::function<bool(const std::string&)>& is_taken) {
-  std::string free = name;
-  for (int n = 2; is_taken(free); ++n) free = name + "_" + std::to_string(n);
-  return free;
+  std::string unique_name = name;
+  for (int n = 2; is_taken(unique_name); ++n) unique_name = name + "_" + std::to_string(n);
+  return unique_name;
 }
 
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& words) {

@@ -15,10 +15,10 @@ namespace catena {
 /// Largest size in bytes of text files that are accepted: scenes and other JSON; tables of numbers and all other texts.
 inline constexpr std::uint64_t kMaxJsonBytes = std::uint64_t{128} << 20, kMaxTextBytes = std::uint64_t{1} << 30;
 
-/// Reads a whole regular file of at most `most_bytes`. Nothing is allocated for a larger one, and pipes, devices and sockets are rejected
+/// Reads a whole regular file of at most `max_bytes`. Nothing is allocated for a larger one, and pipes, devices and sockets are rejected
 /// without waiting. Error: PATH, why it cannot be read, and that `expected` ("a scene file") was expected; also for a file above 16 MiB
 /// that is mostly holes, or larger than the memory budget.
-Result<std::string> read_text_file(const std::string& path, std::string_view expected, std::uint64_t most_bytes = kMaxTextBytes);
+Result<std::string> read_text_file(const std::string& path, std::string_view expected, std::uint64_t max_bytes = kMaxTextBytes);
 
 /// Removes a UTF-8 byte order mark from the start.
 std::string_view strip_bom(std::string_view text);
@@ -41,10 +41,10 @@ inline constexpr std::size_t kMaxLineBytes = 2000;
 /// Removes object addresses from a library's message: "vtkFoo (0x55d0c8a0): bad" becomes "vtkFoo: bad".
 std::string strip_addresses(std::string text);
 
-/// Returns `a, b, c`; with more than `most` names `a, b, c and 7 more`.
-std::string join_words(const std::vector<std::string_view>& words, std::size_t most = kMaxListedNames);
-/// Cuts a text to at most `most` bytes at the boundary of a UTF-8 character; a text that was cut ends in "...".
-std::string truncate_utf8(std::string text, std::size_t most);
+/// Returns `a, b, c`; with more than `max_count` names `a, b, c and 7 more`.
+std::string join_words(const std::vector<std::string_view>& words, std::size_t max_count = kMaxListedNames);
+/// Cuts a text to at most `max_bytes` bytes at the boundary of a UTF-8 character; a text that was cut ends in "...".
+std::string truncate_utf8(std::string text, std::size_t max_bytes);
 /// Returns `a, b or c`.
 std::string join_alternatives(const std::vector<std::string_view>& words);
 

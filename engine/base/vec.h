@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Vectors, matrices and quaternions used throughout Catena: GLM in double precision (single precision is used on the GPU only).
-// A guard beside the pragma: this header is in the precompiled one, which a compiler cache may return as it was before a comment
-// changed. GCC then takes the header for another file, and only the guard keeps it out.
+// The include guard is needed in addition to the pragma. The precompiled header contains this header, and a compiler cache may return a
+// precompiled header that was made from this header with other comments. GCC then treats the two as different files and includes both.
 #pragma once
 #ifndef CATENA_BASE_VEC_H
 #define CATENA_BASE_VEC_H

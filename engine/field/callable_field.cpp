@@ -17,8 +17,8 @@ SampleStatus why_not(const Bounds& domain, const Vec3& world) {
 
 class ScalarByFunction final : public ScalarField {
  public:
-  ScalarByFunction(std::string name, const Bounds& domain, ScalarFunction function, double least, double most)
-      : function_(std::move(function)), domain_(domain), least_(least), most_(most) {
+  ScalarByFunction(std::string name, const Bounds& domain, ScalarFunction function, double min_value, double max_value)
+      : function_(std::move(function)), domain_(domain), min_value_(min_value), max_value_(max_value) {
     set_domain(std::move(name), Mapping{}, {domain.lo, domain.hi});
   }
   ScalarSample sample(const Vec3& world, Cursor&) const noexcept override {
@@ -32,13 +32,13 @@ class ScalarByFunction final : public ScalarField {
   SampleStatus status_outside(const Vec3& world, Cursor& cursor) const noexcept override {
     return sample(world, cursor).inside ? SampleStatus::ok : why_not(domain_, world);
   }
-  double min_value() const noexcept override { return least_; }
-  double max_value() const noexcept override { return most_; }
+  double min_value() const noexcept override { return min_value_; }
+  double max_value() const noexcept override { return max_value_; }
 
  private:
   ScalarFunction function_;
   Bounds domain_;
-  double least_, most_;
+  double min_value_, max_value_;
 };
 
 class VectorByFunction final : public VectorField {
@@ -63,9 +63,9 @@ class VectorByFunction final : public VectorField {
 
 }  // namespace
 
-ScalarFieldPtr make_callable_field(std::string name, const Bounds& domain, ScalarFunction function, double least, double most) {
+ScalarFieldPtr make_callable_field(std::string name, const Bounds& domain, ScalarFunction function, double min_value, double max_value) {
   CATENA_ASSERT(is_box(domain));
-  return std::make_shared<ScalarByFunction>(std::move(name), domain, std::move(function), least, most);
+  return std::make_shared<ScalarByFunction>(std::move(name), domain, std::move(function), min_value, max_value);
 }
 
 VectorFieldPtr make_callable_field(std::string name, const Bounds& domain, VectorFunction function) {

@@ -22,12 +22,12 @@ using ScalarFunction = std::function<double(const Vec3& world, Vec3& gradient)>;
 /// Returns the vector at a position, in world axes; a result that is not finite means that there is no vector.
 using VectorFunction = std::function<Vec3(const Vec3& world)>;
 
-/// Makes a scalar field. `domain` must be non-empty and finite; anything else is a bug and asserts. `least` and `most`: range of the values
-/// over all space; an isosurface outside of it is refused.
+/// Makes a scalar field. `domain` must be non-empty and finite; anything else is a bug and asserts. `min_value` and `max_value`: range of
+/// the values over all space; an isosurface outside of it is refused.
 CATENA_EXPORT ScalarFieldPtr make_callable_field(std::string name, const Bounds& domain, ScalarFunction function,
-                                                 double least = -std::numeric_limits<double>::infinity(),
-                                                 double most = std::numeric_limits<double>::infinity());
-/// Makes a vector field; `domain` as above.
+                                                 double min_value = -std::numeric_limits<double>::infinity(),
+                                                 double max_value = std::numeric_limits<double>::infinity());
+/// Makes a vector field. `domain` must be non-empty and finite; anything else is a bug and asserts.
 CATENA_EXPORT VectorFieldPtr make_callable_field(std::string name, const Bounds& domain, VectorFunction function);
 
 }  // namespace catena::field

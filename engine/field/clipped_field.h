@@ -9,9 +9,9 @@ namespace catena::field {
 /// View of a vector field that reports samples outside of a box as not inside.
 class ClippedVectorField final : public VectorField {
  public:
-  /// `whole` must outlive this object; `box` is in world coordinates. The domain length L (Field::domain_length) is the longest edge of the
-  /// box.
-  ClippedVectorField(const VectorField& whole, const Box& box) : source_(whole), box_(box) { set_domain(whole.name(), {}, box); }
+  /// `source` must outlive this object; `box` is in world coordinates. The domain length L (Field::domain_length) is the longest edge of
+  /// the box.
+  ClippedVectorField(const VectorField& source, const Box& box) : source_(source), box_(box) { set_domain(source.name(), {}, box); }
 
   VectorSample sample(const Vec3& world, Cursor& cursor) const noexcept override {
     VectorSample s = source_.sample(world, cursor);

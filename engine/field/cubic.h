@@ -46,7 +46,7 @@ inline void cubic_values(const T* rows, const CubicWeights& w, double* value) {
     value[n] = c + (w.value[0] * a + w.value[1] * b + w.value[2] * d);
   }
 }
-/// The same with the slope along that axis, in index space.
+/// Interpolates four rows of N numbers along one axis, and computes the slopes along this axis in index space.
 template <int N, class T>
 inline void cubic_values(const T* rows, const CubicWeights& w, double* value, double* slope) {
   for (int n = 0; n < N; ++n) {

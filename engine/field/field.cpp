@@ -24,7 +24,7 @@ void Field::set_domain(std::string name, const Mapping& mapping, const Box& inde
 
 std::string no_surface_hint(const ScalarField& field, const std::string& name) {
   if (field.interpolation() != Interpolation::nearest) return {};
-  return "field \"" + name + "\" is read by its nearest voxels: it has no surface of its own; a field {\"label\": NUMBER, \"of\": \"" +
+  return "field \"" + name + "\" has the interpolation \"nearest\", which has no isosurfaces; a field {\"label\": NUMBER, \"of\": \"" +
          name + "\"} at level 0.5, or \"interpolation\": \"linear\", was expected";
 }
 
@@ -33,12 +33,12 @@ SampleStatus Field::status_outside(const Vec3& world, Cursor&) const noexcept {
 }
 
 LineSample VectorField::sample_line(const Vec3& world, Cursor& cursor) const noexcept {
-  const VectorSample here = sample(world, cursor);
+  const VectorSample vector_sample = sample(world, cursor);
   LineSample s;
-  s.axis = direction(here.value);
-  s.speed = norm(here.value);
+  s.axis = direction(vector_sample.value);
+  s.speed = norm(vector_sample.value);
   s.coherence = s.speed > 0 ? 1 : 0;
-  s.inside = here.inside;
+  s.inside = vector_sample.inside;
   return s;
 }
 

@@ -14,15 +14,15 @@
 namespace catena::field {
 namespace {
 
-constexpr std::size_t kSampledBlocks = 256, kRangeGrain = 64, kMostTiles = 4096, kVoxelsOfLeaf = 512;
+constexpr std::size_t kSampledBlocks = 256, kRangeGrain = 64, kMaxTiles = 4096, kVoxelsOfLeaf = 512;
 
 float size_of(float value) { return value; }
 float size_of(const nanovdb::Vec3f& v) { return static_cast<float>(norm(Vec3(v[0], v[1], v[2]))); }
 
-/// Calls take(value, voxels) for active, valid voxels with a finite value: for those of every `step`-th leaf, and once for each tile.
-template <class T, class Take>
+/// Calls visit(value, voxels) for active, valid voxels with a finite value: for those of every `step`-th leaf, and once for each tile.
+template <class T, class Visit>
 void values_of_leaves(const NanoNodes<T>& nodes, const NanoMask* mask, std::size_t begin, std::size_t end, std::size_t step,
-                      const Take& take) {
+                      const Visit& visit) {
   std::optional<MaskView> valid;
   if (mask) valid.emplace(*mask);
   for (std::size_t n = begin; n < end; n += step) {
@@ -32,21 +32,21 @@ void values_of_leaves(const NanoNodes<T>& nodes, const NanoMask* mask, std::size
       if (valid) on &= valid->word(leaf.mBBoxMin, x);
       for (; on != 0; on &= on - 1) {
         const float value = size_of(leaf.mValues[64 * x + std::countr_zero(on)]);
-        if (std::isfinite(value)) take(value, std::uint64_t{1});
+        if (std::isfinite(value)) visit(value, std::uint64_t{1});
       }
     }
   }
 }
 
-template <class T, class Take>
-void values_of_tiles(const NanoNodes<T>& nodes, const NanoMask* mask, const Take& take) {
+template <class T, class Visit>
+void values_of_tiles(const NanoNodes<T>& nodes, const NanoMask* mask, const Visit& visit) {
   std::optional<MaskView> valid;
   if (mask) valid.emplace(*mask);
   const auto tile = [&](const nanovdb::Coord& origin, std::int32_t edge, const auto& stored) {
     const float value = size_of(stored);
-    const auto wide = static_cast<std::uint64_t>(edge);
-    const std::uint64_t count = valid ? valid->count(origin, edge) : wide * wide * wide;
-    if (std::isfinite(value) && count > 0) take(value, count);
+    const auto width = static_cast<std::uint64_t>(edge);
+    const std::uint64_t count = valid ? valid->count(origin, edge) : width * width * width;
+    if (std::isfinite(value) && count > 0) visit(value, count);
   };
   for (const auto& lower : nodes.lowers) for_active_tiles(lower, tile);
   for (const auto& upper : nodes.uppers) for_active_tiles(upper, tile);
@@ -65,14 +65,14 @@ DisplayRange compute_display_range(const nanovdb::NanoGrid<T>& grid, const NanoM
   const std::size_t copies = std::max<std::size_t>(1, kVoxelsOfLeaf / step);
   std::size_t tiles = 0;
   values_of_tiles(nodes, mask, [&](float v, std::uint64_t) {
-    if (++tiles <= kMostTiles) sample.insert(sample.end(), copies, v);
+    if (++tiles <= kMaxTiles) sample.insert(sample.end(), copies, v);
   });
-  DisplayRange rough = catena::display_range(std::move(sample), stats.min, stats.max);
-  if (!rough.has_outliers()) {
-    rough.count = stats.active_voxels - stats.nan_count;
-    return rough;
+  DisplayRange estimate = catena::display_range(std::move(sample), stats.min, stats.max);
+  if (!estimate.has_outliers()) {
+    estimate.count = stats.active_voxels - stats.nan_count;
+    return estimate;
   }
-  const RangeCounter none(rough);
+  const RangeCounter none(estimate);
   RangeCounter all = none;
   std::mutex mutex;
   parallel_for(nodes.leaves.size(), kRangeGrain, [&](std::size_t begin, std::size_t end) {
@@ -123,34 +123,34 @@ DisplayRange display_range(const AnyField& field) {
 DisplayRange display_range(std::span<const double> values, const AnyField& of) {
   if (of.get() == nullptr) return catena::display_range(values);
   const DisplayRange field = display_range(of);
-  std::vector<double> shown;
+  std::vector<double> displayed;
   for (const double v : values)
-    if (std::isfinite(v) && (field.below.count == 0 || v >= field.lo) && (field.above.count == 0 || v <= field.hi)) shown.push_back(v);
-  if (shown.empty()) return field.has_outliers() ? field : DisplayRange{};
-  const auto [lo, hi] = std::ranges::minmax(shown);
-  return {lo, hi, field.data_min, field.data_max, shown.size(), field.below, field.above};
+    if (std::isfinite(v) && (field.below.count == 0 || v >= field.lo) && (field.above.count == 0 || v <= field.hi)) displayed.push_back(v);
+  if (displayed.empty()) return field.has_outliers() ? field : DisplayRange{};
+  const auto [lo, hi] = std::ranges::minmax(displayed);
+  return {lo, hi, field.data_min, field.data_max, displayed.size(), field.below, field.above};
 }
 
-void for_sampled_blocks(const Box& box, std::size_t most, const BlockVisitor& take) {
+void for_sampled_blocks(const Box& box, std::size_t max_samples, const BlockVisitor& visit) {
   const Index3 lo{static_cast<int>(box.lo.x), static_cast<int>(box.lo.y), static_cast<int>(box.lo.z)};
   const Index3 size{static_cast<int>(box.hi.x - box.lo.x) + 1, static_cast<int>(box.hi.y - box.lo.y) + 1,
                     static_cast<int>(box.hi.z - box.lo.z) + 1};
   const double voxels = static_cast<double>(size.x) * size.y * size.z;
-  const int every = std::max(1, static_cast<int>(std::ceil(std::cbrt(voxels / static_cast<double>(most)))));
+  const int stride = std::max(1, static_cast<int>(std::ceil(std::cbrt(voxels / static_cast<double>(max_samples)))));
 
-  for (int z = 0; z < size.z; z += 8 * every)
-    for (int y = 0; y < size.y; y += 8 * every)
-      for (int x = 0; x < size.x; x += 8 * every) {
+  for (int z = 0; z < size.z; z += 8 * stride)
+    for (int y = 0; y < size.y; y += 8 * stride)
+      for (int x = 0; x < size.x; x += 8 * stride) {
         const Index3 origin{lo.x + x, lo.y + y, lo.z + z};
         const Index3 extent{std::min(8, size.x - x), std::min(8, size.y - y), std::min(8, size.z - z)};
-        take(origin, extent, static_cast<std::size_t>(extent.x * extent.y * extent.z));
+        visit(origin, extent, static_cast<std::size_t>(extent.x * extent.y * extent.z));
       }
 }
 
-std::vector<float> sample_values(const ScalarGrid& grid, std::size_t most) {
+std::vector<float> sample_values(const ScalarGrid& grid, std::size_t max_samples) {
   std::vector<float> values, block;
   std::vector<std::uint8_t> valid;
-  for_sampled_blocks(grid.index_box(), most, [&](const Index3& origin, const Index3& extent, std::size_t count) {
+  for_sampled_blocks(grid.index_box(), max_samples, [&](const Index3& origin, const Index3& extent, std::size_t count) {
     block.resize(count);
     valid.assign(count, 1);
     grid.read_block(origin, extent, block);
@@ -161,10 +161,10 @@ std::vector<float> sample_values(const ScalarGrid& grid, std::size_t most) {
   return values;
 }
 
-std::vector<float> sample_magnitudes(const VectorGrid& grid, std::size_t most) {
+std::vector<float> sample_magnitudes(const VectorGrid& grid, std::size_t max_samples) {
   std::vector<float> values, block;
   Cursor cursor;
-  for_sampled_blocks(grid.index_box(), most, [&](const Index3& origin, const Index3& extent, std::size_t count) {
+  for_sampled_blocks(grid.index_box(), max_samples, [&](const Index3& origin, const Index3& extent, std::size_t count) {
     block.resize(3 * count);
     grid.read_block(origin, extent, block);
     for (std::size_t i = 0; i < count; ++i) {

@@ -15,9 +15,9 @@ namespace catena::field {
 /// that were resampled it is the range of the values in the file.
 const DisplayRange& display_range(const ScalarGrid& grid);
 const DisplayRange& display_range(const VectorGrid& grid);
-/// For a formula: the range of all its values.
+/// Returns the display range of a scalar field: for a formula, the range of all its values.
 DisplayRange display_range(const ScalarField& field);
-/// For either kind of field; a vector formula gives 0 to 0.
+/// Returns the display range of a scalar or vector field; 0 to 0 for a vector formula.
 DisplayRange display_range(const AnyField& field);
 
 /// Returns the display range of values sampled from a field, for example along a line or at glyphs: their minimum and maximum, without the
@@ -25,16 +25,16 @@ DisplayRange display_range(const AnyField& field);
 /// themselves.
 DisplayRange display_range(std::span<const double> values, const AnyField& of);
 
-/// Calls take(origin, extent, voxels) for blocks of 8^3 voxels (smaller at the end of the box) spread over the box, at most about `most`
-/// voxels in total.
+/// Calls visit(origin, extent, voxels) for blocks of 8^3 voxels (smaller at the end of the box) spread over the box, at most about
+/// `max_samples` voxels in total.
 using BlockVisitor = std::function<void(const Index3&, const Index3&, std::size_t)>;
-void for_sampled_blocks(const Box& box, std::size_t most, const BlockVisitor& take);
+void for_sampled_blocks(const Box& box, std::size_t max_samples, const BlockVisitor& visit);
 
-/// Returns at most about `most` finite values of valid voxels, sampled in blocks of 8^3 spread over the grid. A voxel counts as valid when
-/// the cell based at it is valid.
-std::vector<float> sample_values(const ScalarGrid& grid, std::size_t most);
+/// Returns at most about `max_samples` finite values of valid voxels, sampled in blocks of 8^3 spread over the grid. A voxel counts as
+/// valid when the cell based at it is valid.
+std::vector<float> sample_values(const ScalarGrid& grid, std::size_t max_samples);
 
-/// The same for the magnitudes of a vector grid.
-std::vector<float> sample_magnitudes(const VectorGrid& grid, std::size_t most);
+/// Returns at most about `max_samples` finite magnitudes of valid voxels of a vector grid, sampled in blocks as sample_values() does.
+std::vector<float> sample_magnitudes(const VectorGrid& grid, std::size_t max_samples);
 
 }  // namespace catena::field

@@ -41,8 +41,8 @@ LineAxis leading_axis(const Dyad& m) noexcept {
   const double bx = x / p, by = y / p, bz = z / p, yz = m.yz / p, xz = m.xz / p, xy = m.xy / p;
   const double det = bx * (by * bz - yz * yz) - xy * (xy * bz - yz * xz) + xz * (xy * yz - by * xz);
   const double b = largest_root(det < -2 ? -2 : det > 2 ? 2 : det);
-  const double rest = 12 - 3 * b * b;
-  out.coherence = 0.5 * p * (3 * b - std::sqrt(rest > 0 ? rest : 0)) / trace;
+  const double discriminant = 12 - 3 * b * b;
+  out.coherence = 0.5 * p * (3 * b - std::sqrt(discriminant > 0 ? discriminant : 0)) / trace;
   const double largest = mean + p * b;
   out.speed = std::sqrt(largest > 0 ? largest : 0);
 
@@ -85,12 +85,12 @@ LineAxis DyadCell::at(const Vec3& f) const noexcept {
 
 LineAxis line_axis(const std::array<Vec3, 8>& corner, const Vec3& f) noexcept {
   LineAxis out = DyadCell(corner).at(f);
-  double heaviest = -1;
+  double max_weight = -1;
   Vec3 side(0.0);
   for (std::size_t c = 0; c < 8; ++c) {
     const double weight = ((c & 1) ? f.x : 1 - f.x) * ((c & 2) ? f.y : 1 - f.y) * ((c & 4) ? f.z : 1 - f.z);
-    if (weight > heaviest && max_abs(corner[c]) > 0) {
-      heaviest = weight;
+    if (weight > max_weight && max_abs(corner[c]) > 0) {
+      max_weight = weight;
       side = direction(corner[c]);
     }
   }

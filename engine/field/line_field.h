@@ -48,13 +48,13 @@ struct LineAxis {
 class CATENA_EXPORT DyadCell {
  public:
   DyadCell() = default;
-  /// From the vectors at the eight corners (order: cell.h).
+  /// Computes the polynomial from the vectors at the eight corners (order: cell.h).
   explicit DyadCell(const std::array<Vec3, 8>& corner) noexcept;
   /// Returns the axis at f as line_axis() does, but with either sign.
   LineAxis at(const Vec3& f) const noexcept;
 
  private:
-  std::array<Dyad, 8> coefficients_;  ///< of 1, x, y, xy, z, xz, yz, xyz; of vectors divided by scale_
+  std::array<Dyad, 8> coefficients_;  ///< factors of 1, x, y, xy, z, xz, yz, xyz, for the vectors / scale_
   double scale_ = 0;                  ///< largest absolute component of a corner; 0: no axis
 };
 

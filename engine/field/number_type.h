@@ -23,10 +23,10 @@ struct RoundingLoss {
 /// Returns notes on the loss, sentences without a final period; `type`: name of the number type in the file.
 inline std::vector<std::string> rounding_notes(const RoundingLoss& rounding, std::string_view type) {
   std::vector<std::string> notes;
-  if (rounding.has_rounded) notes.push_back("values of type " + std::string(type) + " are rounded to 32-bit floats");
-  if (rounding.overflow_count == 1) notes.push_back("1 value is beyond 32-bit floats: it is a hole");
+  if (rounding.has_rounded) notes.push_back("values of type " + std::string(type) + " were rounded to 32-bit floats");
+  if (rounding.overflow_count == 1) notes.push_back("1 value exceeds the range of 32-bit floats and is read as a hole");
   if (rounding.overflow_count > 1)
-    notes.push_back(std::to_string(rounding.overflow_count) + " values are beyond 32-bit floats: they are holes");
+    notes.push_back(std::to_string(rounding.overflow_count) + " values exceed the range of 32-bit floats and are read as holes");
   return notes;
 }
 

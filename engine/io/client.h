@@ -18,7 +18,7 @@ namespace catena::field {
 /// A reader's response and the memory to which its buffer ranges refer.
 struct MappedResponse {
   ReadResponse response;  ///< The decoded response; `error` is empty.
-  NanoMemory memory;      ///< Everything the reader wrote.
+  NanoMemory memory;      ///< All memory that the reader wrote.
 
   /// Returns the values in a buffer range; empty when the range is out of bounds, misaligned or not a multiple of sizeof(T).
   template <class T>
@@ -30,16 +30,17 @@ struct MappedResponse {
   }
 };
 
-/// Runs a reader and blocks until it has ended. Returns an Error with a complete message: the reader's own, or how it ended. Any thread.
+/// Runs a reader and blocks until it has ended. Returns an Error with a complete message: the reader's own, or the cause of its end. Any
+/// thread.
 Result<MappedResponse> run_reader(ReadMode mode, const LoadRequest& request);
 
 /// Runs a reader and returns its validated description of each grid at a time step.
 Result<std::vector<GridInfo>> describe_with_reader(const std::string& path, int step);
 
-/// Error for an invalid response: "FILE: the file is damaged (of what its reader made of it, WHAT), expected a sound .vdb file".
+/// Error for an invalid response: "FILE: the file is damaged (invalid response of the reader process: WHAT), expected an undamaged file".
 Error damaged_response_error(const std::string& path, std::string_view what);
 
-/// For tests: replaces the reader program and its limits. Zero and empty: the defaults.
+/// Replacements of the reader program and its limits, for tests. Zero and empty: the defaults.
 struct ReaderSettings {
   std::string program;
   std::uint64_t cpu_s = 0;
@@ -55,7 +56,7 @@ std::uint64_t read_cpu_limit_s(std::uint64_t file_bytes);
 /// Data files that readers have opened so far for requests with this path. Any thread.
 std::set<FileId> files_opened_by_readers(const std::string& path);
 
-/// Returns the metadata part of a response (units, primitive kinds, times): cached while the file is unchanged, otherwise read anew;
+/// Returns the metadata part of a response (units, primitive kinds, times): cached while the file is unchanged, otherwise read again;
 /// nullopt when the file cannot be read. Any thread.
 std::optional<ReadResponse> read_file_metadata(const std::string& path);
 

@@ -36,7 +36,7 @@ class Keeper {
 
   bool has(const LoadRequest& request) {
     const std::scoped_lock lock(mutex_);
-    return std::any_of(kept_.begin(), kept_.end(), [&](const Kept& kept) { return kept.request == request; });
+    return std::any_of(kept_.begin(), kept_.end(), [&](const Kept& entry) { return entry.request == request; });
   }
 
   void ahead(std::vector<LoadRequest> requests) {
@@ -69,7 +69,7 @@ class Keeper {
 
   /// Finds a cached field and makes it the most recently used one.
   const AnyField* find(const LoadRequest& request) {
-    const auto it = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) { return kept.request == request; });
+    const auto it = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& entry) { return entry.request == request; });
     if (it == kept_.end()) return nullptr;
     kept_.splice(kept_.end(), kept_, it);
     return &kept_.back().field;
@@ -79,7 +79,7 @@ class Keeper {
     if (find(request) != nullptr) return;
     kept_.push_back({request, field, field.get()->bytes()});
     std::uint64_t all = 0;
-    for (const Kept& kept : kept_) all += kept.bytes;
+    for (const Kept& entry : kept_) all += entry.bytes;
     constexpr std::uint64_t kShare = 4;
     const std::uint64_t room = available_memory() / kShare;
     while (kept_.size() > 1 && all > room) {

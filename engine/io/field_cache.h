@@ -8,12 +8,12 @@
 
 namespace catena::field {
 
-/// Like load(), but returns the cached field if there is one. Waits for a field that is being prefetched.
+/// Loads a field as load() does, or returns the cached field if there is one. Waits for a field that is being prefetched.
 Result<AnyField> load_cached(const LoadRequest& request);
 /// Loads these fields in order on a background thread; replaces the pending requests that have not started. Errors are not reported here:
 /// load_cached() tries again and returns them.
 void prefetch(std::vector<LoadRequest> requests);
-/// Whether the field of this request is cached.
+/// Returns whether the field of this request is cached.
 bool is_cached(const LoadRequest& request);
 /// Adds a field that was loaded elsewhere.
 void add_to_cache(const LoadRequest& request, const AnyField& field);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Private to this module: the rows of the registry (formats.h), each defined beside its reader.
+/// Private to this module: the rows of the registry (formats.h), each defined in the file of its reader.
 #pragma once
 #include <vector>
 

@@ -79,10 +79,10 @@ class Decoder {
     p.bytes = number<std::uint64_t>();
     return p;
   }
-  /// The number of items of at least `least_bytes` bytes each; 0 and a failure if they do not fit into the rest of the message.
-  std::uint64_t count(std::size_t least_bytes) {
+  /// Returns the number of items of at least `min_bytes` bytes each; 0 and a failure if they do not fit into the rest of the message.
+  std::uint64_t count(std::size_t min_bytes) {
     const auto n = number<std::uint64_t>();
-    if (n > left_.size() / least_bytes) ok_ = false;
+    if (n > left_.size() / min_bytes) ok_ = false;
     return ok_ ? n : 0;
   }
   bool ok() const { return ok_; }
@@ -268,8 +268,8 @@ Result<ReadResponse> decode_response(std::span<const std::byte> bytes) {
   r.has_cell_mask = d.flag();
   r.mapping = d.mapping();
   for (BufferRange* p : {&r.values, &r.valid_voxels, &r.valid_cells}) *p = d.piece();
-  constexpr std::size_t kLeastInfo = 16, kLeastWords = 24;
-  for (std::uint64_t n = d.count(kLeastInfo); n > 0 && d.ok(); --n) r.grids.push_back(get_info(d));
+  constexpr std::size_t kMinInfo = 16, kMinWords = 24;
+  for (std::uint64_t n = d.count(kMinInfo); n > 0 && d.ok(); --n) r.grids.push_back(get_info(d));
   for (std::int64_t* n : {&r.dense.size.x, &r.dense.size.y, &r.dense.size.z}) *n = d.number<std::int64_t>();
   r.dense.components = d.number<std::int32_t>();
   r.dense.type = d.words();
@@ -285,7 +285,7 @@ Result<ReadResponse> decode_response(std::span<const std::byte> bytes) {
   r.units = d.words();
   r.unit_length = d.words();
   r.is_patient_space = d.flag();
-  for (std::uint64_t n = d.count(kLeastWords); n > 0 && d.ok(); --n) {
+  for (std::uint64_t n = d.count(kMinWords); n > 0 && d.ok(); --n) {
     GridMetadata w;
     w.name = d.words();
     w.unit = d.words();
@@ -304,7 +304,7 @@ Result<ReadResponse> decode_response(std::span<const std::byte> bytes) {
     id.inode = d.number<std::uint64_t>();
     r.opened_files.push_back(id);
   }
-  if (!d.finished()) return Error{"its reply is incomplete"};
+  if (!d.finished()) return Error{"the message is incomplete"};
   return r;
 }
 

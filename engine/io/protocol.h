@@ -34,7 +34,7 @@ enum class ReaderState : std::uint32_t {
   no_memory,       ///< An allocation failed.
   no_thread,       ///< A thread could not be started.
   no_stack,        ///< A thread could not be started for lack of memory for its stack.
-  no_room,         ///< The shared memory file could not grow.
+  out_of_space,    ///< The shared memory file could not grow.
   refused_memory,  ///< The file needs more memory than the limit allows.
 };
 
@@ -49,7 +49,7 @@ struct MessageHeader {
   std::uint32_t limit_is_address_space = 0;  ///< Request only; 1: its memory limit is the address-space limit (ulimit -v).
 };
 
-/// What is requested. load: one grid. describe: the list of grids. metadata: only the part that every response has. geometry: triangles,
+/// Kind of request. load: one grid. describe: the list of grids. metadata: only the part that every response has. geometry: triangles,
 /// lines and points in the file.
 enum class ReadMode : std::uint8_t { load, describe, metadata, geometry };
 
@@ -117,7 +117,7 @@ struct ReadResponse {
   // from catena-read-vtk
   DenseResponse dense;
   GeometryResponse geometry;
-  std::vector<std::string> notes;  ///< How the data differ from the file: messages without a final period.
+  std::vector<std::string> notes;  ///< Differences between the data and the file: messages without a final period.
   std::vector<double> times;       ///< Times of the file's steps; empty: none.
   std::string time_unit;           ///< Unit of `times`; empty: not specified.
   // always

@@ -44,7 +44,7 @@ struct OrientationMarker {
   std::array<std::string, 3> names{"X", "Y", "Z"};  ///< Labels at the tips of the arrows
 };
 
-/// Everything that is drawn over the image.
+/// Text and marks that are drawn over the image.
 struct Annotations {
   std::vector<ScalarBar> scalar_bars;                   ///< Color legends
   std::vector<Label> labels;                            ///< Texts at points in the world

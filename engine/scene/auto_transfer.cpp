@@ -23,13 +23,15 @@ struct Range {
   double lo = 0, hi = 0, background = 0;
 };
 
-using Given = std::optional<std::array<double, 2>>;
+using OptionalRange = std::optional<std::array<double, 2>>;
 
-Range range_of(std::span<const float> values, bool masked, const Given& given) {
-  const auto percentile = [&](double share) { return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))]; };
+Range range_of(std::span<const float> values, bool masked, const OptionalRange& explicit_range) {
+  const auto percentile = [&](double fraction) {
+    return values[static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1))];
+  };
   Range range{percentile(0.005), percentile(0.998), 0};
   if (!(range.lo < range.hi)) range = {values.front(), values.back(), 0};
-  if (given) range = {(*given)[0], (*given)[1], 0};
+  if (explicit_range) range = {(*explicit_range)[0], (*explicit_range)[1], 0};
   range.background = range.lo;
   if (!(range.lo < range.hi)) return range;
 
@@ -40,16 +42,16 @@ Range range_of(std::span<const float> values, bool masked, const Given& given) {
   const auto low_end = bins.begin() + static_cast<int>(kLowEnd * kBins);
   const auto samples = static_cast<double>(values.size());
   const bool low = static_cast<double>(std::accumulate(bins.begin(), low_end, std::size_t{0})) > kLowShare * samples;
-  const auto fullest = std::max_element(bins.begin(), low ? low_end : bins.end());
-  if (low || (!masked && static_cast<double>(*fullest) > kDominantShare * samples))
-    range.background = range.lo + (static_cast<double>(fullest - bins.begin()) + 0.5) / scale;
+  const auto largest_bin = std::max_element(bins.begin(), low ? low_end : bins.end());
+  if (low || (!masked && static_cast<double>(*largest_bin) > kDominantShare * samples))
+    range.background = range.lo + (static_cast<double>(largest_bin - bins.begin()) + 0.5) / scale;
   return range;
 }
 
 double weight(const Range& range, double value) {
-  const double far = std::max(range.hi - range.background, range.background - range.lo);
-  if (!(far > 0)) return 1;
-  const double x = std::clamp((std::fabs(value - range.background) / far - kMargin) / (1 - kMargin), 0.0, 1.0);
+  const double max_distance = std::max(range.hi - range.background, range.background - range.lo);
+  if (!(max_distance > 0)) return 1;
+  const double x = std::clamp((std::fabs(value - range.background) / max_distance - kMargin) / (1 - kMargin), 0.0, 1.0);
   return x * x * (3 - 2 * x);
 }
 
@@ -81,20 +83,21 @@ void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid
   const bool flat = !(range.lo < range.hi);
 
   if (transfer.colors.empty()) {
-    const bool whole = !transfer.named.map.empty();
-    transfer.colors = make_color_points({}, transfer.named, whole ? all.lo : range.lo, whole ? all.hi : range.hi, kDefaultVolumeColorMap);
+    const bool has_map = !transfer.named.map.empty();
+    transfer.colors =
+        make_color_points({}, transfer.named, has_map ? all.lo : range.lo, has_map ? all.hi : range.hi, kDefaultVolumeColorMap);
   }
   if (!opaque) return;
 
   // positions on the scale of the value mapping
   const double below = linear_below(transfer.named.mapping, range.lo, range.hi);
-  std::vector<float> places(values.begin(), values.end());
+  std::vector<float> scaled(values.begin(), values.end());
   if (below > 0 && !flat) {
-    for (float& v : places) v = static_cast<float>(symlog(v, below));
-    range = range_of(places, grid.has_mask(), Given({symlog(range.lo, below), symlog(range.hi, below)}));
+    for (float& v : scaled) v = static_cast<float>(symlog(v, below));
+    range = range_of(scaled, grid.has_mask(), OptionalRange({symlog(range.lo, below), symlog(range.hi, below)}));
   }
   double mean = 0;
-  for (float v : places) mean += weight(range, v);
+  for (float v : scaled) mean += weight(range, v);
   mean = std::max(mean / static_cast<double>(values.size()), 1e-3);
   const double k = kOpticalDepth / (mean * std::max(grid.domain_length(), 1e-300));
   if (flat) {
@@ -102,8 +105,8 @@ void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid
     return;
   }
   for (int i = 0; i < kRampPoints; ++i) {
-    const double place = range.lo + (range.hi - range.lo) * i / (kRampPoints - 1);
-    transfer.extinctions.push_back({symlog_inverse(place, flat ? 0 : below), k * weight(range, place)});
+    const double position = range.lo + (range.hi - range.lo) * i / (kRampPoints - 1);
+    transfer.extinctions.push_back({symlog_inverse(position, flat ? 0 : below), k * weight(range, position)});
   }
 }
 

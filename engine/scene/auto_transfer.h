@@ -18,18 +18,18 @@ namespace catena::scene {
 /// Returns field::sample_values of the grid in rising order: the samples that complete_transfer evaluates.
 std::shared_ptr<const std::vector<float>> sorted_values(const field::ScalarGrid& grid);
 
-/// Cached component beside a FieldSource: the sorted_values of its rendered grid.
-struct ValueSample {
+/// Cached component of an entity with a FieldSource: the sorted_values of its rendered grid.
+struct SortedValues {
   const void* grid = nullptr;                        ///< Grid from which `sorted` was taken, to detect a changed grid
   std::shared_ptr<const std::vector<float>> sorted;  ///< Values in rising order
 };
 
 /// Returns whether the function has colors and either extinctions or opacities.
 bool is_complete(const TransferFunction& transfer);
-/// Adds what is missing: colors if there are none, extinctions if there are neither extinctions nor opacities. A stated range replaces the
+/// Adds missing parts: colors if there are none, extinctions if there are neither extinctions nor opacities. A stated range replaces the
 /// percentile range; a named map without a range covers the whole display range (engine/field/field_display_range.h).
 void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid);
-/// Same as complete_transfer(transfer, grid), with the sorted_values of the grid computed beforehand.
+/// Completes the function as complete_transfer(transfer, grid) does, with the sorted_values of the grid computed beforehand.
 void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid, const std::vector<float>& sorted);
 
 }  // namespace catena::scene

@@ -15,20 +15,20 @@
 namespace catena::scene {
 namespace {
 
-constexpr std::size_t kMostVoxels = 1u << 20;
+constexpr std::size_t kMaxVoxels = 1u << 20;
 constexpr int kKindBins = 256, kEdge = 8;
-constexpr int kMostLabels = 2048;
+constexpr int kMaxLabels = 2048;
 constexpr double kAsGood = 0.995;  // fraction of the best between-class variance
 // background, see data_kind.h
 constexpr double kBackgroundFull = 0.05, kBackgroundEnd = 0.2, kBackgroundWidth = 0.02;
 // level sets
 constexpr double kUnitSlope = 0.05, kUnitSlopes = 0.9;
 // Hounsfield units
-constexpr double kAirLo = -1100, kAirHi = -850, kSoftLo = -150, kSoftHi = 200, kTissueShare = 0.05, kLeastHounsfield = -5000;
+constexpr double kAirLo = -1100, kAirHi = -850, kSoftLo = -150, kSoftHi = 200, kTissueShare = 0.05, kMinHounsfield = -5000;
 constexpr double kEqualNeighbours = 0.6;
-constexpr double kRegions = 0.4;  // fraction of equal neighbors: half in regions one voxel thick, a third in random labels
+constexpr double kRegions = 0.4;  // fraction of equal neighbors: 1/2 in regions one voxel thick, 1/3 in random labels
 // solids: values on two plateaus
-constexpr double kPlateau = 0.1, kPlateaus = 0.9, kLeastPlateau = 0.02;
+constexpr double kPlateau = 0.1, kPlateaus = 0.9, kMinPlateau = 0.02;
 // scans
 constexpr double kBrightFrom = 0.3, kBrightLeast = 0.0002, kBrightMost = 0.04, kRough = 0.6;
 constexpr double kEmpty = 0.6;
@@ -56,19 +56,19 @@ int otsu_bin(const Bins& bins) {
   double all = 0, sum = 0;
   for (int i = 0; i < kKindBins; ++i) all += double(bins[i]), sum += double(i) * double(bins[i]);
   double below = 0, below_sum = 0, best = -1;
-  std::array<double, kKindBins> apart_by{};
+  std::array<double, kKindBins> variance{};
   for (int i = 0; i + 1 < kKindBins; ++i) {
     below += double(bins[i]);
     below_sum += double(i) * double(bins[i]);
     if (!(below > 0) || !(below < all)) continue;
-    const double apart = below_sum / below - (sum - below_sum) / (all - below);
-    apart_by[i] = below * (all - below) * apart * apart;
-    best = std::max(best, apart_by[i]);
+    const double mean_distance = below_sum / below - (sum - below_sum) / (all - below);
+    variance[i] = below * (all - below) * mean_distance * mean_distance;
+    best = std::max(best, variance[i]);
   }
   const auto is_best = [&](double between) { return between >= kAsGood * best; };
-  const auto first = std::find_if(apart_by.begin(), apart_by.end(), is_best);
-  const auto last = std::find_if(apart_by.rbegin(), apart_by.rend(), is_best).base() - 1;
-  return static_cast<int>((first - apart_by.begin() + (last - apart_by.begin())) / 2);
+  const auto first = std::find_if(variance.begin(), variance.end(), is_best);
+  const auto last = std::find_if(variance.rbegin(), variance.rend(), is_best).base() - 1;
+  return static_cast<int>((first - variance.begin() + (last - variance.begin())) / 2);
 }
 
 void measure_values(std::vector<float>& values, ScalarStats& facts) {
@@ -80,7 +80,7 @@ void measure_values(std::vector<float>& values, ScalarStats& facts) {
   for (const float v : values) {
     facts.min_value = std::min(facts.min_value, double(v));
     if (v != std::nearbyint(v)) facts.is_integral = false;
-    if (distinct.size() <= kMostLabels) distinct.insert(v);
+    if (distinct.size() <= kMaxLabels) distinct.insert(v);
     air += v >= kAirLo && v <= kAirHi;
     soft += v >= kSoftLo && v <= kSoftHi;
   }
@@ -96,24 +96,24 @@ void measure_values(std::vector<float>& values, ScalarStats& facts) {
 
   Bins bins{};
   for (const float v : values) ++bins[bin_of(v, facts.lo, facts.hi)];
-  const auto fullest = std::max_element(bins.begin(), bins.end()) - bins.begin();
-  if (share(bins[fullest], n) > kBackgroundFull && double(fullest) < kBackgroundEnd * kKindBins)
-    facts.background = facts.lo + (double(fullest) + 0.5) / kKindBins * (facts.hi - facts.lo);
+  const auto largest_bin = std::max_element(bins.begin(), bins.end()) - bins.begin();
+  if (share(bins[largest_bin], n) > kBackgroundFull && double(largest_bin) < kBackgroundEnd * kKindBins)
+    facts.background = facts.lo + (double(largest_bin) + 0.5) / kKindBins * (facts.hi - facts.lo);
   facts.threshold = facts.lo + (otsu_bin(bins) + 1.0) / kKindBins * (facts.hi - facts.lo);
 
   for (const float v : values) facts.mean += std::clamp(double(v), facts.lo, facts.hi) / static_cast<double>(n);
-  std::size_t near = 0, low = 0, high = 0, bright = 0;
+  std::size_t near_background = 0, low = 0, high = 0, bright = 0;
   const double width = kBackgroundWidth * (facts.hi - facts.lo), tenth = kPlateau * (facts.hi - facts.lo);
-  const double bright_from = facts.background + kBrightFrom * (brightest - facts.background);
+  const double bright_threshold = facts.background + kBrightFrom * (brightest - facts.background);
   for (const float v : values) {
-    near += std::fabs(v - facts.background) < width;
+    near_background += std::fabs(v - facts.background) < width;
     low += v <= facts.lo + tenth;
     high += v >= facts.hi - tenth;
-    bright += v > bright_from;
+    bright += v > bright_threshold;
   }
-  facts.background_share = share(near, n);
+  facts.background_share = share(near_background, n);
   facts.bright_share = share(bright, n);
-  if (share(low, n) >= kLeastPlateau && share(high, n) >= kLeastPlateau) facts.plateau_share = share(low + high, n);
+  if (share(low, n) >= kMinPlateau && share(high, n) >= kMinPlateau) facts.plateau_share = share(low + high, n);
 }
 
 /// Adds the neighbor pairs of one block of 8^3 voxels to `sums`; invalid values are NaN.
@@ -164,26 +164,25 @@ ScalarStats compute_scalar_stats(const field::ScalarGrid& grid, const field::Uni
   facts.is_label_map = units.is_label_map;
   facts.has_mask = grid.has_mask();
 
-  // complete blocks spread over the box; blocks cut off by the box's edge are left out
+  // complete blocks, distributed over the box; blocks that extend beyond the box are omitted
   std::vector<float> blocks, block(kEdge * kEdge * kEdge), values;
   std::vector<std::uint8_t> valid(block.size());
   const DisplayRange& range = display_range(grid);
-  field::for_sampled_blocks(grid.index_box(), kMostVoxels,
-                            [&](const field::Index3& origin, const field::Index3& extent, std::size_t count) {
-                              block.assign(block.size(), 0.f);
-                              const std::span<float> part(block.data(), count);
-                              grid.read_block(origin, extent, part);
-                              if (facts.has_mask) {
-                                grid.read_cell_validity(origin, extent, valid);
-                                for (std::size_t i = 0; i < count; ++i)
-                                  if (valid[i] == 0) block[i] = NAN;
-                              }
-                              for (float& v : part) {
-                                if (!range.contains(v)) v = NAN;
-                                if (std::isfinite(v)) values.push_back(v);
-                              }
-                              if (count == block.size()) blocks.insert(blocks.end(), block.begin(), block.end());
-                            });
+  field::for_sampled_blocks(grid.index_box(), kMaxVoxels, [&](const field::Index3& origin, const field::Index3& extent, std::size_t count) {
+    block.assign(block.size(), 0.f);
+    const std::span<float> part(block.data(), count);
+    grid.read_block(origin, extent, part);
+    if (facts.has_mask) {
+      grid.read_cell_validity(origin, extent, valid);
+      for (std::size_t i = 0; i < count; ++i)
+        if (valid[i] == 0) block[i] = NAN;
+    }
+    for (float& v : part) {
+      if (!range.contains(v)) v = NAN;
+      if (std::isfinite(v)) values.push_back(v);
+    }
+    if (count == block.size()) blocks.insert(blocks.end(), block.begin(), block.end());
+  });
   if (values.empty()) return facts;
   measure_values(values, facts);
 
@@ -201,19 +200,19 @@ ScalarStats compute_scalar_stats(const field::ScalarGrid& grid, const field::Uni
 }
 
 DataKind classify_scalar(const ScalarStats& f) {
-  const bool rough = f.roughness >= kRough;
+  const bool is_rough = f.roughness >= kRough;
   const bool both_signs = f.lo < 0 && f.hi > 0;
   if (f.is_label_map && f.is_integral && f.distinct_values > 1) return DataKind::label_map;
   if (f.is_level_set || (both_signs && f.distance_share >= kUnitSlopes)) return DataKind::level_set;
   if (f.is_hounsfield) return DataKind::ct;
-  if (f.min_value >= kLeastHounsfield && f.air_share >= kTissueShare && f.soft_share >= kTissueShare) return DataKind::ct;
-  if (f.is_integral && f.distinct_values > 1 && f.distinct_values <= kMostLabels && f.equal_share >= kEqualNeighbours &&
+  if (f.min_value >= kMinHounsfield && f.air_share >= kTissueShare && f.soft_share >= kTissueShare) return DataKind::ct;
+  if (f.is_integral && f.distinct_values > 1 && f.distinct_values <= kMaxLabels && f.equal_share >= kEqualNeighbours &&
       f.region_share >= kRegions)
     return DataKind::label_map;
   if (f.plateau_share >= kPlateaus || (!f.is_integral && f.equal_share >= kEqualNeighbours)) return DataKind::solid;
   if (!f.is_patient_space && !f.has_mask && f.min_value >= 0 && f.min_value < f.hi && f.empty_share >= kEmpty) return DataKind::cloud;
-  if (rough && f.bright_share >= kBrightLeast && f.bright_share <= kBrightMost) return DataKind::angiogram;
-  if (f.is_patient_space && rough) return DataKind::mr;
+  if (is_rough && f.bright_share >= kBrightLeast && f.bright_share <= kBrightMost) return DataKind::angiogram;
+  if (f.is_patient_space && is_rough) return DataKind::mr;
   return DataKind::simulation;
 }
 
@@ -227,26 +226,28 @@ std::string explain_kind(DataKind kind, const ScalarStats& f) {
   const auto percent = [](double part) { return fmt::format("{:.3g} %", 100 * part); };
   switch (kind) {
     case DataKind::level_set:
-      return f.is_level_set ? "the file says so"
-                            : "values of both signs, and the slope is 1 in " + percent(f.distance_share) + " of the places";
+      return f.is_level_set
+                 ? "the file declares it"
+                 : "the values have both signs, and the gradient magnitude is 1 at " + percent(f.distance_share) + " of the positions";
     case DataKind::ct:
-      return f.is_hounsfield ? "its unit is HU"
-                             : percent(f.air_share) + " of the values are air near -1000, " + percent(f.soft_share) + " soft tissue near 0";
+      return f.is_hounsfield
+                 ? "the unit is HU"
+                 : percent(f.air_share) + " of the values are near -1000 (air) and " + percent(f.soft_share) + " near 0 (soft tissue)";
     case DataKind::label_map:
-      if (f.is_label_map) return "the file says so";
-      return fmt::format("{} different whole numbers, and {} of the neighbours at and in what is not background are equal",
+      if (f.is_label_map) return "the file declares it";
+      return fmt::format("the values are {} different integers, and {} of the neighbours outside the background are equal",
                          f.distinct_values, percent(f.region_share));
     case DataKind::solid:
-      return f.plateau_share >= kPlateaus ? percent(f.plateau_share) + " of the values are at either end of the range"
+      return f.plateau_share >= kPlateaus ? percent(f.plateau_share) + " of the values are near the ends of the range"
                                           : percent(f.equal_share) + " of all neighbours are equal";
     case DataKind::angiogram:
-      return "only " + percent(f.bright_share) + " of the values are bright, and they are rough";
+      return "only " + percent(f.bright_share) + " of the values are bright, and the data are rough";
     case DataKind::mr:
-      return fmt::format("of a patient or an animal, without a scale, and rough ({:.2f})", f.roughness);
+      return fmt::format("the data are in patient space, have no known value scale and are rough ({:.2f})", f.roughness);
     case DataKind::cloud:
-      return percent(f.empty_share) + " of the box are empty";
+      return percent(f.empty_share) + " of the box is empty";
     case DataKind::simulation:
-      return fmt::format("a quantity that fills its domain (roughness {:.2f})", f.roughness);
+      return fmt::format("the values fill the domain (roughness {:.2f})", f.roughness);
   }
   return {};
 }

@@ -6,17 +6,17 @@
 /// display range (engine/field/field_display_range.h). The background b is the center of the fullest of 256 bins over lo..hi if that bin
 /// holds over 5 % of the values and lies in the lowest fifth of the range, else lo; the foreground is everything at least 2 % of the range
 /// away from b. The rules are tested in this order, and the first that holds determines the kind:
-///   label map    the file is marked as a label map, and the values are whole numbers, at least 2 different ones
+///   label map    the file is marked as a label map, and the values are integers, at least 2 different ones
 ///   level set    the file is marked as one; or values of both signs, and a gradient magnitude of 0.95 to 1.05 (world units) at 90 % of the
 ///                points that have a gradient
 ///   CT           the unit is HU; or no value is below -5000, 5 % of the values lie from -1100 to -850 (air) and 5 % from -150 to 200
 ///                (soft tissue), in Hounsfield units
-///   label map    whole numbers, 2 to 2048 different ones; 60 % of the neighbor pairs in the foreground are equal along every axis, and
+///   label map    integers, 2 to 2048 different ones; 60 % of the neighbor pairs in the foreground are equal along every axis, and
 ///                40 % of the pairs with at least one voxel in the foreground
-///   solid        90 % of the values are in the lowest or the highest tenth of the range, at least 2 % in each; or not whole numbers and
+///   solid        90 % of the values are in the lowest or the highest tenth of the range, at least 2 % in each; or not integers and
 ///                60 % of the neighbor pairs in the foreground are equal along every axis
 ///   cloud        not in patient space (engine/io/volume/units.h), no mask, no values below 0; 60 % of the values are the lowest value
-///   angiogram    0.02 to 4 % of the values are bright (in the upper seven tenths of the way from b to the 99.99 percentile), and the
+///   angiogram    0.02 to 4 % of the values are bright (in the upper seven tenths of the range from b to the 99.99 percentile), and the
 ///                foreground is rough: the mean second difference of neighbors is at least 0.6 times the mean first difference
 ///   MR           in patient space, and as rough
 ///   simulation   everything else: smooth, dense values of a quantity
@@ -41,7 +41,7 @@ struct ScalarStats {
   double mean = 0;                       ///< Mean of the values, each clamped to lo..hi
   double background = 0;                 ///< Background b, see the top of this file
   double threshold = 0;                  ///< Threshold between background and foreground by N. Otsu, IEEE Trans. SMC 9(1), 1979
-  bool is_integral = false;              ///< All values are whole numbers
+  bool is_integral = false;              ///< All values are integers
   int distinct_values = 0;               ///< Number of different values, counted up to 2049
   double background_share = 0;           ///< Share of the values within 2 % of the range of b
   double empty_share = 0;                ///< Share of the values equal to the lowest one

@@ -12,15 +12,15 @@
 namespace catena::scene {
 namespace {
 
-constexpr std::size_t kMostVectors = 1u << 18;
+constexpr std::size_t kMaxVectors = 1u << 18;
 constexpr std::size_t kParts = 3;  // parts of the domain along each axis; each contributes its fastest point
 // neighbors are opposite below the cosine kOpposite; minimum fractions of such pairs in a line field
 constexpr double kOpposite = -0.5, kOppositeShare = 0.001, kRandomSigns = 0.3;
 constexpr double kUnitSpread = 0.02;  // relative spread of the lengths of unit vectors
 
-double share_above(const std::vector<float>& values, double least) {
-  const auto many = std::count_if(values.begin(), values.end(), [&](float v) { return v >= least; });
-  return values.empty() ? 0 : static_cast<double>(many) / static_cast<double>(values.size());
+double share_above(const std::vector<float>& values, double minimum) {
+  const auto count_above = std::count_if(values.begin(), values.end(), [&](float v) { return v >= minimum; });
+  return values.empty() ? 0 : static_cast<double>(count_above) / static_cast<double>(values.size());
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ VectorStats compute_vector_stats(const field::VectorGrid& grid) {
   field::Cursor cursor;
   const DisplayRange& range = display_range(grid);
   field::for_sampled_blocks(
-      grid.index_box(), kMostVectors, [&](const field::Index3& origin, const field::Index3& extent, std::size_t count) {
+      grid.index_box(), kMaxVectors, [&](const field::Index3& origin, const field::Index3& extent, std::size_t count) {
         block.resize(3 * count);
         grid.read_block(origin, extent, block);
         const auto vector = [&](std::size_t i) { return Vec3(block[3 * i], block[3 * i + 1], block[3 * i + 2]); };
@@ -46,11 +46,11 @@ VectorStats compute_vector_stats(const field::VectorGrid& grid) {
                                  origin.z + static_cast<int>(i) / (extent.x * extent.y)};
           if (grid.has_mask() && !grid.cell(at, cursor).valid) continue;
           speeds.push_back(static_cast<float>(speed));
-          const Vec3 place(at.x, at.y, at.z);
+          const Vec3 position(at.x, at.y, at.z);
           std::size_t part = 0;
           for (int a = 2; a >= 0; --a)
-            part = kParts * part + static_cast<std::size_t>(kParts * (place[a] - box.lo[a]) / (box.hi[a] - box.lo[a] + 1));
-          if (speed > fastest[part].first) fastest[part] = {speed, place};
+            part = kParts * part + static_cast<std::size_t>(kParts * (position[a] - box.lo[a]) / (box.hi[a] - box.lo[a] + 1));
+          if (speed > fastest[part].first) fastest[part] = {speed, position};
           if (static_cast<int>(i) % extent.x + 1 == extent.x) continue;
           const Vec3 next = vector(i + 1);
           if (!(speed > 0) || !(norm(next) > 0) || !range.contains(norm(next))) continue;
@@ -58,9 +58,9 @@ VectorStats compute_vector_stats(const field::VectorGrid& grid) {
           opposite += dot(v, next) < kOpposite * speed * norm(next);
         }
       });
-  for (const auto& [speed, place] : fastest)
-    if (speed > 0) facts.fastest_points.push_back(grid.mapping().world_from_index(place));
-  std::vector<float> moving;  // zero vectors are left out: they have no length to compare
+  for (const auto& [speed, position] : fastest)
+    if (speed > 0) facts.fastest_points.push_back(grid.mapping().world_from_index(position));
+  std::vector<float> moving;  // lengths of the nonzero vectors
   std::copy_if(speeds.begin(), speeds.end(), std::back_inserter(moving), [](float v) { return v > 0; });
   facts.slow_speed = quantile(moving, 0.02);
   facts.median_speed = quantile(speeds, 0.5);

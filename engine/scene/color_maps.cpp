@@ -45,7 +45,7 @@ constexpr Anchor kGrey[] = {{0, 0x000000}, {255, 0xffffff}};
 constexpr Color kDusk[] = {{0.16f, 0.24f, 0.52f}, {0.15f, 0.47f, 0.62f}, {0.33f, 0.66f, 0.58f},
                            {0.72f, 0.79f, 0.52f}, {0.95f, 0.80f, 0.55f}, {0.99f, 0.96f, 0.90f}};
 
-constexpr int kCoolWarmSteps = 256;  // its green falls steeply at the warm end
+constexpr int kCoolWarmSteps = 256;  // green decreases steeply at the warm end of the map
 
 struct ColorMap {
   std::string_view name;
@@ -114,8 +114,8 @@ const std::vector<std::string_view>& color_map_names() {
 bool is_color_map(std::string_view name) { return find_map(name) != nullptr; }
 
 std::string unknown_color_map_message(std::string_view name) {
-  return in_quotes(name) + " is no colour map; one of " + join_words(color_map_names()) + ", or one of them with \"_r\", was expected" +
-         suggestion(name, color_map_names());
+  return in_quotes(name) + " is not a colour map; one of " + join_words(color_map_names()) +
+         ", or one of these names with \"_r\", was expected" + suggestion(name, color_map_names());
 }
 
 std::vector<ColorPoint> make_color_map(std::string_view name, double lo, double hi, double linear_below) {
@@ -128,7 +128,7 @@ std::vector<ColorPoint> make_color_map(std::string_view name, double lo, double 
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const ColorPoint& point = map->points[reversed ? count - 1 - i : i];
     const double t = reversed ? 1 - point.value : point.value, value = symlog_interpolate(lo, hi, i == 0 ? 0 : t, linear_below);
-    // in a range of a few bits, neighboring values become equal
+    // neighboring values become equal if the range spans only a few floating-point numbers
     if (i == 0 || (value > points.back().value && value < hi)) points.push_back({value, point.color});
   }
   points.push_back({hi, map->points[reversed ? 0 : count - 1].color});
@@ -136,8 +136,8 @@ std::vector<ColorPoint> make_color_map(std::string_view name, double lo, double 
 }
 
 bool is_color_range(double lo, double hi) {
-  constexpr double most = std::numeric_limits<float>::max();
-  return std::fabs(lo) <= most && std::fabs(hi) <= most && static_cast<float>(lo) < static_cast<float>(hi);
+  constexpr double maximum = std::numeric_limits<float>::max();
+  return std::fabs(lo) <= maximum && std::fabs(hi) <= maximum && static_cast<float>(lo) < static_cast<float>(hi);
 }
 
 double linear_below(const ValueMapping& mapping, double lo, double hi) {
@@ -149,25 +149,25 @@ double linear_below(const ValueMapping& mapping, double lo, double hi) {
 
 double linear_below(const TransferFunction& transfer) {
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-  const auto take = [&](const auto& points) {
+  const auto extend_range = [&](const auto& points) {
     for (const auto& p : points) lo = std::min(lo, p.value), hi = std::max(hi, p.value);
   };
-  take(transfer.colors);
-  take(transfer.opacities);
-  take(transfer.extinctions);
+  extend_range(transfer.colors);
+  extend_range(transfer.opacities);
+  extend_range(transfer.extinctions);
   return lo <= hi ? linear_below(transfer.named.mapping, lo, hi) : 0;
 }
 
 std::string mapping_error(const ValueMapping& mapping, double lo, const std::string& what) {
   if (mapping.kind != ValueMapping::Kind::log || lo > 0) return {};
   return "\"mapping\" is \"log\", but " + what + " begins at " + to_text(lo) +
-         "; values above 0, or \"symlog\", which shows 0 and both signs, were expected";
+         "; values above 0 were expected, or \"symlog\", which allows 0 and both signs";
 }
 
 Outcome check_mapping(const json::Node& item, const ValueMapping& mapping, double lo) {
   const std::string problem = mapping_error(mapping, lo, "the range of the values");
   return problem.empty() ? Outcome(Done{})
-                         : json::error_at(json::member_or_parent(item, "mapping"), problem + " (\"range\" states others)");
+                         : json::error_at(json::member_or_parent(item, "mapping"), problem + " (\"range\" sets another range)");
 }
 
 Outcome check_mapping(const ColorBy& by, double lo) {
@@ -201,7 +201,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kWhiteX = 0.9505, kWhiteZ = 1.089;  // D65 white point, Y = 1
 constexpr double kUnsaturated = 0.05;                // Msh saturation s below which the hue is meaningless
-constexpr double kLeastWhite = 88;
+constexpr double kMinWhite = 88;
 
 double linear_of(double v) { return v > 0.04045 ? std::pow((v + 0.055) / 1.055, 2.4) : v / 12.92; }
 double encoded(double v) { return v > 0.0031308 ? 1.055 * std::pow(v, 1 / 2.4) - 0.055 : 12.92 * v; }
@@ -222,9 +222,9 @@ double angle_between(double a, double b) {
 }
 
 Vec3 diverging(Vec3 a, Vec3 b, double t) {
-  const bool apart = a.y > kUnsaturated && b.y > kUnsaturated && angle_between(a.z, b.z) > kPi / 3;
-  if (apart) {
-    const Vec3 white(std::max({a.x, b.x, kLeastWhite}), 0.0, 0.0);
+  const bool distinct_hues = a.y > kUnsaturated && b.y > kUnsaturated && angle_between(a.z, b.z) > kPi / 3;
+  if (distinct_hues) {
+    const Vec3 white(std::max({a.x, b.x, kMinWhite}), 0.0, 0.0);
     (t < 0.5 ? b : a) = white;
     t = t < 0.5 ? 2 * t : 2 * t - 1;
   }
@@ -236,15 +236,15 @@ Vec3 diverging(Vec3 a, Vec3 b, double t) {
 }
 
 Vec3 hsv_from_rgb(const Vec3& c) {
-  const double most = std::max({c.x, c.y, c.z}), span = most - std::min({c.x, c.y, c.z});
+  const double maximum = std::max({c.x, c.y, c.z}), span = maximum - std::min({c.x, c.y, c.z});
   double hue = 0;
   if (span > 0) {
-    if (most == c.x)
+    if (maximum == c.x)
       hue = std::fmod((c.y - c.z) / span + 6, 6);
     else
-      hue = most == c.y ? 2 + (c.z - c.x) / span : 4 + (c.x - c.y) / span;
+      hue = maximum == c.y ? 2 + (c.z - c.x) / span : 4 + (c.x - c.y) / span;
   }
-  return {hue / 6, most > 0 ? span / most : 0, most};
+  return {hue / 6, maximum > 0 ? span / maximum : 0, maximum};
 }
 
 Vec3 rgb_from_hsv(const Vec3& c) {
@@ -256,7 +256,7 @@ Vec3 rgb_from_hsv(const Vec3& c) {
 }
 
 Vec3 hsv_between(const Vec3& a, const Vec3& b, double t, bool wrap) {
-  const double turn = wrap ? std::remainder(b.x - a.x, 1.0) : b.x - a.x, hue = a.x + t * turn;
+  const double hue_difference = wrap ? std::remainder(b.x - a.x, 1.0) : b.x - a.x, hue = a.x + t * hue_difference;
   return {hue - std::floor(hue), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)};
 }
 
@@ -274,8 +274,8 @@ Vec3 srgb_from_lab(const Vec3& lab) {
   const double x = kWhiteX * lab_curve_back(fy + lab.y / 500), y = lab_curve_back(fy), z = kWhiteZ * lab_curve_back(fy - lab.z / 200);
   const Vec3 rgb(encoded(3.2406 * x - 1.5372 * y - 0.4986 * z), encoded(-0.9689 * x + 1.8758 * y + 0.0415 * z),
                  encoded(0.0557 * x - 0.2040 * y + 1.0570 * z));
-  const double most = std::max({rgb.x, rgb.y, rgb.z, 1.0});
-  return {std::max(rgb.x, 0.0) / most, std::max(rgb.y, 0.0) / most, std::max(rgb.z, 0.0) / most};
+  const double maximum = std::max({rgb.x, rgb.y, rgb.z, 1.0});
+  return {std::max(rgb.x, 0.0) / maximum, std::max(rgb.y, 0.0) / maximum, std::max(rgb.z, 0.0) / maximum};
 }
 
 Vec3 msh_from_lab(const Vec3& lab) {

@@ -43,32 +43,32 @@ inline std::string_view to_string(ValueMapping::Kind kind) { return kMappingName
 /// Returns the `linear_below` of engine/base/symlog_scale.h for values shown from lo to hi: 0 for a linear mapping, lo for a logarithmic
 /// one, else that of the mapping or its default.
 double linear_below(const ValueMapping& mapping, double lo, double hi);
-/// Same for a transfer function whose colors are set; lo and hi are the extremes of all its points.
+/// Returns the `linear_below` of a transfer function whose colors are set; lo and hi are the minimum and maximum value of all its points.
 double linear_below(const TransferFunction& transfer);
-/// Returns why the mapping cannot show values that start at `lo`, as an error message; empty: it can. `what` names the values.
+/// Returns an error message when the mapping cannot show values that start at `lo`, else an empty string. `what` names the values.
 std::string mapping_error(const ValueMapping& mapping, double lo, const std::string& what);
-/// Same for data whose lowest value is `lo`; the Error has the position of `item`, which states the mapping.
+/// Checks that the mapping can show data whose minimum is `lo`; the Error has the position of `item`, which states the mapping.
 Outcome check_mapping(const json::Node& item, const ValueMapping& mapping, double lo);
-/// Same for values colored by `by`; always succeeds if `by` has a color table or a range of its own.
+/// Checks the mapping of values colored by `by`, whose minimum is `lo`; always succeeds if `by` has a color table or a range.
 Outcome check_mapping(const ColorBy& by, double lo);
 
 /// Returns the color points for values from lo to hi: the table if it is not empty; else the named map, or `fallback`, over the named range
 /// or else lo..hi. Between the points colors are linear on the scale of the mapping.
 std::vector<ColorPoint> make_color_points(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,
                                           std::string_view fallback = kDefaultLineColorMap);
-/// Same with additional points, so that linear interpolation in the value is accurate to 1/2048.
+/// Returns the points of make_color_points() and additional ones, so that linear interpolation in the value is accurate to 1/2048.
 std::vector<ColorPoint> make_color_table(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,
                                          std::string_view fallback = kDefaultLineColorMap);
 
 /// Color space in which two colors are interpolated. Components are display (sRGB) values, 0 to 1.
 ///   rgb        the components themselves
 ///   hsv        hue, saturation and value; the hue does not cross red
-///   hsv_wrap   the same, with the shorter way around the hue circle
+///   hsv_wrap   hue, saturation and value; the hue changes along the shorter arc of the hue circle
 ///   lab        CIELAB with D65 white
 ///   diverging  Msh, CIELAB in polar form: M = |Lab|, s = acos(L / M), h = atan2(b, a). Between two saturated colors of
 ///              different hue an unsaturated white, M = max(M1, M2, 88), is inserted halfway; the hue of white is turned by
 ///              the length: h +- s sqrt(M_white^2 - M^2) / (M sin s)
-/// A color outside the sRGB gamut is divided by its greatest component, as in VTK.
+/// A color outside the sRGB gamut is divided by its maximum component, as in VTK.
 /// K. Moreland, "Diverging color maps for scientific visualization", ISVC 2009, section 5. Pure functions, any thread.
 enum class ColorSpace { rgb, hsv, hsv_wrap, lab, diverging };
 

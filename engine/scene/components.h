@@ -56,7 +56,7 @@ struct FieldSource {
   bool has_own_step = false;               ///< True if the scene file states this field's step; it then ignores the scene's step
   std::string analytic;                    ///< Name of the formula; empty: the source is no formula
   field::AnalyticParameters parameters;    ///< Parameters of `analytic`
-  int resolution = 128;                    ///< Nodes per axis of the grid that stands for an analytic field in images
+  int resolution = 128;                    ///< Nodes per axis of the grid that represents an analytic field in images
   std::array<double, 2> box{-2, 2};        ///< Min and max coordinate of the cube in which an analytic field is sampled, on each axis
   std::optional<LabelSource> label;        ///< Labels to surround; empty: the source is no label surface
   std::string labels_file;                 ///< File with the names and colors of a label map; empty: rows of the scene file
@@ -71,7 +71,7 @@ struct ValueMapping {
   /// log: logarithm of the value. symlog: logarithmic in |value| on both sides of zero, and linear near zero.
   enum class Kind { linear, log, symlog };
   Kind kind = Kind::linear;  ///< Scale; linear unless stated
-  /// symlog: |value| up to which the scale is linear, in the field's unit; 0: a thousandth of the greatest |value| shown.
+  /// symlog: |value| up to which the scale is linear, in the field's unit; 0: a thousandth of the maximum |value| shown.
   double linear_below = 0;
   bool operator==(const ValueMapping&) const = default;
 };
@@ -134,14 +134,14 @@ struct ColorBy {
 
 /// Volume rendering of a scalar field.
 struct Volume {
-  /// How a ray combines the values: emission and absorption, or a single value along the ray.
+  /// Rule that combines the values along a ray: emission and absorption, or a single value of the ray.
   enum class Projection { composite, maximum, minimum, average };
   Entity field;                                   ///< Scalar field
   json::Node where;                               ///< Node in the scene file
   TransferFunction transfer;                      ///< Colors and opacities
   bool shaded = false;                            ///< Lighting by the gradient
   bool clipped = true;                            ///< Cut by the clip planes
-  Projection projection = Projection::composite;  ///< How a ray combines the values
+  Projection projection = Projection::composite;  ///< Rule that combines the values along a ray
   std::optional<ColorBy> color_by{};              ///< Colors by another field; composite only
 };
 
@@ -313,7 +313,7 @@ struct GlyphSet {
   double spacing = 0;                ///< Distance between neighbors, world units; 0: fitted to the domain (uniform_sampling.h)
   bool constant_length = false;      ///< True: all glyphs have the length `length`; false: proportional to the magnitude
   double length = 0;                 ///< Length of the longest glyph, world units; 0: the spacing
-  double reference_speed = 0;        ///< Speed at which a glyph has the length `length`; 0: greatest speed among the glyphs
+  double reference_speed = 0;        ///< Speed at which a glyph has the length `length`; 0: maximum speed among the glyphs
   double min_speed = 0;              ///< Speed at or below which a point has no glyph
   double radius = 0;                 ///< Shaft radius of the longest glyph, world units; 0: 0.06 of its length
   Anchor anchor = Anchor::center;    ///< Part of a glyph that lies at its point
@@ -321,7 +321,8 @@ struct GlyphSet {
   std::optional<ColorBy> color_by;   ///< Empty: `color` everywhere
   bool clipped = true;               ///< Cut by the clip planes
 };
-inline constexpr std::size_t kMaxGlyphs = 20000;  ///< Maximum number of glyphs in a set
+inline constexpr std::size_t kMaxGlyphs =
+    20000;  ///< Maximum number of glyphs in a set; more are an error; a set that follows a widget has larger spacing instead
 
 /// Short piece of the streamline through the cursor, with an arrowhead: local direction of the flow.
 struct Indicator {
@@ -343,7 +344,7 @@ struct Cursor {
   std::vector<std::string> names;      ///< Names of the links; empty before the program is built
   Vec3 force_n{0.0};                   ///< Force on the user, world axes, newtons
   double size = 0;                     ///< Radius of the glyph, world units; 0: fitted
-  bool visible = false;                ///< Rendered at all
+  bool visible = false;                ///< True: the glyph is rendered
   bool show_occluded = true;           ///< Visible through occluders
   bool drop_line = false;              ///< Thin line from the probe down to the bottom of the rendered domain
   /// Three rods that cross at the probe; proxies and force are not rendered, so that the image does not show the contact.
@@ -368,7 +369,7 @@ struct Mode {
 /// be bound to it.
 struct Widget {
   json::Node where;                          ///< Node in the scene file
-  widget::Spec spec;                         ///< As stated in the scene; resolve_widget (scene.h) fills in the missing sizes
+  widget::Spec spec;                         ///< Spec stated in the scene; resolve_widget (scene.h) adds the missing sizes
   widget::Report report;                     ///< Report of the last tick
   Entity field;                              ///< Isolevel: scalar field
   std::vector<std::string> along_links;      ///< Ruler: names of the links that its ends stay on
@@ -378,7 +379,7 @@ struct Widget {
   std::optional<double> applied_value;       ///< Isolevel: value last applied to the bound isosurfaces
 };
 
-/// How the links make one force, as the scene states it (force law: haptics/chain/program.h).
+/// Parameters of the force that the links make together (force law: haptics/chain/program.h).
 struct Coupling {
   double stiffness_n_per_m = 500;  ///< Stiffness of links that state none, N/m
   double damping_ns_per_m = 0;     ///< Damping of the probe's velocity, N s/m

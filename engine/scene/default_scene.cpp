@@ -26,7 +26,7 @@ namespace catena::scene {
 namespace {
 
 /// A data file to be shown; its grids are described on first use, and the description is cached.
-struct LookedInto {
+struct DataFile {
   std::string path;   ///< of a pattern: its file at the step
   int step = 0;       ///< step within that file
   bool found = true;  ///< false: no file matches the pattern
@@ -39,9 +39,9 @@ struct LookedInto {
   }
 };
 
-LookedInto look_into(const std::string& name, int step = 0) {
+DataFile inspect_file(const std::string& name, int step = 0) {
   const field::LoadRequest request = request_at(name, step);
-  LookedInto file{request.path, request.step, !is_pattern(request.path)};
+  DataFile file{request.path, request.step, !is_pattern(request.path)};
   const std::string& path = file.path;
   const bool field = io::find_reader(path, io::DataKind::volume) != nullptr, mesh = io::find_reader(path, io::DataKind::mesh) != nullptr,
              curves = io::find_reader(path, io::DataKind::curves) != nullptr,
@@ -57,7 +57,7 @@ LookedInto look_into(const std::string& name, int step = 0) {
 }
 
 /// Loads the requested grid; without a request the only grid, the first scalar grid, or the first vector grid, in this order.
-Result<field::AnyField> load_best(LookedInto& file, field::LoadRequest& request) {
+Result<field::AnyField> load_best(DataFile& file, field::LoadRequest& request) {
   auto loaded = field::load(request);
   if (loaded || !request.grid.empty()) return loaded;
   const auto& grids = file.grids();
@@ -70,7 +70,7 @@ Result<field::AnyField> load_best(LookedInto& file, field::LoadRequest& request)
   return field::load(request);
 }
 
-/// A valid field name of a scene file that is as close to the grid's name as possible.
+/// Returns a valid field name of a scene file that is as close to the grid's name as possible.
 std::string field_name(std::string_view grid) {
   std::string name;
   for (const char c : grid) {
@@ -82,12 +82,12 @@ std::string field_name(std::string_view grid) {
   return is_identifier(name) ? name : is_identifier("field_" + name) && !name.empty() ? "field_" + name : "field";
 }
 
-/// Scene members for the other grids of the file. They are loaded on demand only.
-std::string other_fields(LookedInto& looked, const std::string& shown, const std::string& file, const std::string& taken) {
-  if (shown.empty() || !looked.grids()) return {};
-  std::vector<std::string> names{taken};
+/// Returns scene members for the other grids of the file. They are loaded on demand only.
+std::string other_fields(DataFile& data_file, const std::string& shown, const std::string& file, const std::string& main_name) {
+  if (shown.empty() || !data_file.grids()) return {};
+  std::vector<std::string> names{main_name};
   std::string text;
-  for (const field::GridInfo& grid : *looked.grids()) {
+  for (const field::GridInfo& grid : *data_file.grids()) {
     const std::string name = json::serialize_string(field_name(grid.name));
     if (!grid.is_usable || grid.stats.active_voxels == 0 || grid.name.empty() || grid.name == shown) continue;
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
@@ -102,183 +102,184 @@ struct LaterStep {
   int step = 0;
 };
 
-/// The last step, if the field is uniform at the step of `bare`, as a simulation often is when it starts: the colors are chosen from it.
-std::optional<LaterStep> later_step(const std::string& path, const DefaultScene& bare) {
+/// The last step, if the field is uniform at the step of `result`, as a simulation often is when it starts: the colors are chosen from it.
+std::optional<LaterStep> later_step(const std::string& path, const DefaultScene& default_scene) {
   const auto is_uniform = [](const field::AnyField& field) {
     const DisplayRange range = field::display_range(field);
     return !(range.lo < range.hi);
   };
-  if (!is_uniform(bare.field)) return std::nullopt;
-  const int last = list_time_steps(path, bare.field).count - 1;
-  field::LoadRequest request = bare.request;
+  if (!is_uniform(default_scene.field)) return std::nullopt;
+  const int last = list_time_steps(path, default_scene.field).count - 1;
+  field::LoadRequest request = default_scene.request;
   request.path = path;
   if (last < 1) return std::nullopt;
   const auto field = field::load(request_at(request, last));
-  if (!field || is_uniform(*field) || (field->scalar == nullptr) != (bare.field.scalar == nullptr)) return std::nullopt;
+  if (!field || is_uniform(*field) || (field->scalar == nullptr) != (default_scene.field.scalar == nullptr)) return std::nullopt;
   return LaterStep{*field, last};
 }
 
 /// Adds the fibers of a file that also holds a body, inside the body's translucent shell.
-void show_fibres(LookedInto& file, DefaultScene& bare, DefaultVisualization& look) {
+void show_fibres(DataFile& file, DefaultScene& default_scene, DefaultVisualization& visualization) {
   const auto& grids = file.grids();
-  if (look.shell_members.empty() || bare.request.grid.empty() || !grids) return;
+  if (visualization.shell_members.empty() || default_scene.request.grid.empty() || !grids) return;
   for (const field::GridInfo& grid : *grids) {
     if (!grid.is_usable || !grid.is_vector || grid.stats.active_voxels == 0 || grid.name.empty()) continue;
-    field::LoadRequest request = bare.request;
+    field::LoadRequest request = default_scene.request;
     request.grid = grid.name;
     const auto loaded = field::load(request);
     if (!loaded || !loaded->vector) continue;
     const DefaultVisualization fibres =
         choose_default_visualization(json::serialize_string(field_name(grid.name)), *loaded->vector->grid(), {});
     if (!fibres.is_fibers) continue;
-    look.scene_members = look.shell_members + ",\n" + fibres.scene_members;
-    look.note += "; " + in_quotes(grid.name) + " " + fibres.note;
-    bare.fibers_grid = grid.name;
-    bare.fibers = *loaded;
+    visualization.scene_members = visualization.shell_members + ",\n" + fibres.scene_members;
+    visualization.note += "; " + in_quotes(grid.name) + " " + fibres.note;
+    default_scene.fibers_grid = grid.name;
+    default_scene.fibers = *loaded;
     return;
   }
 }
 
 std::string curves_note(const curves::CurveSet& set) {
-  return fmt::format("{} curve{} in the colours of their directions, red for x, green for y, blue for z{}{}", set.line_count(),
+  return fmt::format("{} curve{}, coloured by direction: red for x, green for y, blue for z{}{}", set.line_count(),
                      set.line_count() == 1 ? "" : "s", set.note.empty() ? "" : "; ", set.note);
 }
 
-void forget_lines(json::Node& node) {
+void remove_locations(json::Node& node) {
   node.line = 0;
-  for (json::Node& item : node.items) forget_lines(item);
-  for (auto& [key, member] : node.members) forget_lines(member);
+  for (json::Node& item : node.items) remove_locations(item);
+  for (auto& [key, member] : node.members) remove_locations(member);
 }
 
 template <class T>
-void forget_lines(Scene& scene) {
-  scene.entities.each<T>([](Entity, T& part) { forget_lines(part.where); });
+void remove_locations(Scene& scene) {
+  scene.entities.each<T>([](Entity, T& part) { remove_locations(part.where); });
 }
 
 }  // namespace
 
 Result<DefaultScene> make_default_scene(const std::string& path, const std::string& grid, const NamedColors& colors, int step) {
-  DefaultScene bare;
-  bare.scene_path = path + ".json";
+  DefaultScene result;
+  result.scene_path = path + ".json";
   const std::string file = json::serialize_string(std::filesystem::path(path).filename().string());
-  LookedInto looked = look_into(path, step);
-  bare.request.path = looked.path;
-  bare.request.step = looked.step;
-  if (!looked.found) return Error{one_line(path + ": no file is called like this")};
-  if (looked.kind == FileKind::mesh) {
-    if (!colors.is_default()) return Error{one_line(path + ": a mesh has no values to colour; a colour map goes with a data file")};
-    CATENA_TRY(bare.mesh, mesh::load_mesh(looked.path, {}, looked.step));
-    bare.text = "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": " + file + "}],\n" + default_mesh_background() + "\n}\n";
-    return bare;
+  DataFile data_file = inspect_file(path, step);
+  result.request.path = data_file.path;
+  result.request.step = data_file.step;
+  if (!data_file.found) return Error{one_line(path + ": there is no such file")};
+  if (data_file.kind == FileKind::mesh) {
+    if (!colors.is_default()) return Error{one_line(path + ": a mesh has no values; a data file was expected with a colour map")};
+    CATENA_TRY(result.mesh, mesh::load_mesh(data_file.path, {}, data_file.step));
+    result.text = "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": " + file + "}],\n" + default_mesh_background() + "\n}\n";
+    return result;
   }
-  if (looked.kind == FileKind::curves) {
+  if (data_file.kind == FileKind::curves) {
     if (!colors.is_default())
-      return Error{one_line(path + ": curves are shown in the colours of their directions; a colour map goes with a data file")};
-    CATENA_TRY(bare.curves, curves::load_curves(looked.path, looked.step));
-    bare.note = curves_note(*bare.curves);
-    bare.text = "{\n  \"curves\": [{\"name\": \"curves\", \"file\": " + file + "}],\n" + default_mesh_background() + "\n}\n";
-    return bare;
+      return Error{one_line(path + ": curves are coloured by direction; a data file was expected with a colour map")};
+    CATENA_TRY(result.curves, curves::load_curves(data_file.path, data_file.step));
+    result.note = curves_note(*result.curves);
+    result.text = "{\n  \"curves\": [{\"name\": \"curves\", \"file\": " + file + "}],\n" + default_mesh_background() + "\n}\n";
+    return result;
   }
-  if (looked.kind == FileKind::points) {
-    CATENA_TRY(bare.points, curves::load_points(looked.path, looked.step));
-    CATENA_TRY(const std::string parts, default_points_members(*bare.points, file, colors, bare.note));
-    bare.text = "{\n" + parts + ",\n" + default_mesh_background() + "\n}\n";
-    return bare;
+  if (data_file.kind == FileKind::points) {
+    CATENA_TRY(result.points, curves::load_points(data_file.path, data_file.step));
+    CATENA_TRY(const std::string parts, default_points_members(*result.points, file, colors, result.note));
+    result.text = "{\n" + parts + ",\n" + default_mesh_background() + "\n}\n";
+    return result;
   }
   if (io::needs_layout(path))
-    return Error{one_line(path + ": a .raw file does not say its shape; a scene file that states it was expected")};
-  bare.request.grid = grid;
-  CATENA_TRY(bare.field, load_best(looked, bare.request));
-  const std::string name = json::serialize_string(field_name(bare.field.get()->name()));
-  const auto later = later_step(path, bare);
-  const field::AnyField& seen = later ? later->field : bare.field;
-  DefaultVisualization look = seen.scalar ? choose_default_visualization(name, *seen.scalar->grid(),
-                                                                         field::read_units(bare.request.path, bare.request.grid), colors)
-                                          : choose_default_visualization(name, *seen.vector->grid(), colors);
-  if (later) look.note += fmt::format(" (at step {}; at step {} all values are equal)", later->step, step);
-  if (grid.empty() && colors.is_default()) show_fibres(looked, bare, look);
-  bare.note = name + " " + look.note;
-  bare.text = "{\n  \"fields\": {" + name + ": {\"file\": " + file;
-  if (!bare.request.grid.empty()) bare.text += ", \"grid\": " + json::serialize_string(bare.request.grid);
-  if (look.is_label_map) {
-    bare.request.interpolation = field::Interpolation::nearest;
-    bare.field.scalar = bare.field.scalar->grid()->with_interpolation(bare.request.interpolation);
-    bare.text += ", \"interpolation\": \"nearest\"";
+    return Error{one_line(path + ": a .raw file does not state its shape; a scene file with the shape was expected")};
+  result.request.grid = grid;
+  CATENA_TRY(result.field, load_best(data_file, result.request));
+  const std::string name = json::serialize_string(field_name(result.field.get()->name()));
+  const auto later = later_step(path, result);
+  const field::AnyField& shown_field = later ? later->field : result.field;
+  DefaultVisualization visualization =
+      shown_field.scalar ? choose_default_visualization(name, *shown_field.scalar->grid(),
+                                                        field::read_units(result.request.path, result.request.grid), colors)
+                         : choose_default_visualization(name, *shown_field.vector->grid(), colors);
+  if (later) visualization.note += fmt::format(" (at step {}; at step {} all values are equal)", later->step, step);
+  if (grid.empty() && colors.is_default()) show_fibres(data_file, result, visualization);
+  result.note = name + " " + visualization.note;
+  result.text = "{\n  \"fields\": {" + name + ": {\"file\": " + file;
+  if (!result.request.grid.empty()) result.text += ", \"grid\": " + json::serialize_string(result.request.grid);
+  if (visualization.is_label_map) {
+    result.request.interpolation = field::Interpolation::nearest;
+    result.field.scalar = result.field.scalar->grid()->with_interpolation(result.request.interpolation);
+    result.text += ", \"interpolation\": \"nearest\"";
     if (const std::string table = find_label_table(path); !table.empty()) {
       const std::string table_name = std::filesystem::path(table).filename().string();
-      bare.text += ", \"labels\": {\"file\": " + json::serialize_string(table_name) + "}";
-      bare.note += "; names from " + sanitize_for_terminal(table_name);
+      result.text += ", \"labels\": {\"file\": " + json::serialize_string(table_name) + "}";
+      result.note += "; names from " + sanitize_for_terminal(table_name);
     }
   }
-  if (look.ignore_mask) {
-    bare.text += ", \"valid\": null";
-    bare.request.mask_grid.reset();
-    CATENA_TRY(bare.field, field::load(bare.request));
+  if (visualization.ignore_mask) {
+    result.text += ", \"valid\": null";
+    result.request.mask_grid.reset();
+    CATENA_TRY(result.field, field::load(result.request));
   }
-  bare.text += "}" + look.extra_fields;
+  result.text += "}" + visualization.extra_fields;
   if (grid.empty()) {
-    const std::string others = other_fields(looked, bare.request.grid, file, name);
-    bare.text += others;
-    if (!others.empty()) bare.note += "; the file holds other fields, too: --grid NAME shows one (catena info FILE)";
+    const std::string others = other_fields(data_file, result.request.grid, file, name);
+    result.text += others;
+    if (!others.empty()) result.note += "; the file has more fields: --grid NAME shows another one (catena info FILE lists them)";
   }
-  if (const std::string note = outlier_note(field::display_range(bare.field)); !note.empty()) bare.field.notes.push_back(note);
-  bare.text += std::string("},\n") +
-               (bare.field.times.size() > 1 || is_pattern(path) ? fmt::format("  \"time\": {{\"step\": {}}},\n", step) : "") +
-               look.scene_members + "\n}\n";
-  return bare;
+  if (const std::string note = outlier_note(field::display_range(result.field)); !note.empty()) result.field.notes.push_back(note);
+  result.text += std::string("},\n") +
+                 (result.field.times.size() > 1 || is_pattern(path) ? fmt::format("  \"time\": {{\"step\": {}}},\n", step) : "") +
+                 visualization.scene_members + "\n}\n";
+  return result;
 }
 
 FileSummary summarize_file(const std::string& path, const std::string& grid, int step) {
-  FileSummary look;
-  const auto bare = make_default_scene(path, grid, {}, step);
-  if (!bare) return look;
-  if (!bare->note.empty()) look.lines.push_back(bare->note);
-  look.lines.insert(look.lines.end(), bare->field.notes.begin(), bare->field.notes.end());
-  look.steps = list_time_steps(path, bare->field);
-  if (is_pattern(path) && !std::ranges::is_sorted(look.steps.times))
-    look.lines.push_back("the times that the files state do not rise in the order of the numbers in their names, in which they are shown");
-  return look;
+  FileSummary summary;
+  const auto default_scene = make_default_scene(path, grid, {}, step);
+  if (!default_scene) return summary;
+  if (!default_scene->note.empty()) summary.lines.push_back(default_scene->note);
+  summary.lines.insert(summary.lines.end(), default_scene->field.notes.begin(), default_scene->field.notes.end());
+  summary.steps = list_time_steps(path, default_scene->field);
+  if (is_pattern(path) && !std::ranges::is_sorted(summary.steps.times))
+    summary.lines.push_back("the times in the files do not increase with the numbers in the file names; the steps follow the file names");
+  return summary;
 }
 
-FileKind detect_file_kind(const std::string& path) { return look_into(path).kind; }
+FileKind detect_file_kind(const std::string& path) { return inspect_file(path).kind; }
 
-void adopt_loaded_data(const DefaultScene& bare, Scene& scene) {
+void adopt_loaded_data(const DefaultScene& default_scene, Scene& scene) {
   scene.entities.each<FieldSource>([&](Entity, FieldSource& source) {
     const auto adopt = [&](const std::string& grid, const field::AnyField& field) {
-      if (field.get() != nullptr && source.file && is_same_file(source.file->path, bare.request.path) && source.file->grid == grid &&
-          source.file->step == bare.request.step)
+      if (field.get() != nullptr && source.file && is_same_file(source.file->path, default_scene.request.path) &&
+          source.file->grid == grid && source.file->step == default_scene.request.step)
         source.loaded = source.rendered = field;
     };
-    adopt(bare.request.grid, bare.field);
-    adopt(bare.fibers_grid, bare.fibers);
+    adopt(default_scene.request.grid, default_scene.field);
+    adopt(default_scene.fibers_grid, default_scene.fibers);
     load_label_map(source);
   });
   const auto adopt_shape = [&](auto& source, const auto& loaded) {
-    if (loaded == nullptr || !is_same_file(source.path, bare.request.path)) return;
-    if (source.steps.series.empty() && source.steps.step != bare.request.step) return;
+    if (loaded == nullptr || !is_same_file(source.path, default_scene.request.path)) return;
+    if (source.steps.series.empty() && source.steps.step != default_scene.request.step) return;
     source.loaded = loaded;
     request_step_times(source.steps, source.path);
   };
   scene.entities.each<MeshSource>([&](Entity, MeshSource& source) {
-    if (source.placement == mesh::MeshTransform{}) adopt_shape(source, bare.mesh);
+    if (source.placement == mesh::MeshTransform{}) adopt_shape(source, default_scene.mesh);
   });
-  scene.entities.each<PointsSource>([&](Entity, PointsSource& source) { adopt_shape(source, bare.points); });
-  scene.entities.each<CurvesSource>([&](Entity, CurvesSource& source) { adopt_shape(source, bare.curves); });
-  for (const std::string& note : bare.field.notes) scene.notes.push_back(bare.request.path + ": " + note);
+  scene.entities.each<PointsSource>([&](Entity, PointsSource& source) { adopt_shape(source, default_scene.points); });
+  scene.entities.each<CurvesSource>([&](Entity, CurvesSource& source) { adopt_shape(source, default_scene.curves); });
+  for (const std::string& note : default_scene.field.notes) scene.notes.push_back(default_scene.request.path + ": " + note);
 }
 
 namespace {
 
 /// Removes all source locations: the scene's text is generated, so that its line numbers mean nothing to the user.
-void forget_all_lines(Scene& scene) {
-  forget_lines<FieldSource>(scene);
-  forget_lines<MeshSource>(scene);
-  forget_lines<SurfaceMesh>(scene);
-  forget_lines<Volume>(scene);
-  forget_lines<Isosurface>(scene);
-  forget_lines<StreamlineSet>(scene);
-  forget_lines<CurvesSource>(scene);
-  forget_lines<PointsSource>(scene);
+void remove_all_locations(Scene& scene) {
+  remove_locations<FieldSource>(scene);
+  remove_locations<MeshSource>(scene);
+  remove_locations<SurfaceMesh>(scene);
+  remove_locations<Volume>(scene);
+  remove_locations<Isosurface>(scene);
+  remove_locations<StreamlineSet>(scene);
+  remove_locations<CurvesSource>(scene);
+  remove_locations<PointsSource>(scene);
 }
 
 /// Returns an Error if the largest magnitude is not within 1e-30 to 1e30, the limits of the numbers in a scene file.
@@ -286,9 +287,9 @@ Outcome check_size_of_values(const field::AnyField& field, const std::string& pa
   const field::ScalarGrid* grid = field.scalar ? field.scalar->grid() : nullptr;
   if (grid == nullptr) return Done{};
   const DisplayRange& range = field::display_range(*grid);
-  const double most = std::max(std::fabs(range.lo), std::fabs(range.hi));
-  if (most == 0 || (most >= kMinSize && most <= kMaxSize)) return Done{};
-  return Error{fmt::format("{}: its values go from {} to {}; sizes from 1e-30 to 1e30 were expected: scale the data", path,
+  const double max_magnitude = std::max(std::fabs(range.lo), std::fabs(range.hi));
+  if (max_magnitude == 0 || (max_magnitude >= kMinSize && max_magnitude <= kMaxSize)) return Done{};
+  return Error{fmt::format("{}: the values range from {} to {}; magnitudes from 1e-30 to 1e30 were expected: scale the data", path,
                            format_readable(range.lo), format_readable(range.hi))};
 }
 
@@ -296,31 +297,32 @@ Outcome check_size_of_values(const field::AnyField& field, const std::string& pa
 
 Result<Scene> scene_for_field(const field::AnyField& grid, const NamedColors& colors) {
   if (grid.get() == nullptr || !grid.get()->is_grid())
-    return Error{"a formula does not say what of it is worth seeing; a grid was expected (sample_on_grid), or a scene"};
+    return Error{"a formula has no default visualization; a grid (sample_on_grid) or a scene was expected"};
   CATENA_CHECK(check_size_of_values(grid, "field"));
   FieldOverride with{"field", {}, {}, grid};
   const std::string name = "\"field\"";
-  const DefaultVisualization look = grid.scalar ? choose_default_visualization(name, *grid.scalar->grid(), {}, colors)
-                                                : choose_default_visualization(name, *grid.vector->grid(), colors);
-  if (look.is_label_map) with.in_memory_field.scalar = grid.scalar->grid()->with_interpolation(field::Interpolation::nearest);
+  const DefaultVisualization visualization = grid.scalar ? choose_default_visualization(name, *grid.scalar->grid(), {}, colors)
+                                                         : choose_default_visualization(name, *grid.vector->grid(), colors);
+  if (visualization.is_label_map) with.in_memory_field.scalar = grid.scalar->grid()->with_interpolation(field::Interpolation::nearest);
   // `extra_fields` starts with a comma
-  const std::string more = look.extra_fields.empty() ? look.extra_fields : look.extra_fields.substr(1);
-  CATENA_TRY(Scene scene, parse_scene("{\"fields\": {" + more + "},\n" + look.scene_members + "}", "field", {with}));
-  scene.notes.push_back("field " + look.note);
+  const std::string extra_fields = visualization.extra_fields.empty() ? visualization.extra_fields : visualization.extra_fields.substr(1);
+  CATENA_TRY(Scene scene, parse_scene("{\"fields\": {" + extra_fields + "},\n" + visualization.scene_members + "}", "field", {with}));
+  scene.notes.push_back("field " + visualization.note);
   if (const std::string note = outlier_note(field::display_range(grid)); !note.empty()) scene.notes.push_back("field: " + note);
-  forget_all_lines(scene);
+  remove_all_locations(scene);
   CATENA_CHECK(resolve_rendered_field(scene, find_field(scene, "field"), {}));
   return scene;
 }
 
 Result<Scene> scene_for_file(const std::string& path, const std::string& grid, const NamedColors& colors, int step) {
-  CATENA_TRY(const DefaultScene bare, make_default_scene(path, grid, colors, step));
-  CATENA_CHECK(check_size_of_values(bare.field, path));
-  CATENA_TRY(Scene scene, parse_scene(bare.text, path));
-  if (!bare.note.empty()) scene.notes.push_back(path + ": " + bare.note);
-  adopt_loaded_data(bare, scene);
-  forget_all_lines(scene);
-  if (bare.field.get() != nullptr) CATENA_CHECK(resolve_rendered_field(scene, find_field(scene, field_name(bare.field.get()->name())), {}));
+  CATENA_TRY(const DefaultScene default_scene, make_default_scene(path, grid, colors, step));
+  CATENA_CHECK(check_size_of_values(default_scene.field, path));
+  CATENA_TRY(Scene scene, parse_scene(default_scene.text, path));
+  if (!default_scene.note.empty()) scene.notes.push_back(path + ": " + default_scene.note);
+  adopt_loaded_data(default_scene, scene);
+  remove_all_locations(scene);
+  if (default_scene.field.get() != nullptr)
+    CATENA_CHECK(resolve_rendered_field(scene, find_field(scene, field_name(default_scene.field.get()->name())), {}));
   return scene;
 }
 

@@ -24,14 +24,14 @@ namespace {
 constexpr Color kBackdrop{0.13f, 0.15f, 0.18f};
 constexpr Color kBone{0.94f, 0.89f, 0.79f}, kSkin{0.87f, 0.67f, 0.56f}, kTissue{0.86f, 0.76f, 0.69f}, kSolid{0.72f, 0.77f, 0.84f};
 constexpr double kSkinLevel = -300, kBoneLevel = 250, kSkinOpacity = 0.25, kShellOpacity = 0.2;
-constexpr double kMeanDepth = 3.5, kMostDepth = 12, kLowDepth = 0.5;                         // optical depths along a ray across the domain
+constexpr double kMeanDepth = 3.5, kMaxDepth = 12, kLowDepth = 0.5;                          // optical depths along a ray across the domain
 constexpr double kMostlyEmpty = 0.5;                                                         // background as a fraction of the values
 constexpr double kApart = 1.0 / 17, kLineWidth = 0.0035, kLineLength = 2, kNarrowest = 0.3;  // relative to the domain's diagonal
 constexpr Color kFibre{0.90f, 0.62f, 0.42f};
-constexpr double kFlat = 1, kWide = 7;  // in cells: a single image has at most kFlat along one axis and at least kWide along the others
+constexpr double kFlat = 1, kWide = 7;  // cells: a single image has at most kFlat along one axis and at least kWide along the others
 constexpr const char* kQuantityMap = "viridis";
 
-/// Whether an isosurface of this level can exist: the level lies within the range of values.
+/// Returns whether an isosurface of this level can exist: the level lies within the range of values.
 bool has_level(const field::ScalarGrid& grid, double level) {
   const DisplayRange& range = display_range(grid);
   return level > range.lo && level < range.hi;
@@ -56,12 +56,12 @@ std::string surfaces(const std::vector<std::string>& items) {
   return text + "]";
 }
 
-/// A scalar bar; its title is the name of the colored object, with its unit.
+/// Returns a scalar bar; its title is the name of the colored object, with its unit.
 std::string bar_of(const std::string& what, bool box = true) {
   return ",\n  \"scalar_bars\": [{" + what + "}]" + (box ? ",\n  \"bounding_box\": true" : "");
 }
 
-/// A volume in the requested colors. A named color map without a range covers the values that the opacity covers, not all values.
+/// Returns a volume in the requested colors. A named color map without a range covers the values that the opacity covers, not all values.
 std::string colored_volume(const std::string& field, const field::ScalarGrid& grid, NamedColors colors) {
   if (!colors.map.empty() && !colors.range) {
     TransferFunction transfer;
@@ -83,8 +83,8 @@ std::string quantity(const std::string& field, const field::ScalarGrid& grid, co
                      ", \"range\": " + to_json(std::array<double, 2>{lo, hi}) + ",\n               \"extinction\": ";
   std::string rows = "[";
   const double mean = std::max((facts.mean - facts.lo) / (facts.hi - facts.lo), 1e-3);
-  const double most = std::clamp(kMeanDepth / mean, kMeanDepth, kMostDepth);
-  for (const auto& [share, depth] : {std::pair{0.0, empty ? 0.0 : kLowDepth}, {0.1, kLowDepth}, {1.0, most}})
+  const double max_depth = std::clamp(kMeanDepth / mean, kMeanDepth, kMaxDepth);
+  for (const auto& [share, depth] : {std::pair{0.0, empty ? 0.0 : kLowDepth}, {0.1, kLowDepth}, {1.0, max_depth}})
     rows += (share > 0 ? ", [" : "[") + to_json(rounded(lo + share * (hi - lo), facts)) + ", " + to_json(three_digits(depth * clear)) + "]";
   text += rows + "]}]";
   return text + bar_of("\"volume\": 0");
@@ -98,13 +98,13 @@ std::string computed_tomography(const std::string& field, const field::ScalarGri
   return items.empty() ? quantity(field, grid, facts) : surfaces(items);
 }
 
-/// All labels in one surface: faces between two labels are hidden, and one surface per label would cost many times as much.
-void show_labels(const std::string& field, DefaultVisualization& look) {
+/// Shows all labels in one surface: faces between two labels are hidden, and one surface per label would cost many times as much.
+void show_labels(const std::string& field, DefaultVisualization& visualization) {
   const std::string name = field.substr(1, field.size() - 2) + "_labels";
   const std::string surface = json::serialize_string(name);
-  look.is_label_map = true;
-  look.extra_fields = ",\n             " + surface + ": {\"label\": \"*\", \"of\": " + field + "}";
-  look.scene_members =
+  visualization.is_label_map = true;
+  visualization.extra_fields = ",\n             " + surface + ": {\"label\": \"*\", \"of\": " + field + "}";
+  visualization.scene_members =
       surfaces({"{\"field\": " + surface + ", \"level\": " + to_json(field::kLabelLevel) + ", \"color_by\": {\"field\": " + field + "}}"}) +
       bar_of("\"field\": " + field, false);
 }
@@ -115,7 +115,7 @@ std::string angiogram(const std::string& field, const ScalarStats& facts) {
          ", \"opacity\": [[" + to_json(lo) + ", 0], [" + to_json(hi) + ", 0.95]], \"projection\": \"maximum\"}]";
 }
 
-/// The axis along which the grid is a single image, or -1.
+/// Returns the axis along which the grid is a single image, or -1.
 int flat_axis(const field::ScalarGrid& grid) {
   const Vec3 size = grid.index_box().hi - grid.index_box().lo;
   for (int axis = 0; axis < 3; ++axis)
@@ -123,7 +123,7 @@ int flat_axis(const field::ScalarGrid& grid) {
   return -1;
 }
 
-/// A single image: a slice with a linear gray map from lo to hi.
+/// Returns the members of a single image: a slice with a linear gray map from lo to hi.
 std::string image(const std::string& field, const field::ScalarGrid& grid, int axis, const ScalarStats& facts, NamedColors colors) {
   const Vec3 middle = grid.mapping().world_from_index(0.5 * (grid.index_box().lo + grid.index_box().hi));
   if (colors.map.empty()) colors.map = "grey";
@@ -148,59 +148,60 @@ DefaultVisualization choose_default_visualization(const std::string& field, cons
                                                   NamedColors colors) {
   const ScalarStats facts = compute_scalar_stats(grid, units);
   DataKind kind = classify_scalar(facts);
-  // a sample of its voxels may look like a label map
+  // a sample of the voxels may look like a label map although the complete grid is not
   if (kind == DataKind::label_map && !field::count_labels(grid)) kind = DataKind::solid;
-  DefaultVisualization look;
-  look.ignore_mask = facts.has_mask && (kind == DataKind::ct || kind == DataKind::mr || kind == DataKind::solid);
-  look.note = "looks like " + std::string(to_string(kind)) + ": " + explain_kind(kind, facts);
+  DefaultVisualization visualization;
+  visualization.ignore_mask = facts.has_mask && (kind == DataKind::ct || kind == DataKind::mr || kind == DataKind::solid);
+  visualization.note = "looks like " + std::string(to_string(kind)) + ": " + explain_kind(kind, facts);
   const DisplayRange& range = display_range(grid);
   const bool one_value = !(range.lo < range.hi);
-  if (one_value) look.note = std::string(range.has_outliers() ? "every other value is " : "every value is ") + format_readable(range.lo);
+  if (one_value)
+    visualization.note = std::string(range.has_outliers() ? "every other value is " : "every value is ") + format_readable(range.lo);
   const auto level = [&](double value) {
     return has_level(grid, rounded(value, facts)) ? rounded(value, facts) : 0.5 * (range.lo + range.hi);
   };
   const auto body = [&](double at) {
-    look.shell_members = surfaces({surface(field, at, kSolid, kShellOpacity)});
+    visualization.shell_members = surfaces({surface(field, at, kSolid, kShellOpacity)});
     return surfaces({surface(field, at, kSolid)});
   };
   if (const int axis = flat_axis(grid); axis >= 0) {
-    look.note = "is a single image";
-    look.scene_members = image(field, grid, axis, facts, std::move(colors)) + ",\n" + default_mesh_background();
-    return look;
+    visualization.note = "is a single image";
+    visualization.scene_members = image(field, grid, axis, facts, std::move(colors)) + ",\n" + default_mesh_background();
+    return visualization;
   }
   if (!colors.is_default() || one_value) {
-    look.scene_members = colored_volume(field, grid, colors);
+    visualization.scene_members = colored_volume(field, grid, colors);
   } else {
     switch (kind) {
       case DataKind::ct:
-        look.scene_members = computed_tomography(field, grid, facts);
+        visualization.scene_members = computed_tomography(field, grid, facts);
         break;
       case DataKind::mr:
-        look.scene_members = surfaces({surface(field, level(0.5 * (facts.background + facts.threshold)), kTissue)});
+        visualization.scene_members = surfaces({surface(field, level(0.5 * (facts.background + facts.threshold)), kTissue)});
         break;
       case DataKind::label_map:
-        show_labels(field, look);
+        show_labels(field, visualization);
         break;
       case DataKind::solid:
-        look.scene_members = body(level(facts.threshold));
+        visualization.scene_members = body(level(facts.threshold));
         break;
       case DataKind::level_set:
-        look.scene_members = body(level(0));
+        visualization.scene_members = body(level(0));
         break;
       case DataKind::angiogram:
-        // a black background, because the lowest values are black: on a lighter one the outline of the volume would be a dark fringe
-        look.scene_members = angiogram(field, facts) + ",\n  \"background\": [0, 0, 0]";
-        return look;
+        // the background is black, because the lowest values are: a lighter background would show a dark fringe around the volume
+        visualization.scene_members = angiogram(field, facts) + ",\n  \"background\": [0, 0, 0]";
+        return visualization;
       case DataKind::cloud:
-        look.scene_members = colored_volume(field, grid, {"grey", {}});
+        visualization.scene_members = colored_volume(field, grid, {"grey", {}});
         break;
       case DataKind::simulation:
-        look.scene_members = quantity(field, grid, facts);
+        visualization.scene_members = quantity(field, grid, facts);
         break;
     }
   }
-  look.scene_members += ",\n" + default_mesh_background();
-  return look;
+  visualization.scene_members += ",\n" + default_mesh_background();
+  return visualization;
 }
 
 DefaultVisualization choose_default_visualization(const std::string& field, const field::VectorGrid& grid, const NamedColors& colors) {
@@ -211,44 +212,44 @@ DefaultVisualization choose_default_visualization(const std::string& field, cons
   const double size = narrow ? std::clamp(std::cbrt(facts.moving_share), kNarrowest, 1.0) : 1;
   const double distance = three_digits(kApart * size * diagonal), radius = three_digits(kLineWidth * std::sqrt(size) * diagonal);
   const bool named = !colors.is_default(), plain = (facts.is_unit_length || facts.is_line_field) && !named;
-  DefaultVisualization look;
-  look.is_fibers = facts.is_unit_length;
-  look.note = facts.is_unit_length  ? "looks like fibres: all vectors are as long"
-              : facts.is_line_field ? "looks like fibres: neighbours point to either side"
-                                    : "looks like a flow";
-  NamedColors shown = colors;
-  if (colors.map.empty() && !colors.range) shown.map = kQuantityMap;
+  DefaultVisualization visualization;
+  visualization.is_fibers = facts.is_unit_length;
+  visualization.note = facts.is_unit_length  ? "looks like fibres: all vectors have the same length"
+                       : facts.is_line_field ? "looks like fibres: the signs of neighbouring vectors are random"
+                                             : "looks like a flow";
+  NamedColors specified = colors;
+  if (colors.map.empty() && !colors.range) specified.map = kQuantityMap;
   const std::array<double, 2> speeds{three_digits(facts.slow_speed), three_digits(facts.fast_speed)};
-  if (!shown.range && is_color_range(speeds[0], speeds[1])) shown.range = speeds;
+  if (!specified.range && is_color_range(speeds[0], speeds[1])) specified.range = speeds;
 
-  // streamlines only if at least one can start and is as long as the line distance
+  // streamlines are shown only if at least one of them is as long as the line distance
   const double still = narrow ? three_digits(kStillSpeedRatio * facts.fast_speed) : 0;
   flow::EvenSpacingOptions spacing{distance, 0.5, facts.fastest_points, 1};
   flow::BatchOptions options;
   options.length = three_digits(kLineLength * diagonal);
   if (!(facts.fast_speed > 0)) {
-    look.note = "looks like a flow that stands still";
-    look.scene_members = default_mesh_background();
+    visualization.note = "looks like a flow at rest";
+    visualization.scene_members = default_mesh_background();
   } else if (flow::trace_evenly_spaced({&grid, facts.is_line_field, still}, spacing, options).empty()) {
     const Vec3 middle = grid.mapping().world_from_index(0.5 * (grid.index_box().lo + grid.index_box().hi));
-    look.scene_members = "  \"slices\": [";
+    visualization.scene_members = "  \"slices\": [";
     for (int axis = 0; axis < 3; ++axis)
-      look.scene_members += std::string(axis > 0 ? ",\n             " : "") + "{\"field\": " + field + ", \"axis\": \"" + "xyz"[axis] +
-                            "\", \"at\": " + to_json(middle[axis]) + color_members(shown) + "}";
-    look.scene_members += "]" + bar_of("\"slice\": 0") + ",\n" + default_mesh_background();
+      visualization.scene_members += std::string(axis > 0 ? ",\n             " : "") + "{\"field\": " + field + ", \"axis\": \"" +
+                                     "xyz"[axis] + "\", \"at\": " + to_json(middle[axis]) + color_members(specified) + "}";
+    visualization.scene_members += "]" + bar_of("\"slice\": 0") + ",\n" + default_mesh_background();
   } else {
-    look.scene_members = "  \"streamlines\": [{\"field\": " + field;
-    if (facts.is_line_field) look.scene_members += ", \"kind\": \"line\"";
-    if (still > 0) look.scene_members += ", \"min_speed\": " + to_json(still);
-    look.scene_members +=
-        plain ? ", \"color\": " + to_json(kFibre) : ", \"color_by\": {\"quantity\": \"speed\"" + color_members(shown) + "}";
-    look.scene_members += ", \"radius\": " + to_json(radius) + ", \"length\": " + to_json(options.length) +
-                          ",\n                   \"seeds\": {\"evenly_spaced\": {\"distance\": " + to_json(distance) +
-                          ",\n                                               \"start\": " + to_json(facts.fastest_points) + "}}}]";
-    if (!plain) look.scene_members += bar_of("\"streamlines\": 0");
-    look.scene_members += ",\n" + default_mesh_background();
+    visualization.scene_members = "  \"streamlines\": [{\"field\": " + field;
+    if (facts.is_line_field) visualization.scene_members += ", \"kind\": \"line\"";
+    if (still > 0) visualization.scene_members += ", \"min_speed\": " + to_json(still);
+    visualization.scene_members +=
+        plain ? ", \"color\": " + to_json(kFibre) : ", \"color_by\": {\"quantity\": \"speed\"" + color_members(specified) + "}";
+    visualization.scene_members += ", \"radius\": " + to_json(radius) + ", \"length\": " + to_json(options.length) +
+                                   ",\n                   \"seeds\": {\"evenly_spaced\": {\"distance\": " + to_json(distance) +
+                                   ",\n                                               \"start\": " + to_json(facts.fastest_points) + "}}}]";
+    if (!plain) visualization.scene_members += bar_of("\"streamlines\": 0");
+    visualization.scene_members += ",\n" + default_mesh_background();
   }
-  return look;
+  return visualization;
 }
 
 }  // namespace catena::scene

@@ -26,7 +26,7 @@ struct DefaultVisualization {
   std::string scene_members;   ///< Members of a scene object, without a comma at either end
   std::string extra_fields{};  ///< Further entries of "fields", as ", NAME: {...}"
   bool is_label_map = false;   ///< Label map: use nearest-voxel interpolation and the label table beside the file
-  /// Whether the mask is better ignored: it only removes empty space, and surfaces are closed without it but end in torn cells with it.
+  /// True if the mask should be ignored: it removes only empty space, and surfaces are closed without it but open at invalid cells with it.
   bool ignore_mask = false;
   std::string shell_members{};  ///< Solid, level set: its surface as a translucent shell, for use around other data
   bool is_fibers = false;       ///< Vectors of unit length

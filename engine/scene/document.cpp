@@ -17,15 +17,15 @@ Result<Document> Document::open(const std::string& path, const std::vector<Field
   document.path_ = path;
   document.overrides_ = overrides;
   if (path.ends_with(".json")) {
-    if (!colors.is_default()) return Error{one_line(path + ": a scene says its colours; a data file was expected beside a colour map")};
-    if (!grid.empty()) return Error{one_line(path + ": a scene names its grids; a data file was expected beside the name of a grid")};
+    if (!colors.is_default()) return Error{one_line(path + ": a scene sets its own colours; a data file was expected with a colour map")};
+    if (!grid.empty()) return Error{one_line(path + ": a scene names its own grids; a data file was expected with the name of a grid")};
     CATENA_TRY(document.saved_, read_text_file(path, "a scene file (JSON)", kMaxJsonBytes));
   } else {
     if (!overrides.empty()) return Error{one_line(path + ": a field of a data file cannot be replaced; a scene file (.json) was expected")};
-    CATENA_TRY(DefaultScene bare, make_default_scene(path, grid, colors));
-    document.path_ = bare.scene_path;
-    document.saved_ = bare.text;
-    document.loaded_ = std::make_shared<const DefaultScene>(std::move(bare));
+    CATENA_TRY(DefaultScene default_scene, make_default_scene(path, grid, colors));
+    document.path_ = default_scene.scene_path;
+    document.saved_ = default_scene.text;
+    document.loaded_ = std::make_shared<const DefaultScene>(std::move(default_scene));
   }
   document.versions_.push_back({document.saved_, {}, {}});
   CATENA_CHECK(parse_scene(document.saved_, document.path_, overrides));
@@ -83,10 +83,11 @@ Outcome Document::push_version(std::string edited, const std::string& what, cons
     ++current_;
   }
   // drop the oldest undo steps
-  std::size_t bytes = 0, kept = 0;
-  while (kept <= current_ && kept <= kMaxUndoSteps && (kept == 0 || bytes + versions_[current_ - kept].text.size() <= kMaxHistoryBytes))
-    bytes += versions_[current_ - kept++].text.size();
-  versions_.erase(versions_.begin(), versions_.end() - static_cast<std::ptrdiff_t>(kept));
+  std::size_t bytes = 0, kept_count = 0;
+  while (kept_count <= current_ && kept_count <= kMaxUndoSteps &&
+         (kept_count == 0 || bytes + versions_[current_ - kept_count].text.size() <= kMaxHistoryBytes))
+    bytes += versions_[current_ - kept_count++].text.size();
+  versions_.erase(versions_.begin(), versions_.end() - static_cast<std::ptrdiff_t>(kept_count));
   current_ = versions_.size() - 1;
   return Done{};
 }
@@ -110,22 +111,22 @@ Document::DiskState Document::disk_state() const {
   std::error_code code;
   const auto status = std::filesystem::status(path_, code);
   if (status.type() == std::filesystem::file_type::not_found) return DiskState::missing;
-  const auto there = read_text_file(path_, "a scene file (JSON)", kMaxJsonBytes);
-  if (!there) return DiskState::not_a_file;
-  return *there == saved_ ? DiskState::unchanged : DiskState::changed;
+  const auto disk_text = read_text_file(path_, "a scene file (JSON)", kMaxJsonBytes);
+  if (!disk_text) return DiskState::not_a_file;
+  return *disk_text == saved_ ? DiskState::unchanged : DiskState::changed;
 }
 
 Outcome Document::reload_from_disk() {
-  CATENA_TRY(std::string theirs, read_text_file(path_, "a scene file (JSON)", kMaxJsonBytes));
-  CATENA_CHECK(push_version(theirs, "the text of the file", {}));
-  saved_ = std::move(theirs);
+  CATENA_TRY(std::string disk_text, read_text_file(path_, "a scene file (JSON)", kMaxJsonBytes));
+  CATENA_CHECK(push_version(disk_text, "reload from the file", {}));
+  saved_ = std::move(disk_text);
   return Done{};
 }
 
 Result<std::string> Document::text_with_overrides() const { return relocate_text(text(), path_, path_, overrides_); }
 
 Outcome Document::save(const std::string& path) {
-  if (!path.ends_with(".json")) return Error{one_line(path + ": a scene is written to a .json file; such a name was expected")};
+  if (!path.ends_with(".json")) return Error{one_line(path + ": a scene file must end in .json; such a name was expected")};
   CATENA_TRY(const std::vector<std::string> inputs, referenced_files(text(), path_, overrides_));
   CATENA_CHECK(check_output(path, inputs));
   std::vector<std::string> texts;

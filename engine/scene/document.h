@@ -31,7 +31,7 @@ class Document {
 
   /// Current text of the scene file.
   const std::string& text() const { return versions_[current_].text; }
-  /// Path of the scene file; for the scene of a data file the path to which save() without an argument writes (FILE.json beside it).
+  /// Path of the scene file; for the scene of a data file the path to which save() without an argument writes (FILE.json beside the data).
   const std::string& path() const { return path_; }
   /// Returns whether the text differs from the text last opened or saved.
   bool is_modified() const { return text() != saved_; }
@@ -99,12 +99,12 @@ class Document {
   mutable std::shared_ptr<const DefaultScene> loaded_;  ///< Data for the first read() of a data file's scene
 };
 
-/// Moves loaded and derived data from `old` to `fresh` where both have the same description, so that a scene read after an edit loads
+/// Moves loaded and derived data from `old` to `reloaded` where both have the same description, so that a scene read after an edit loads
 /// nothing twice: fields, meshes, curves and points with the same source, shared streamlines, automatic colors and opacities, and cached
 /// data of objects whose description is unchanged. The current time step, the animation phase, the widgets' states and the cursor are kept
-/// as well; the cursor's size, show_occluded, drop_line and crosshair are those of `fresh`. A widget whose stated pose is unchanged, or
+/// as well; the cursor's size, show_occluded, drop_line and crosshair are those of `reloaded`. A widget whose stated pose is unchanged, or
 /// equals its current pose, stays where it is; one with another stated pose moves there with a higher revision. `old` must not be used
 /// afterwards.
-void transfer_state(Scene& old, Scene& fresh);
+void transfer_state(Scene& old, Scene& reloaded);
 
 }  // namespace catena::scene

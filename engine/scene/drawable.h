@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Registry of the kinds of drawables: the lists of the scene file whose items the image shows. A kind is one row, made beside its reader,
-/// and one line in drawable.cpp; a row of render/extract/drawable.h puts its items into the image. Frame thread.
+/// Registry of the kinds of drawables: the lists of the scene file whose items the image shows. A kind is one row, defined in the file of
+/// its reader, and one line in drawable.cpp; a row of render/extract/drawable.h puts its items into the image. Frame thread.
 #pragma once
 #include <algorithm>
 #include <string_view>
@@ -31,21 +31,21 @@ struct Drawable {
   std::string_view bar_key;                                 ///< Key by which a scalar bar names an item; empty: none
   Outcome (*load)(Scene& scene);                            ///< Loads what the visible items need; nullptr: nothing
   std::vector<DrawableItem> (*items)(const EntityStore&);   ///< All items, in the order of the list
-  bool (*owns)(const EntityStore&, Entity);                 ///< Whether an entity is an item of this kind
-  bool (*has_colors)(const EntityStore&, Entity);           ///< Whether an item has colors that a scalar bar can show
+  bool (*owns)(const EntityStore&, Entity);                 ///< Returns whether an entity is an item of this kind
+  bool (*has_colors)(const EntityStore&, Entity);           ///< Returns whether an item has colors that a scalar bar can show
   Entity (*color_field)(const EntityStore&, Entity);        ///< Field whose values give the colors; none: no field
   Result<double> (*domain_length)(Scene& scene, Entity e);  ///< Length of the domain of an item, which is loaded; 0: none
 };
 
 /// Adds a kind. Call it at startup, before any scene is read.
 void register_drawable(const Drawable& kind);
-/// All kinds, in the order in which they are read and drawn.
+/// Returns all kinds, in the order in which they are read and drawn.
 const std::vector<Drawable>& drawables();
 /// Returns the kind of an entity; nullptr: it is no drawable.
 const Drawable* find_drawable(const EntityStore& entities, Entity e);
 
-/// The parts of a kind that follow from its component. Overloads state what differs: in general the colors are those of "color_by", and
-/// the domain is that of the component's field.
+/// Functions of a kind that follow from its component: the colors are those of "color_by", and the domain is that of the component's field.
+/// Overloads define the exceptions.
 
 template <class T>
 bool shows_values(const T& item) {
@@ -75,7 +75,7 @@ inline Entity field_of_colors(const Volume& volume) { return volume.field; }
 inline Entity field_of_colors(const Slice& slice) { return slice.color_by.field; }
 inline Entity field_of_colors(const SurfaceMesh&) { return {}; }
 
-/// Length of a field's domain; 0: no field. Error: it cannot be loaded.
+/// Returns the length of a field's domain; 0: no field. Error: it cannot be loaded.
 Result<double> field_length(Scene& scene, Entity field, const json::Node& where);
 
 template <class T>

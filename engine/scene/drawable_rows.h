@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Private to this module: the rows of the registry of drawables (drawable.h), each defined beside its reader.
+/// Private to this module: the rows of the registry of drawables (drawable.h), each defined in the file of its reader.
 #pragma once
 #include "engine/scene/drawable.h"
 
@@ -14,7 +14,7 @@ Drawable glyphs();
 Drawable curves();
 Drawable points();
 
-/// Loads, by `use`, what each visible item with the component T needs, and the field that colors it.
+/// Loads the data of each visible item with the component T by `use`, and the field that colors it.
 template <class T, class Use>
 Outcome load_visible(Scene& scene, const Use& use) {
   for (const Entity e : visible_entities<T>(scene.entities)) CATENA_CHECK(use(e, T(scene.entities.get<T>(e))));

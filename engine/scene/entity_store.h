@@ -106,9 +106,9 @@ class EntityStore {
   /// Moves the components of entity `there` of the store `other` to entity `here` of this store, except for types that `here` already has.
   void move_missing_from(Entity here, EntityStore& other, Entity there) {
     for (auto& [type, slot] : other.pools_) {
-      auto& mine = pools_[type];
-      if (!mine) mine = slot->make_empty();
-      mine->move_from(here, *slot, there);
+      auto& target = pools_[type];
+      if (!target) target = slot->make_empty();
+      target->move_from(here, *slot, there);
     }
   }
   /// Returns the number of entities that have a T.
@@ -122,7 +122,7 @@ class EntityStore {
   void each(F&& f) {
     for (Entity e : pool<T>().owners()) f(e, pool<T>().get(e));
   }
-  /// Same, with f(entity, const T&).
+  /// Calls f(entity, const T&) for each owner of a T, in the order of the pool.
   template <class T, class F>
   void each(F&& f) const {
     if (const auto* p = find_pool<T>())

@@ -41,7 +41,7 @@ std::vector<std::string> in_folder(std::vector<std::string> names, const fs::pat
   return names;
 }
 
-/// Whether a name that is not a file looks like a glob pattern of another program.
+/// Returns whether a name that is not a file looks like a glob pattern of another program.
 bool is_other_glob(const std::string& path) {
   const std::string name = fs::path(path).filename().string();
   std::error_code code;
@@ -49,7 +49,7 @@ bool is_other_glob(const std::string& path) {
          (name.find_first_of("?[") != std::string::npos || (name.find('{') != std::string::npos && name.find("..") != std::string::npos));
 }
 
-/// Length of the common prefix of two sequences.
+/// Returns the length of the common prefix of two sequences.
 template <class A, class B>
 std::size_t common_length(A a, A a_end, B b, B b_end) {
   return static_cast<std::size_t>(std::distance(a, std::mismatch(a, a_end, b, b_end).first));
@@ -64,19 +64,19 @@ bool is_pattern(const std::string& path) {
 }
 
 std::vector<std::string> expand_pattern(const std::string& path) {
-  const fs::path whole(path);
-  const std::string name = whole.filename().string();
+  const fs::path full_path(path);
+  const std::string name = full_path.filename().string();
   if (const auto list = list_in(name)) {
     std::vector<std::string> names;
     std::error_code ignored;
     for (const std::string& item : std::set<std::string>(list->items.begin(), list->items.end()))
-      if (fs::is_regular_file(whole.parent_path() / (list->before + item + list->after), ignored))
+      if (fs::is_regular_file(full_path.parent_path() / (list->before + item + list->after), ignored))
         names.push_back(list->before + item + list->after);
-    return in_folder(std::move(names), whole.parent_path());
+    return in_folder(std::move(names), full_path.parent_path());
   }
-  const std::size_t star = name.find('*');
-  const std::string before = name.substr(0, star), after = name.substr(star + 1);
-  const fs::path folder = whole.has_parent_path() ? whole.parent_path() : fs::path(".");
+  const std::size_t star_offset = name.find('*');
+  const std::string before = name.substr(0, star_offset), after = name.substr(star_offset + 1);
+  const fs::path folder = full_path.has_parent_path() ? full_path.parent_path() : fs::path(".");
   std::vector<std::string> names;
   std::error_code code;
   for (fs::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
@@ -85,7 +85,7 @@ std::vector<std::string> expand_pattern(const std::string& path) {
     if (one.size() >= before.size() + after.size() && one.starts_with(before) && one.ends_with(after) && at->is_regular_file(ignored))
       names.push_back(one);
   }
-  return in_folder(std::move(names), whole.parent_path());
+  return in_folder(std::move(names), full_path.parent_path());
 }
 
 std::string first_file(const std::string& path) {
@@ -94,32 +94,31 @@ std::string first_file(const std::string& path) {
 }
 
 Result<std::string> make_pattern(std::vector<std::string> files) {
-  const auto spelt_once = [](const std::string& file) { return fs::path(file).lexically_normal().string(); };
-  if (files.size() > 1) std::ranges::transform(files, files.begin(), spelt_once);
+  const auto normalized = [](const std::string& file) { return fs::path(file).lexically_normal().string(); };
+  if (files.size() > 1) std::ranges::transform(files, files.begin(), normalized);
   std::ranges::sort(files);
   files.erase(std::unique(files.begin(), files.end()), files.end());
   CATENA_ASSERT(!files.empty());
   if (files.size() == 1 && is_other_glob(files.front()))
-    return Error{files.front() + ": there is no such file; a name with a *, or a list such as {1,2,3}, stands for several"};
+    return Error{files.front() + ": there is no such file; a pattern for several files has a * or a list such as {1,2,3}"};
   if (files.size() == 1) return files.front();
   const fs::path folder = fs::path(files.front()).parent_path();
   std::vector<std::string> names;
   for (const std::string& file : files) {
     if (fs::path(file).parent_path() != folder)
-      return Error{fmt::format("{} and {} lie in different folders: files of one series were expected", files.front(), file)};
+      return Error{fmt::format("{} and {} are in different folders; files of one series were expected", files.front(), file)};
     names.push_back(fs::path(file).filename().string());
     std::error_code code;
     if (!fs::exists(file, code))
       return Error{file + (code == std::errc::filename_too_long ? ": the name is too long" : ": there is no such file")};
-    if (fs::is_directory(file, code))
-      return Error{file + ": this is a folder, which goes alone; one folder, or files of one series, were expected"};
+    if (fs::is_directory(file, code)) return Error{file + ": this is a folder; a single folder, or files of one series, were expected"};
   }
   if (!is_numbered_series(names)) {
     const auto other = std::ranges::find_if(names, [&](const std::string& name) { return !is_numbered_series({names.front(), name}); });
-    return Error{fmt::format("{} and {} are no series: files whose names differ in their numbers alone were expected, or one file",
+    return Error{fmt::format("{} and {} are not a series; one file, or files whose names differ only in their numbers, were expected",
                              names.front(), *other)};
   }
-  // common prefix and suffix of all names, without parts of numbers
+  // the common prefix and suffix of all names exclude parts of numbers
   const auto is_part = [](char c) { return (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '+'; };
   std::size_t before = names.front().size(), after = names.front().size();
   for (const std::string& name : names) {
@@ -131,11 +130,11 @@ Result<std::string> make_pattern(std::vector<std::string> files) {
   while (after > 0 && is_digit(first[first.size() - after])) --after;
   natural_sort(names);
   const std::string head = first.substr(0, before), tail = first.substr(first.size() - after);
-  if (const std::string star = (folder / (head + "*" + tail)).string(); expand_pattern(star).size() == names.size()) return star;
+  if (const std::string pattern = (folder / (head + "*" + tail)).string(); expand_pattern(pattern).size() == names.size()) return pattern;
   std::vector<std::string> middles;
   for (const std::string& name : names) middles.push_back(name.substr(before, name.size() - before - after));
   if (std::ranges::any_of(middles, [](const std::string& m) { return m.find_first_of("{},") != std::string::npos; }))
-    return Error{fmt::format("{}: commas and braces in the names of a series were not expected", names.front())};
+    return Error{fmt::format("{}: names of a series without commas and braces were expected", names.front())};
   return (folder / fmt::format("{}{{{}}}{}", head, fmt::join(middles, ","), tail)).string();
 }
 

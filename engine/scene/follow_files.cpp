@@ -27,21 +27,21 @@ std::int64_t age_ns(std::int64_t changed) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count() - changed;
 }
 
-/// False if the file has just been changed, or does not exist.
+/// Returns false if the file has changed within kSettledNs, or does not exist.
 bool is_settled(const std::string& path) {
   struct stat about {};
   if (::stat(path.c_str(), &about) != 0) return false;
   return S_ISDIR(about.st_mode) || age_ns(modified_ns(about)) >= kSettledNs;
 }
 
-/// Whether a step can be read completely. A field is added to the cache, so that it is shown without being read twice.
-bool is_whole(const FollowedSource& one, const field::LoadRequest& request) {
+/// Returns whether a step can be read completely. A field is added to the cache, so that it is shown without being read twice.
+bool is_readable(const FollowedSource& one, const field::LoadRequest& request) {
   switch (one.kind) {
     case FollowedSource::Kind::field: {
       const auto loaded = field::load(request);
-      const bool whole = loaded && (loaded->newest_mtime_ns == 0 || age_ns(loaded->newest_mtime_ns) >= kSettledNs);
-      if (whole) field::add_to_cache(request, *loaded);
-      return whole;
+      const bool complete = loaded && (loaded->newest_mtime_ns == 0 || age_ns(loaded->newest_mtime_ns) >= kSettledNs);
+      if (complete) field::add_to_cache(request, *loaded);
+      return complete;
     }
     case FollowedSource::Kind::mesh:
       return bool(mesh::load_mesh(request.path, {}, request.step));
@@ -53,25 +53,25 @@ bool is_whole(const FollowedSource& one, const field::LoadRequest& request) {
   return false;
 }
 
-bool look_for_files(FollowedSource& one) {
-  std::vector<std::string> whole;
-  bool more = false;
+bool find_new_files(FollowedSource& one) {
+  std::vector<std::string> files;
+  bool has_new = false;
   const auto name_of = [](const std::string& path) { return fs::path(path).filename().string(); };
   for (const std::string& file : expand_pattern(one.pattern)) {
     const bool known = std::ranges::find(one.series, file) != one.series.end();
     field::LoadRequest request = one.request;
     request.path = file;
     request.step = 0;
-    if (!known && (!is_numbered_series({name_of(one.series.front()), name_of(file)}) || !is_settled(file) || !is_whole(one, request)))
+    if (!known && (!is_numbered_series({name_of(one.series.front()), name_of(file)}) || !is_settled(file) || !is_readable(one, request)))
       continue;
-    whole.push_back(file);
-    more = more || !known;
+    files.push_back(file);
+    has_new = has_new || !known;
   }
-  if (more) one.series = std::move(whole);
-  return more;
+  if (has_new) one.series = std::move(files);
+  return has_new;
 }
 
-bool look_for_times(FollowedSource& one) {
+bool find_new_times(FollowedSource& one) {
   const std::vector<double> times = field::read_times(one.request.path);
   const std::size_t before = one.times.size();
   if (!std::equal(one.times.begin(), one.times.end(), times.begin(),
@@ -80,13 +80,13 @@ bool look_for_times(FollowedSource& one) {
   for (std::size_t step = before; step < times.size(); ++step) {
     field::LoadRequest request = one.request;
     request.step = static_cast<std::int32_t>(step);
-    if (!is_settled(request.path) || !is_whole(one, request)) break;
+    if (!is_settled(request.path) || !is_readable(one, request)) break;
     one.times.push_back(times[step]);
   }
   return one.times.size() > before;
 }
 
-/// Whether the format is one to which more time steps can be added.
+/// Returns whether more time steps can be added to a file of this format.
 bool can_grow(const std::string& path) {
   std::error_code code;
   return std::ranges::any_of(std::initializer_list<std::string_view>{".pvd", ".series", ".foam", ".case", ".encas", ".nc", ".cdf"},
@@ -94,7 +94,7 @@ bool can_grow(const std::string& path) {
          fs::is_directory(path, code);
 }
 
-void hold_newest_back(std::vector<std::string>& series) {
+void drop_newest(std::vector<std::string>& series) {
   if (series.size() > 1) series.pop_back();
   while (series.size() > 1 && !is_settled(series.back())) series.pop_back();
 }
@@ -117,14 +117,14 @@ bool start_following(Scene& scene) {
   scene.entities.each<FieldSource>([&](Entity, FieldSource& source) {
     if (source.has_own_step || !source.file || (source.pattern.empty() && !can_grow(source.file->path))) return;
     source.follows = any = true;
-    hold_newest_back(source.series);
+    drop_newest(source.series);
     assign_step(source, scene.time.step);
   });
   each_shape_kind(scene, [&](FollowedSource::Kind, const std::string&, auto& part) {
     FileSteps& steps = part.steps;
     if (steps.pattern.empty() && !can_grow(part.path)) return;
     steps.follows = any = true;
-    hold_newest_back(steps.series);
+    drop_newest(steps.series);
     assign_step(part, scene.time.step);
   });
   return any;
@@ -151,7 +151,7 @@ std::vector<FollowedSource> followed_sources(const Scene& scene) {
   return all;
 }
 
-bool poll_steps(FollowedSource& one) { return one.pattern.empty() ? look_for_times(one) : look_for_files(one); }
+bool poll_steps(FollowedSource& source) { return source.pattern.empty() ? find_new_times(source) : find_new_files(source); }
 
 bool apply_steps(Scene& scene, const std::vector<FollowedSource>& found) {
   const int before = step_count(scene);
@@ -179,20 +179,20 @@ Result<std::string> find_followable_path(const std::string& path) {
   if (can_grow(path) || (is_pattern(path) && fs::path(path).filename().string().find('*') != std::string::npos)) return path;
   const fs::path first(first_file(path));
   if (std::error_code code; !fs::exists(first, code))
-    return Error{one_line(path + ": there is no such file; of files that are still to come a pattern (\"wake_*.vtu\") was expected")};
+    return Error{one_line(path + ": there is no such file; for files that do not exist yet a pattern (\"wake_*.vtu\") was expected")};
   const auto [before, after] = split_at_last_number(first.filename().string());
   if (after.empty())
     return Error{one_line(path +
-                          ": has no steps that could be added: a file with a number in its name, a pattern (\"wake_*.vtu\"), a .pvd, a "
+                          ": steps cannot be added to this file; a file with a number in its name, a pattern (\"wake_*.vtu\"), a .pvd, a "
                           ".series or an OpenFOAM case was expected")};
   return (first.parent_path() / (before + "*" + after)).string();
 }
 
 bool may_be_incomplete(const std::string& path) {
-  constexpr std::int64_t kLongestPauseNs = 10 * kSettledNs;
+  constexpr std::int64_t kMaxPauseNs = 10 * kSettledNs;
   struct stat about {};
   if (::stat(first_file(path).c_str(), &about) != 0) return is_pattern(path);
-  return age_ns(modified_ns(about)) < kLongestPauseNs;
+  return age_ns(modified_ns(about)) < kMaxPauseNs;
 }
 
 }  // namespace catena::scene

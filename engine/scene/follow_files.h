@@ -27,9 +27,9 @@ struct FollowedSource {
 bool start_following(Scene& scene);
 /// Returns the sources of the scene that are followed and loaded.
 std::vector<FollowedSource> followed_sources(const Scene& scene);
-/// Polls the disk and adds the complete new steps to `one`. Reads new steps, and caches fields (engine/io/field_cache.h). Returns whether
-/// there are new steps.
-bool poll_steps(FollowedSource& one);
+/// Polls the disk and adds the complete new steps to `source`. Reads new steps, and caches fields (engine/io/field_cache.h). Returns
+/// whether there are new steps.
+bool poll_steps(FollowedSource& source);
 /// Applies polled steps to the sources that still have the same name and files. Returns whether the scene has more steps.
 bool apply_steps(Scene& scene, const std::vector<FollowedSource>& found);
 

@@ -36,18 +36,18 @@ std::vector<Color> choose() {
   for (int r = 0; r < kLevels; ++r)
     for (int g = 0; g < kLevels; ++g)
       for (int b = 0; b < kLevels; ++b) add({level(r), level(g), level(b)});
-  std::vector<Color> chosen;
+  std::vector<Color> colors;
   std::size_t next = 0;
-  while (chosen.size() < kPaletteColors) {
+  while (colors.size() < kPaletteColors) {
     const Candidate best = all[next];
-    chosen.push_back(best.color);
+    colors.push_back(best.color);
     for (Candidate& one : all) {
       const Vec3 d = one.place - best.place;
       one.away = std::min(one.away, dot(d, d));
     }
     next = static_cast<std::size_t>(std::ranges::max_element(all, {}, &Candidate::away) - all.begin());
   }
-  return chosen;
+  return colors;
 }
 
 }  // namespace

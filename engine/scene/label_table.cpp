@@ -18,7 +18,7 @@ namespace {
 using Cells = std::vector<std::string_view>;
 
 constexpr std::uint64_t kMaxTableBytes = std::uint64_t{16} << 20;
-constexpr std::size_t kMostNameBytes = 200;
+constexpr std::size_t kMaxNameBytes = 200;
 constexpr std::size_t kLutBytes = 768;
 
 /// Splits a line at runs of blanks.
@@ -107,14 +107,14 @@ Row row_of_words(std::string_view line) {
   const Cells words = words_of_line(line);
   Row row{words[0], {}};
   if (words.size() == 1) return row;
-  // ITK-SNAP: seven numbers and a name in quotes
+  // ITK-SNAP writes seven numbers and a name in quotes
   const std::size_t quote = line.find('"');
   if (quote != std::string_view::npos && words.size() >= 8 && all_numbers(words, 0, 7)) {
     row.name = line.substr(quote + 1, line.rfind('"') > quote ? line.rfind('"') - quote - 1 : std::string_view::npos);
     row.color = {words[1], words[2], words[3]};
     return row;
   }
-  // FreeSurfer: color and transparency are the last four columns
+  // FreeSurfer writes color and transparency in the last four columns
   if (words.size() >= 6 && all_numbers(words, words.size() - 4, words.size())) {
     const std::size_t last = words.size() - 4;
     row.name = line.substr(static_cast<std::size_t>(words[1].data() - line.data()),
@@ -122,7 +122,7 @@ Row row_of_words(std::string_view line) {
     row.color = {words[last], words[last + 1], words[last + 2]};
     return row;
   }
-  // a value and a name
+  // other tables have a value and a name
   if (line.find('\t') != std::string_view::npos) {
     const Cells cells = cells_of_line(line, '\t');
     row.value = cells[0];
@@ -136,11 +136,11 @@ Row row_of_words(std::string_view line) {
   return row;
 }
 
-/// The name, cut to the maximum number of bytes without splitting a UTF-8 character.
+/// Returns the name, cut to the maximum number of bytes without splitting a UTF-8 character.
 std::string name_within(std::string_view name) {
   name = trim(name);
-  if (name.size() > kMostNameBytes) {
-    std::size_t end = kMostNameBytes;
+  if (name.size() > kMaxNameBytes) {
+    std::size_t end = kMaxNameBytes;
     while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;
     name = name.substr(0, end);
   }
@@ -158,12 +158,12 @@ Result<LabelTable> parse_lines(std::string_view text, const std::string& file) {
   text = strip_bom(text);
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view whole = text.substr(0, end);
+    const std::string_view raw_line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
     ++number;
-    const std::string_view line = trim(whole);
+    const std::string_view line = trim(raw_line);
     if (line.empty() || line.front() == '#') continue;
-    const auto wrong = [&](const std::string& what) { return Error{one_line(file + ":" + std::to_string(number) + ": " + what)}; };
+    const auto line_error = [&](const std::string& what) { return Error{one_line(file + ":" + std::to_string(number) + ": " + what)}; };
     if (std::exchange(first, false)) {
       columns = columns_of(line);
       if (columns) continue;
@@ -171,19 +171,19 @@ Result<LabelTable> parse_lines(std::string_view text, const std::string& file) {
     const Row row = columns ? row_of_columns(line, *columns) : row_of_words(line);
     const auto value = number_of(row.value);
     if (!value || *value != std::nearbyint(*value) || std::fabs(*value) > kMaxLabelValue)
-      return wrong("a row begins with " + in_quotes(row.value) + "; the whole number of a label, at most 16777216 in size, was expected");
+      return line_error("the row begins with " + in_quotes(row.value) + "; an integer label of magnitude at most 16777216 was expected");
     const std::string name = name_within(row.name);
-    if (name.empty()) return wrong("label " + to_text(*value) + " has no name; a name after the number was expected");
+    if (name.empty()) return line_error("label " + to_text(*value) + " has no name; a name was expected after the number");
     if (!known.insert(*value).second) continue;
     if (table.size() >= kMaxLabelRows)
-      return wrong("there are more than " + std::to_string(kMaxLabelRows) + " labels; at most as many were expected");
+      return line_error("the table has more than " + std::to_string(kMaxLabelRows) + " labels; a shorter table was expected");
     if (!row.color.empty()) {
       std::array<double, 4> color{double(table.size())};
       for (std::size_t i = 0; i < 3; ++i) {
         const auto part = number_of(row.color[i]);
         if (!part || *part < 0 || *part > 255)
-          return wrong("label " + to_text(*value) + " has the colour component " + in_quotes(row.color[i]) +
-                       "; a number from 0 to 255 was expected");
+          return line_error("label " + to_text(*value) + " has the colour component " + in_quotes(row.color[i]) +
+                            "; a number from 0 to 255 was expected");
         color[i + 1] = *part;
         brightest = std::max(brightest, *part);
       }
@@ -191,7 +191,7 @@ Result<LabelTable> parse_lines(std::string_view text, const std::string& file) {
     }
     table.push_back({*value, name});
   }
-  if (table.empty()) return Error{one_line(file + ": the table has no label; rows of a number and a name were expected")};
+  if (table.empty()) return Error{one_line(file + ": the table has no labels; rows with a number and a name were expected")};
   const double scale = columns && brightest <= 1 ? 1 : 255;
   for (const auto& c : colors)
     table[static_cast<std::size_t>(c[0])].color = Color{float(c[1] / scale), float(c[2] / scale), float(c[3] / scale)};

@@ -23,7 +23,7 @@ namespace catena::scene {
 
 /// Row of a label table.
 struct LabelRow {
-  double value = 0;              ///< Number of the label, a whole number
+  double value = 0;              ///< Number of the label, an integer
   std::string name;              ///< Name of the label
   std::optional<Color> color{};  ///< Empty: the table has no color for it
   bool operator==(const LabelRow&) const = default;
@@ -32,7 +32,7 @@ struct LabelRow {
 using LabelTable = std::vector<LabelRow>;
 
 inline constexpr std::size_t kMaxLabelRows = 65536;  ///< Maximum number of rows; a table with more is an error
-inline constexpr double kMaxLabelValue = 1 << 24;    ///< Maximum |value| of a label: floats represent whole numbers exactly up to here
+inline constexpr double kMaxLabelValue = 1 << 24;    ///< Maximum |value| of a label: floats represent integers exactly up to this value
 
 /// Parses the text of a table; `file` is for messages. Error: "FILE:LINE: what; what was expected".
 CATENA_EXPORT Result<LabelTable> parse_label_table(std::string_view text, const std::string& file);

@@ -22,17 +22,18 @@ std::shared_ptr<const LabelMap> make_label_map(const field::ScalarGrid& grid, co
   if (!counts) return nullptr;
   auto map = std::make_shared<LabelMap>();
   map->counts = std::move(*counts);
-  std::size_t beyond = table.size();  // the first colors are reserved for the table's rows, even for those not in this map
+  std::size_t palette_index =
+      table.size();  // the first colors are reserved for the rows of the table, including rows that are not in this map
   for (const field::LabelCount& count : map->counts) {
     if (count.value == 0) continue;
     LabelEntry label{count.value, {}, {}, count.voxels};
-    const auto said = std::lower_bound(table.begin(), table.end(), count.value, [](const LabelRow& l, double v) { return l.value < v; });
-    const bool known = said != table.end() && said->value == count.value;
-    if (known) label.name = said->name;
-    if (known && said->color)
-      label.color = *said->color;
+    const auto row = std::lower_bound(table.begin(), table.end(), count.value, [](const LabelRow& l, double v) { return l.value < v; });
+    const bool known = row != table.end() && row->value == count.value;
+    if (known) label.name = row->name;
+    if (known && row->color)
+      label.color = *row->color;
     else
-      label.color = palette_color(known ? static_cast<std::size_t>(said - table.begin()) : beyond++);
+      label.color = palette_color(known ? static_cast<std::size_t>(row - table.begin()) : palette_index++);
     map->labels.push_back(std::move(label));
   }
   return map;
@@ -54,10 +55,10 @@ std::string describe_label(const LabelMap& map, double value) {
 
 namespace {
 
-/// The label map from which a surface is extracted; a null entity: the scene has none of that name.
+/// Returns the label map from which a surface is extracted; a null entity: the scene has none of that name.
 Entity map_of(const Scene& scene, const LabelSource& source) { return find_field(scene, source.label_map); }
 
-/// The label values that the source selects, by number or by name.
+/// Returns the label values that the source selects, by number or by name.
 Result<std::vector<double>> values_of(const LabelSource& source, const LabelMap& map, const json::Node& where) {
   std::vector<double> values = source.values;
   for (const std::string& name : source.names) {
@@ -66,7 +67,7 @@ Result<std::vector<double>> values_of(const LabelSource& source, const LabelMap&
       std::vector<std::string_view> names;
       for (const LabelEntry& label : map.labels)
         if (!label.name.empty()) names.push_back(label.name);
-      return json::error_at(where, "label map " + in_quotes(source.label_map) + " has no label " + in_quotes(name) + "; one of its " +
+      return json::error_at(where, "label map " + in_quotes(source.label_map) + " has no label " + in_quotes(name) + "; one of the map's " +
                                        std::to_string(names.size()) + " names was expected" + suggestion(name, names));
     }
     values.push_back(named->value);
@@ -75,9 +76,9 @@ Result<std::vector<double>> values_of(const LabelSource& source, const LabelMap&
     for (const LabelEntry& label : map.labels) values.push_back(label.value);
   for (const double value : values)
     if (!std::ranges::binary_search(map.counts, value, {}, &field::LabelCount::value))
-      return json::error_at(where, "no voxel of " + in_quotes(source.label_map) + " holds label " + to_text(value) + "; one of its " +
-                                       std::to_string(map.labels.size()) + " labels was expected");
-  if (values.empty()) return json::error_at(where, in_quotes(source.label_map) + " holds nothing but 0; a map with labels was expected");
+      return json::error_at(where, "no voxel of " + in_quotes(source.label_map) + " has the label " + to_text(value) +
+                                       "; one of the map's " + std::to_string(map.labels.size()) + " labels was expected");
+  if (values.empty()) return json::error_at(where, in_quotes(source.label_map) + " contains only 0; a map with labels was expected");
   return values;
 }
 
@@ -128,7 +129,7 @@ Result<field::AnyField> resolve_label_surface(Scene& scene, Entity field) {
   if (grid != nullptr && !map) map = make_label_map(*grid, scene.entities.get<FieldSource>(parent).labels_table);
   if (!map)
     return json::error_at(json::member_or_parent(where, "of"),
-                          in_quotes(label.label_map) + " is no label map; a file whose voxels hold whole numbers was expected");
+                          in_quotes(label.label_map) + " is not a label map; a file with integer voxels was expected");
   CATENA_TRY(const std::vector<double> values, values_of(label, *map, json::member_or_parent(where, "label")));
   auto made = field::make_label_surface(*grid, map->counts, values, label.smoothing_voxels, name);
   if (!made) return with_cause(json::error_at(where, made.error().message), made.error());

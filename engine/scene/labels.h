@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Labels of a label map: the numbers that its voxels hold, with names and colors. A field is a label map if it uses nearest-voxel
-/// interpolation and all voxels hold whole numbers; 0 means no label. Frame thread, off the tick.
+/// interpolation and all voxels hold integers; 0 means no label. Frame thread, off the tick.
 #pragma once
 #include <memory>
 #include <string>
@@ -30,7 +30,7 @@ struct LabelMap {
   const LabelEntry* find(double value) const;
 };
 
-/// Returns the labels of a grid; null if a voxel does not hold a whole number, or there are too many (field::count_labels).
+/// Returns the labels of a grid; null if a voxel does not hold an integer, or there are too many (field::count_labels).
 std::shared_ptr<const LabelMap> make_label_map(const field::ScalarGrid& grid, const LabelTable& table);
 
 /// Sets `labels` of a loaded source if it is a label map and `labels` is null.

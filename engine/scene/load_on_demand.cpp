@@ -17,8 +17,8 @@
 namespace catena::scene {
 namespace {
 
-constexpr double kFarthestDrawn = 1e30;  ///< world coordinates: the limit that a scene file also has
-constexpr std::size_t kManyCurves = 64;  ///< number of curves from which on unused ones are looked for
+constexpr double kMaxDrawn = 1e30;       ///< world coordinates: the limit that a scene file also has
+constexpr std::size_t kManyCurves = 64;  ///< number of cached curves from which on unused ones are dropped
 
 /// Returns an Error if the grid has no valid value at all.
 Outcome check_grid(const field::AnyField& any) {
@@ -28,7 +28,7 @@ Outcome check_grid(const field::AnyField& any) {
   if (stats == nullptr) return Done{};
   if (stats->active_voxels == 0) return Error{"grid " + in_quotes(any.get()->name()) + " is empty; active voxels were expected"};
   if (stats->nan_count >= stats->active_voxels)
-    return Error{"grid " + in_quotes(any.get()->name()) + " holds no finite value; numbers were expected"};
+    return Error{"grid " + in_quotes(any.get()->name()) + " contains no finite value; finite numbers were expected"};
   return Done{};
 }
 
@@ -68,14 +68,15 @@ void note_mixed_labels(Scene& scene, const std::string& name, const FieldSource&
   if (!source.file || grid == nullptr || grid->interpolation() == field::Interpolation::nearest) return;
   const std::string& path = source.file->path;
   const bool table = !source.labels_table.empty();
-  if (!table && (path.ends_with(".vdb") || !field::read_units(path, source.file->grid).is_label_map)) return;  // a .vdb has no such mark
+  if (!table && (path.ends_with(".vdb") || !field::read_units(path, source.file->grid).is_label_map))
+    return;  // a .vdb cannot declare labels
   bool made = false;
   scene.entities.each<FieldSource>(
       [&](Entity, const FieldSource& other) { made = made || (other.label && other.label->label_map == name); });
   if (made) return;
   scene.notes.push_back(fmt::format(
-      "field {}: {}, and {} cells make numbers between them that stand for nothing; \"interpolation\": \"nearest\" was expected",
-      in_quotes(name), table ? "it has \"labels\"" : path + " says that it holds labels (NIFTI_INTENT_LABEL)",
+      "field {}: {}, but the {} interpolation computes meaningless values between labels; \"interpolation\": \"nearest\" was expected",
+      in_quotes(name), table ? "the field has \"labels\"" : path + " is declared as a label map (NIFTI_INTENT_LABEL)",
       grid->interpolation() == field::Interpolation::cubic ? "cubic" : "linear"));
 }
 
@@ -83,11 +84,11 @@ void note_mixed_labels(Scene& scene, const std::string& name, const FieldSource&
 void note_tiny_values(Scene& scene, const std::string& name, const FieldSource& source) {
   const field::ScalarGrid* grid = source.loaded.scalar ? source.loaded.scalar->grid() : nullptr;
   if (grid == nullptr) return;
-  const double most = std::max(std::fabs(grid->stats().min), std::fabs(grid->stats().max));
-  if (most == 0 || most >= kMinSize) return;
-  scene.notes.push_back(fmt::format(
-      "field {}: its values are at most {} in size, too little for pictures and forces; from {} on were expected: scale the data",
-      in_quotes(name), format_readable(most), format_readable(kMinSize)));
+  const double max_magnitude = std::max(std::fabs(grid->stats().min), std::fabs(grid->stats().max));
+  if (max_magnitude == 0 || max_magnitude >= kMinSize) return;
+  scene.notes.push_back(
+      fmt::format("field {}: the largest magnitude is {}, too small for images and forces; at least {} was expected: scale the data",
+                  in_quotes(name), format_readable(max_magnitude), format_readable(kMinSize)));
 }
 
 /// Adds a note that automatic color ranges omit outliers and fill values.
@@ -109,8 +110,8 @@ Result<field::AnyField> resolve_field(Scene& scene, Entity field, const json::No
   }
   auto loaded = load_source(source);
   if (!loaded) {
-    const json::Node& place = source.where.line != 0 ? source.where : where;
-    return with_cause(json::error_at(place, "field " + in_quotes(scene.entities.get<Name>(field).value) + ": " + loaded.error().message),
+    const json::Node& location = source.where.line != 0 ? source.where : where;
+    return with_cause(json::error_at(location, "field " + in_quotes(scene.entities.get<Name>(field).value) + ": " + loaded.error().message),
                       loaded.error());
   }
   source.loaded = *loaded;
@@ -128,12 +129,12 @@ Result<field::AnyField> resolve_field(Scene& scene, const std::string& name, con
   return resolve_field(scene, field, where);
 }
 
-/// Largest absolute coordinate of the grid's corners along any axis.
-static double reach_of(const field::Field& grid) {
+/// Returns the maximum absolute coordinate of the grid's corners along any axis.
+static double max_coordinate(const field::Field& grid) {
   const Bounds box = field::world_bounds(grid.mapping(), grid.index_box());
-  double most = 0;
-  for (int axis = 0; axis < 3; ++axis) most = std::max({most, std::fabs(box.lo[axis]), std::fabs(box.hi[axis])});
-  return most;
+  double maximum = 0;
+  for (int axis = 0; axis < 3; ++axis) maximum = std::max({maximum, std::fabs(box.lo[axis]), std::fabs(box.hi[axis])});
+  return maximum;
 }
 
 Result<field::AnyField> resolve_rendered_field(Scene& scene, Entity field, const json::Node& where) {
@@ -141,15 +142,15 @@ Result<field::AnyField> resolve_rendered_field(Scene& scene, Entity field, const
   FieldSource& source = scene.entities.get<FieldSource>(field);
   if (source.rendered.get() == nullptr) {
     if (loaded.get()->is_grid()) {
-      if (const double reach = reach_of(*loaded.get()); reach > kFarthestDrawn)
+      if (const double coordinate = max_coordinate(*loaded.get()); coordinate > kMaxDrawn)
         return json::error_at(source.where.line != 0 ? source.where : where,
-                              fmt::format("field {}: reaches {:.3g} from the origin, which no picture shows; at most {:g} was expected",
-                                          in_quotes(scene.entities.get<Name>(field).value), reach, kFarthestDrawn));
+                              fmt::format("field {}: extends to {:.3g} from the origin, too far to be rendered; at most {:g} was expected",
+                                          in_quotes(scene.entities.get<Name>(field).value), coordinate, kMaxDrawn));
       source.rendered = loaded;
     } else {
-      const auto drawn = field::try_sample_on_grid(loaded, source.resolution, source.box[0], source.box[1]);
-      if (!drawn) return with_cause(json::error_at(source.where, drawn.error().message), drawn.error());
-      source.rendered = *drawn;
+      const auto sampled = field::try_sample_on_grid(loaded, source.resolution, source.box[0], source.box[1]);
+      if (!sampled) return with_cause(json::error_at(source.where, sampled.error().message), sampled.error());
+      source.rendered = *sampled;
     }
   }
   Outcome mapped = Done{};
@@ -163,8 +164,8 @@ Result<field::AnyField> resolve_rendered_field(Scene& scene, Entity field, const
         if (volume.transfer.extinctions.empty() && volume.transfer.opacities.empty()) volume.transfer.opacities = {{0.4, 0}, {0.6, 0.9}};
         return;
       }
-      if (!scene.cache.has<ValueSample>(field)) scene.cache.emplace<ValueSample>(field);
-      ValueSample& sample = scene.cache.get<ValueSample>(field);
+      if (!scene.cache.has<SortedValues>(field)) scene.cache.emplace<SortedValues>(field);
+      SortedValues& sample = scene.cache.get<SortedValues>(field);
       if (sample.grid != source.rendered.get()) sample = {source.rendered.get(), sorted_values(grid)};
       complete_transfer(volume.transfer, grid, *sample.sorted);
       if (Outcome found = check_mapping(volume.where, volume.transfer.named.mapping, volume.transfer.colors.front().value); !found)
@@ -221,15 +222,15 @@ Result<flow::CurvePtr> resolve_streamline(Scene& scene, const flow::Flow& flow, 
 
 Outcome check_surface(const Scene& scene, Entity field, const json::Node& where) {
   const field::AnyField& any = loaded_field(scene, field);
-  const std::string why = any.scalar ? field::no_surface_hint(*any.scalar, scene.entities.get<Name>(field).value) : std::string();
-  return why.empty() ? Outcome(Done{}) : json::error_at(where, why);
+  const std::string hint = any.scalar ? field::no_surface_hint(*any.scalar, scene.entities.get<Name>(field).value) : std::string();
+  return hint.empty() ? Outcome(Done{}) : json::error_at(where, hint);
 }
 
 Outcome check_level(const field::ScalarField& field, double level, const json::Node& where) {
   const double lo = field.min_value(), hi = field.max_value();
   if (level >= lo && level <= hi) return Done{};
-  return json::error_at(where, "level " + to_text(level) + " lies outside the field's values " + format_readable(lo) + ".." +
-                                   format_readable(hi) + "; a level that the field attains was expected");
+  return json::error_at(where, "level " + to_text(level) + " is outside the field's range " + format_readable(lo) + ".." +
+                                   format_readable(hi) + "; a level within this range was expected");
 }
 
 }  // namespace catena::scene

@@ -48,11 +48,11 @@ Bounds scene_bounds(const Scene& scene) {
   return bounds;
 }
 
-/// Widgets: tick reports -> components -> everything that is bound to them.
+// Data flow of widgets: tick reports, components, then the objects bound to them.
 
 namespace {
 
-bool is_sound(const widget::Report& report) {
+bool is_valid_report(const widget::Report& report) {
   const Quat& q = report.pose.orientation;
   return is_finite(report.pose.points[0]) && is_finite(report.pose.points[1]) && std::isfinite(report.value) && is_finite(q) &&
          std::fabs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1) < 1e-6;
@@ -92,12 +92,12 @@ void drive_seeds(Scene& scene, Entity entity, const Widget& widget, WidgetChange
   });
 }
 
-/// Whether a surface is visible, or a visible object lies on it.
+/// Returns whether a surface is visible, or a visible object lies on it.
 bool is_shown(const Scene& scene, Entity surface) {
-  bool shown = !is_hidden(scene.entities, surface);
+  bool visible = !is_hidden(scene.entities, surface);
   scene.entities.each<GlyphSet>(
-      [&](Entity e, const GlyphSet& set) { shown = shown || (set.support_entity == surface && !is_hidden(scene.entities, e)); });
-  return shown;
+      [&](Entity e, const GlyphSet& set) { visible = visible || (set.support_entity == surface && !is_hidden(scene.entities, e)); });
+  return visible;
 }
 
 /// Sets the levels of isosurfaces bound to the widget. Invisible surfaces are skipped: their fields are not loaded for this.
@@ -108,10 +108,10 @@ Outcome drive_levels(Scene& scene, Entity entity, double value, WidgetChanges& c
   });
   for (const Entity e : surfaces) {
     const Isosurface& surface = scene.entities.get<Isosurface>(e);
-    CATENA_TRY(const field::AnyField drawn, resolve_rendered_field(scene, surface.field, surface.where));
-    // a vector field becomes an error where the surface is extracted
-    if (!drawn.scalar) continue;
-    scene.entities.get<Isosurface>(e).level = std::clamp(value, drawn.scalar->min_value(), drawn.scalar->max_value());
+    CATENA_TRY(const field::AnyField any, resolve_rendered_field(scene, surface.field, surface.where));
+    // a vector field causes an error when the surface is extracted
+    if (!any.scalar) continue;
+    scene.entities.get<Isosurface>(e).level = std::clamp(value, any.scalar->min_value(), any.scalar->max_value());
     changes.levels = true;
   }
   return Done{};
@@ -126,7 +126,7 @@ bool update_widgets(Scene& scene, const HapticState& state) {
   for (std::size_t i = 0; i < widgets.size(); ++i) {
     Widget& widget = scene.entities.get<Widget>(widgets[i]);
     const widget::Report& report = state.widgets[i];
-    if (report.revision != widget.spec.revision || !is_sound(report)) continue;
+    if (report.revision != widget.spec.revision || !is_valid_report(report)) continue;
     const double value = widget.spec.kind == widget::Kind::isolevel ? report.value : widget.report.value;
     changed = changed || report.pose != widget.report.pose || value != widget.report.value;
     widget.report = report;

@@ -9,7 +9,8 @@
 
 namespace catena::scene {
 
-/// Whether prepare traces the streamlines, or leaves them to a caller that visits them block by block (visit_lines, streamlines.h).
+/// Time at which streamlines are traced. immediate: by prepare; deferred: by a caller that visits them block by block (visit_lines,
+/// streamlines.h).
 enum class StreamlineTracing { immediate, deferred };
 
 /// Prepares the scene. Results are cached: an unchanged scene costs nothing. Errors have the scene file's name and line.
@@ -29,7 +30,7 @@ CATENA_EXPORT void update_cursor(Scene& scene, const HapticState& state);
 /// widgets, for a revision other than that of the pose set last, or with non-finite values. Returns whether a pose or value changed.
 CATENA_EXPORT bool update_widgets(Scene& scene, const HapticState& state);
 
-/// What changed since the previous call of propagate_widgets.
+/// Changes since the previous call of propagate_widgets.
 struct WidgetChanges {
   bool slices = false;                               ///< Slices or planes of glyphs
   bool clip = false, seeds = false, levels = false;  ///< Clip planes, seeds of streamlines, levels of isosurfaces

@@ -5,41 +5,50 @@
 
 namespace catena::scene {
 
-Key clip_key() { return schema::boolean("clip", "False: the clip planes leave it whole.").with_default("true"); }
-Key visible_key() { return schema::boolean("visible", "False: it is not drawn, but still felt and followed.").with_default("true"); }
+Key clip_key() {
+  return schema::boolean("clip", "Clipping by the planes of `clip`; false: the object is not clipped.").with_default("true");
+}
+Key visible_key() {
+  return schema::boolean("visible", "Visibility in the image; haptics and objects that refer to a hidden object are unaffected.")
+      .with_default("true");
+}
 Key opacity_key(const std::string& help) { return schema::number("opacity", "", help).within(0, 1); }
 
 Keys color_scale_keys(std::string_view map, const std::string& range) {
   return {schema::any_of("color", {schema::table("", 4, "value", ""), schema::text("", "")},
-                         "Rows `[value, r, g, b]`, or the name of a colour map (`catena info --colormaps`).")
+                         "Colour table with rows `[value, r, g, b]`, or the name of a colour map (`catena info --colormaps`).")
               .with_range_text("values rising")
               .with_default("\"" + std::string(map) + "\""),
-          schema::vector("range", 2, "value", "Between which values the named map lies; not beside a table.")
+          schema::vector("range", 2, "value", "Values at the two ends of the colour map; not together with a colour table.")
               .with_range_text("rising")
               .with_default(range),
           schema::choice("mapping", {std::begin(kMappingNames), std::end(kMappingNames)},
-                         "The scale between the points of colours and opacities: by the logarithm, or by it away from 0 on both sides.")
+                         "Scale between the points of colours and opacities: linear, logarithmic, or `symlog`, logarithmic on both sides "
+                         "of 0 and linear near 0.")
               .with_default("\"linear\""),
-          schema::number("linear_below", "value", "Of `symlog`: up to this size values are linear.")
+          schema::number("linear_below", "value", "Magnitude of the values up to which `symlog` is linear.")
               .positive()
-              .with_default("a thousandth of the greatest"),
-          schema::file("transfer", "A file that says all of it: Catena's (`assets/transfer/`) or a ParaView colour map.")};
+              .with_default("a thousandth of the maximum magnitude"),
+          schema::file("transfer",
+                       "File with the colours and opacities: a transfer file of Catena (`assets/transfer/`) or a colour map of ParaView.")};
 }
 
 Keys transfer_keys() {
   return schema::concatenate(
       color_scale_keys(kDefaultVolumeColorMap, "0.5 to 99.8 percentile; with a named map the display range"),
-      {schema::table("opacity", 2, "value, 1", "Rows `[value, alpha]`, alpha per `opacity_unit`; 1 counts as 0.999.")
+      {schema::table("opacity", 2, "value, 1", "Rows `[value, alpha]`, with alpha per `opacity_unit`; an alpha of 1 is treated as 0.999.")
            .with_range_text("0 <= alpha <= 1")
-           .with_default("from the values"),
-       schema::number("opacity_unit", "world", "The length that alpha is meant for.").positive().with_default("smallest voxel edge"),
-       schema::table("extinction", 2, "value, 1/world", "Rows `[value, sigma]`, instead of `opacity`.").with_range_text("sigma >= 0"),
-       schema::table("gradient_opacity", 2, "value/world, 1", "Rows `[slope, factor]`: the slope multiplies the extinction.")
+           .with_default("fitted to the values"),
+       schema::number("opacity_unit", "world", "Length to which alpha refers.").positive().with_default("the smallest voxel edge"),
+       schema::table("extinction", 2, "value, 1/world", "Rows `[value, sigma]` of the extinction, instead of `opacity`.")
+           .with_range_text("sigma >= 0"),
+       schema::table("gradient_opacity", 2, "value/world, 1",
+                     "Rows `[gradient, factor]`; the factor multiplies the extinction where the gradient has this magnitude.")
            .with_range_text("factor 0 to 1")
            .with_default("1 everywhere")});
 }
 
-/// Reads how values become colors: the object form of "color_by", {"field" or "quantity", "color", "range", "mapping", "transfer"}.
+/// Reads the colors of values: the object "color_by", {"field", "quantity" or "value", "color", "range", "mapping", "transfer"}.
 
 namespace {
 
@@ -87,20 +96,22 @@ Outcome read_object(const Scene& scene, const json::Node& node, ColorTarget subj
 }  // namespace
 
 Key color_by_key(ColorTarget subjects) {
-  Keys keys{schema::reference("field", Role::any_field, "The field whose values are shown; of a vector field, its magnitude.")};
+  Keys keys{schema::reference("field", Role::any_field, "Field whose values give the colours; of a vector field, the magnitude.")};
   if (subjects == ColorTarget::lines)
     keys.push_back(schema::choice("quantity", {std::string(kQuantities[0]), std::string(kQuantities[1])},
-                                  "Or what the line itself knows: one of `field` and `quantity`."));
+                                  "Quantity that gives the colours, instead of `field`: speed of the flow, or arc length from the seed."));
   else if (subjects == ColorTarget::glyphs)
-    keys.push_back(schema::choice("quantity", {std::string(kQuantities[0])}, "Or their speed: one of `field` and `quantity`."));
+    keys.push_back(schema::choice("quantity", {std::string(kQuantities[0])},
+                                  "Quantity that gives the colours, instead of `field`: speed of the flow."));
   else if (subjects == ColorTarget::points)
-    keys.push_back(schema::text("value", "Or a column of the table, by its name: one of the two."));
+    keys.push_back(schema::text("value", "Name of the table column that gives the colours, instead of `field`."));
   else if (subjects == ColorTarget::curves) {
-    keys.push_back(schema::text("value", "Or what the file says at each point, by its name there."));
-    keys.push_back(schema::choice("quantity", {std::string(kQuantities[1])}, "Or the way along the line: one of the three."));
+    keys.push_back(schema::text("value", "Name of the point values in the file that give the colours, instead of `field` or `quantity`."));
+    keys.push_back(schema::choice("quantity", {std::string(kQuantities[1])},
+                                  "Quantity that gives the colours, instead of `field` or `value`: arc length along the curve."));
   } else
     keys[0] = keys[0].required();
-  return schema::object("color_by", schema::concatenate(keys, color_scale_keys()), "Colours by values.");
+  return schema::object("color_by", schema::concatenate(keys, color_scale_keys()), "Colouring by values.");
 }
 
 Outcome read_plain_color(const json::Node& item, Color& out) {

@@ -12,7 +12,7 @@ using CurvesItem = FileItem<CurvesSource>;
 const Table<VortexCoreCurves>& cores_table() {
   static const auto table = [] {
     Table<VortexCoreCurves> t;
-    t.custom(schema::reference("field", Role::vector_field, "A vector field.").required(),
+    t.custom(schema::reference("field", Role::vector_field, "Vector field whose vortex core lines are traced.").required(),
              [](Scene& scene, const json::Node& object, VortexCoreCurves& made) -> Outcome {
                CATENA_TRY(const Entity field, read_named<FieldSource>(scene, object, "field", "field", "fields"));
                made.field = scene.entities.get<Name>(field).value;
@@ -32,23 +32,26 @@ const Table<VortexCoreCurves>& cores_table() {
 
 const Table<CurvesItem>& curves_table() {
   static const auto table = [] {
-    Table<CurvesItem> t = make_file_table<CurvesSource>("curves", "The file", io::readable_extensions(io::DataKind::curves), false);
-    t.custom(schema::object("vortex_cores", cores_table().keys(), "Or the core lines of the vortices of a field."),
+    Table<CurvesItem> t =
+        make_file_table<CurvesSource>("curves", "File with the curves", io::readable_extensions(io::DataKind::curves), false);
+    t.custom(schema::object("vortex_cores", cores_table().keys(), "Vortex core lines of a vector field, instead of `file`."),
              [](Scene& scene, const json::Node& item, CurvesItem& made) -> Outcome {
                const json::Node* cores = item.find("vortex_cores");
                if ((cores != nullptr) == (item.find("file") != nullptr))
                  return json::error_at(cores != nullptr ? *cores : item,
-                                       cores != nullptr ? "\"vortex_cores\" stands beside \"file\"; one of them was expected"
-                                                        : "neither \"file\" nor \"vortex_cores\" is there; one of them was expected");
+                                       cores != nullptr ? "both \"vortex_cores\" and \"file\" are given; one of them was expected"
+                                                        : "neither \"file\" nor \"vortex_cores\" is given; one of them was expected");
                if (cores == nullptr) return Done{};
                CATENA_CHECK(json::expect_object(*cores, "vortex_cores"));
                return cores_table().read(scene, *cores, made.item.vortex_cores.emplace());
              });
     t.bind(
-        schema::number("radius", "world", "Of the tubes.").positive().with_default("0.003 diagonals of all, less of many"),
+        schema::number("radius", "world", "Radius of the tubes.")
+            .positive()
+            .with_default("0.003 times the diagonal of all curves, less if they are many"),
         [](auto& c) -> auto& { return c.item.radius; });
     t.custom(
-        schema::color("color", "One colour for all.").with_default("by the direction, `[|x|, |y|, |z|]`"),
+        schema::color("color", "Colour of all curves if there is no `color_by`.").with_default("by direction, `[|x|, |y|, |z|]`"),
         [](Scene&, const json::Node& item, CurvesItem& made) -> Outcome {
           if (item.find("color") == nullptr) return Done{};
           return schema::read_value(schema::color("color", ""), item, made.item.color.emplace());
@@ -67,7 +70,7 @@ const Table<CurvesItem>& curves_table() {
 }  // namespace
 
 static Part curves_part() {
-  return {make_list_component("curves", "Curves from a file, such as the fibres of a tractogram, or traced along the cores of vortices.",
+  return {make_list_component("curves", "Curves from a file, such as the fibres of a tractogram, or vortex core lines of a field.",
                               curves_table()),
           [](Scene& scene, const json::Node& node) { return read_file_items(scene, node, curves_table()); }};
 }

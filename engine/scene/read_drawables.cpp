@@ -15,7 +15,7 @@ namespace {
 const Table<Volume>& volume_table() {
   static const auto table = [] {
     Table<Volume> t;
-    bind_field(t, schema::reference("field", Role::scalar_field, "A scalar field.").required(), &Volume::field);
+    bind_field(t, schema::reference("field", Role::scalar_field, "Scalar field that the volume shows.").required(), &Volume::field);
     t.group(
         transfer_keys(),
         [](Scene& scene, const json::Node& item, Volume& volume) -> Outcome {
@@ -23,19 +23,20 @@ const Table<Volume>& volume_table() {
           return Done{};
         },
         [](const Scene&, const Volume& v) { return transfer_members(v.transfer); });
-    t.bind(schema::boolean("shade", "Lit by the gradient."), &Volume::shaded);
+    t.bind(schema::boolean("shade", "Lighting by the gradient of the field."), &Volume::shaded);
     t.bind(clip_key(), &Volume::clipped);
     t.companion(visible_key());
-    t.bind(schema::choice("projection", {"composite", "maximum", "minimum", "average"}, "What a ray makes of its values."),
+    t.bind(schema::choice("projection", {"composite", "maximum", "minimum", "average"},
+                          "Combination of the values along a ray; `composite`: emission and absorption."),
            &Volume::projection);
     bind_color_by(t, ColorTarget::rays, &Volume::color_by);
     t.check([](Scene&, const json::Node& item, Volume& volume) -> Outcome {
       if (volume.projection == Volume::Projection::composite) return Done{};
       const std::string beside =
-          " beside the projection " + in_quotes(item.find("projection")->string) + "; \"composite\" was expected with it";
-      if (volume.color_by) return json::error_at(volume.color_by->where, "\"color_by\" stands" + beside);
+          " is given with the projection " + in_quotes(item.find("projection")->string) + "; \"composite\" was expected";
+      if (volume.color_by) return json::error_at(volume.color_by->where, "\"color_by\"" + beside);
       if (volume.transfer.gradient_factors.empty()) return Done{};
-      return json::error_at(*item.find("projection"), "an opacity by the gradient stands" + beside);
+      return json::error_at(*item.find("projection"), "\"gradient_opacity\"" + beside);
     });
     return t;
   }();
@@ -45,8 +46,8 @@ const Table<Volume>& volume_table() {
 const Table<Isosurface>& isosurface_table() {
   static const auto table = [] {
     Table<Isosurface> t;
-    bind_field(t, schema::reference("field", Role::scalar_field, "A scalar field.").required(), &Isosurface::field);
-    const Key level = schema::number("level", "value", "The value on the surface, or an isolevel widget whose value it follows.")
+    bind_field(t, schema::reference("field", Role::scalar_field, "Scalar field of the isosurface.").required(), &Isosurface::field);
+    const Key level = schema::number("level", "value", "Field value on the isosurface, or an isolevel widget that sets it.")
                           .required()
                           .with_range_text("in the field's range")
                           .with_role(Role::level)
@@ -66,8 +67,8 @@ const Table<Isosurface>& isosurface_table() {
           return s.level_widget ? "{\"widget\": " + schema::write_value(scene.entities.get<Name>(s.level_widget).value) + "}"
                                 : schema::write_value(s.level);
         });
-    t.bind(schema::color("color", "Its colour."), &Isosurface::color);
-    t.bind(opacity_key("Of one side."), &Isosurface::opacity);
+    t.bind(schema::color("color", "Colour of the isosurface if there is no `color_by`."), &Isosurface::color);
+    t.bind(opacity_key("Opacity of each layer of the isosurface."), &Isosurface::opacity);
     t.bind(clip_key(), &Isosurface::clipped);
     t.companion(visible_key());
     bind_color_by(t, ColorTarget::rays, &Isosurface::color_by);
@@ -76,7 +77,7 @@ const Table<Isosurface>& isosurface_table() {
   return table;
 }
 
-/// An item of "meshes": the file, which is both haptic and rendered, and its appearance.
+/// An item of "meshes": the mesh, used by haptics and rendering, and its appearance.
 struct MeshItem {
   std::string name;
   MeshSource source;
@@ -86,12 +87,12 @@ struct MeshItem {
 const Table<MeshItem>& mesh_table() {
   static const auto table = [] {
     Table<MeshItem> t;
-    t.custom(schema::identifier("name", "By which a link names it.").required(),
+    t.custom(schema::identifier("name", "Unique name, by which links and glyphs refer to the mesh.").required(),
              [](Scene& scene, const json::Node& item, MeshItem& mesh) -> Outcome {
                CATENA_TRY(mesh.name, read_new_name<MeshSource>(scene, item, "mesh"));
                return Done{};
              });
-    t.custom(schema::file("file", "The file: " + join_alternatives(io::readable_extensions(io::DataKind::mesh)) + ".").required(),
+    t.custom(schema::file("file", "Mesh file: " + join_alternatives(io::readable_extensions(io::DataKind::mesh)) + ".").required(),
              [](Scene& scene, const json::Node& item, MeshItem& mesh) -> Outcome {
                CATENA_TRY(mesh.source.path,
                           read_path(scene, item, "mesh", mesh.name, io::readable_extensions(io::DataKind::mesh), mesh.source.steps));
@@ -101,18 +102,20 @@ const Table<MeshItem>& mesh_table() {
         schema::number("scale", "", "World units per unit of the file.").positive(),
         [](auto& m) -> auto& { return m.source.placement.scale; });
     t.bind(
-        schema::vec3("offset", "world", "Added after the scale."), [](auto& m) -> auto& { return m.source.placement.offset; });
-    t.custom(schema::color("color", "Its colour, without `color_by`.").with_default(schema::write_value(SurfaceMesh{}.color)),
-             [](Scene&, const json::Node& item, MeshItem& mesh) { return read_plain_color(item, mesh.surface.color); });
+        schema::vec3("offset", "world", "Translation, applied after `scale`."), [](auto& m) -> auto& { return m.source.placement.offset; });
+    t.custom(
+        schema::color("color", "Colour of the surface if there is no `color_by`.").with_default(schema::write_value(SurfaceMesh{}.color)),
+        [](Scene&, const json::Node& item, MeshItem& mesh) { return read_plain_color(item, mesh.surface.color); });
     bind_color_by(
         t, ColorTarget::surfaces, [](auto& m) -> auto& { return m.surface.color_by; });
     t.bind(
-        opacity_key("Of one side."), [](auto& m) -> auto& { return m.surface.opacity; });
+        opacity_key("Opacity of each layer of the surface."), [](auto& m) -> auto& { return m.surface.opacity; });
     t.bind(
-        schema::choice("shading", {"flat", "smooth"}, "How it is lit; the hand feels it flat."),
+        schema::choice("shading", {"flat", "smooth"},
+                       "Shading of the triangles; `smooth`: with interpolated normals. Haptics uses the flat triangles in either case."),
         [](auto& m) -> auto& { return m.surface.smooth_shading; });
     t.bind(
-        schema::boolean("edges", "Draws the triangles' edges."), [](auto& m) -> auto& { return m.surface.show_edges; });
+        schema::boolean("edges", "Rendering of the triangle edges."), [](auto& m) -> auto& { return m.surface.show_edges; });
     t.bind(
         clip_key(), [](auto& m) -> auto& { return m.surface.clipped; });
     t.companion(visible_key());
@@ -124,24 +127,29 @@ const Table<MeshItem>& mesh_table() {
 const Table<Cursor>& cursor_table() {
   static const auto table = [] {
     Table<Cursor> t;
-    t.custom(schema::vec3("probe", "world", "Where the hand stands in a still picture."),
-             [](Scene&, const json::Node& node, Cursor& cursor) -> Outcome {
-               CATENA_TRY(const auto probe, json::get_optional_vec3(node, "probe"));
-               if (probe) cursor.probe = *probe;
-               cursor.visible = cursor.visible || probe;
-               return Done{};
-             });
-    t.bind(schema::number("size", "world", "Radius of its ball; half the length of the rods.").positive().with_default("fitted"),
+    t.custom(
+        schema::vec3("probe", "world",
+                     "Position of the probe in images without a device or a replay. The cursor is shown there only if this key is given."),
+        [](Scene&, const json::Node& node, Cursor& cursor) -> Outcome {
+          CATENA_TRY(const auto probe, json::get_optional_vec3(node, "probe"));
+          if (probe) cursor.probe = *probe;
+          cursor.visible = cursor.visible || probe;
+          return Done{};
+        });
+    t.bind(schema::number("size", "world", "Radius of the probe's ball, or half the length of the crosshair's rods.")
+               .positive()
+               .with_default("fitted to the scene"),
            &Cursor::size);
-    t.bind(schema::boolean("show_occluded", "Hand, proxies and force shine through what hides them."), &Cursor::show_occluded);
-    t.bind(schema::choice(
-               "shape", {"ball", "crosshair"},
-               "`crosshair`: three thin rods cross where the hand is; proxies and force are not shown, so that the picture does not "
-               "tell what is felt."),
+    t.bind(schema::boolean("show_occluded", "Visibility of the probe, the proxies and the force through objects that occlude them."),
+           &Cursor::show_occluded);
+    t.bind(schema::choice("shape", {"ball", "crosshair"},
+                          "Shape of the cursor. `crosshair`: three thin rods that cross at the probe, without proxies and force, so that "
+                          "the image does not show the haptic contact."),
            &Cursor::crosshair);
-    t.bind(schema::boolean("drop_line",
-                           "A thin line from the hand down to the floor of the domain, with a small cross where it meets it, says how deep "
-                           "the hand is."),
+    t.bind(schema::boolean(
+               "drop_line",
+               "Depth cue: a thin line from the probe down to the ground, or else to the bottom of the rendered domain, with a small "
+               "cross at its end."),
            &Cursor::drop_line);
     return t;
   }();
@@ -181,15 +189,15 @@ Outcome read_cursor(Scene& scene, const json::Node& node) {
 
 }  // namespace
 
-std::string file_problem(const std::string& path, bool known, const std::string& wanted, bool folders) {
+std::string file_problem(const std::string& path, bool known, const std::string& expected, bool folders) {
   namespace fs = std::filesystem;
   std::error_code code;
-  const auto fault = [&](const char* what) { return in_quotes(path) + what + "; " + wanted + " was expected"; };
+  const auto problem = [&](const char* what) { return in_quotes(path) + what + "; " + expected + " was expected"; };
   if (const std::string conversion = known ? "" : field::conversion_hint(path); !conversion.empty())
     return in_quotes(path) + " is " + conversion;
-  if (!known) return fault(" has an unknown kind");
-  if (!fs::exists(path, code)) return fault(" does not exist");
-  if (!fs::is_regular_file(path, code) && !(folders && fs::is_directory(path, code))) return fault(" is not a file");
+  if (!known) return problem(" has an unknown kind");
+  if (!fs::exists(path, code)) return problem(" does not exist");
+  if (!fs::is_regular_file(path, code) && !(folders && fs::is_directory(path, code))) return problem(" is not a file");
   return {};
 }
 
@@ -200,7 +208,7 @@ Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std
 std::string to_json(const Scene& scene, const Volume& volume) { return volume_table().write(scene, volume); }
 std::string to_json(const Scene& scene, const Isosurface& surface) { return isosurface_table().write(scene, surface); }
 
-/// Loads the fields of surfaces and volumes that rays intersect, and the fields that color them.
+/// Loads the fields of the isosurfaces or volumes that are rendered by raycast, and the fields that color them.
 template <class T>
 static Outcome load_ray_items(Scene& scene) {
   return load_visible<T>(scene, [&](Entity, const T& item) -> Outcome {
@@ -211,15 +219,14 @@ static Outcome load_ray_items(Scene& scene) {
 }
 
 static Part volumes_part() {
-  return {make_list_component("volumes", "Volumes seen through. At most four.", volume_table()),
+  return {make_list_component("volumes", "Scalar fields rendered as volumes, at most four.", volume_table()),
           [](Scene& scene, const json::Node& node) { return read_items(scene, node, volume_table()); }};
 }
 
 Drawable volumes() { return make_drawable<Volume>(volumes_part, "volumes", "volume", "volumes", "volume", load_ray_items<Volume>); }
 
 static Part isosurfaces_part() {
-  return {make_list_component("isosurfaces", "Surfaces on which a scalar field has one value. At most eight translucent ones.",
-                              isosurface_table()),
+  return {make_list_component("isosurfaces", "Isosurfaces of scalar fields. At most eight can be translucent.", isosurface_table()),
           [](Scene& scene, const json::Node& node) { return read_items(scene, node, isosurface_table()); }};
 }
 
@@ -228,7 +235,7 @@ Drawable isosurfaces() {
 }
 
 static Part meshes_part() {
-  return {make_list_component("meshes", "Triangle meshes, which are drawn and felt.", mesh_table()), read_meshes};
+  return {make_list_component("meshes", "Triangle meshes, for rendering and haptics.", mesh_table()), read_meshes};
 }
 
 static Outcome load_meshes(Scene& scene) {
@@ -242,7 +249,9 @@ static Outcome load_meshes(Scene& scene) {
 Drawable meshes() { return make_drawable<SurfaceMesh>(meshes_part, "meshes", "mesh", "meshes", {}, load_meshes); }
 
 Part cursor_part() {
-  return {{"cursor", "The hand in a still picture; a device or a replay moves it.", schema::Section::Layout::object, cursor_table().keys()},
+  return {{"cursor",
+           "Appearance of the probe, the proxies and the force, and the position of the probe in images without a device or a replay.",
+           schema::Section::Layout::object, cursor_table().keys()},
           read_cursor};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Reads "fields": grids from files, and analytic fields.
+/// Reads "fields": grids from files, analytic fields, and surfaces of labels.
 #include <algorithm>
 #include <filesystem>
 
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using field::LoadRequest;
 
-constexpr int kMostSeed = (1 << 30) - 1;
+constexpr int kMaxSeed = (1 << 30) - 1;
 constexpr int kMaxNodes = 1024;  // along each axis of a sampled analytic field
 
 std::string field_fault(const std::string& path) {
@@ -27,33 +27,34 @@ std::string field_fault(const std::string& path) {
 // ---- fields from files ----
 
 Key unit_key() {
-  return schema::text("unit", "The word shown after values, such as `\"m/s\"`; it changes no number.")
+  return schema::text("unit", "Unit shown after values, such as `\"m/s\"`. Values are not converted.")
       .with_size(0, 24)
-      .with_default("the file's");
+      .with_default("the unit in the file");
 }
 
 Key file_key(bool with_layout) {
   std::vector<std::string_view> endings;
   for (const std::string_view ending : io::readable_extensions(io::DataKind::volume))
     if (io::needs_layout(ending) == with_layout) endings.push_back(ending);
-  return schema::file("file", "The file with the data: " + join_alternatives(endings) +
-                                  (with_layout ? "." : "; or a pattern of several, see `time`."))
+  return schema::file("file", "Data file: " + join_alternatives(endings) +
+                                  (with_layout ? "." : "; or a pattern that matches a series of files, one per time step."))
       .required();
 }
 
 Keys grid_keys() {
-  Keys keys{file_key(false),
-            schema::text("grid", "The grid in the file.").with_default("the first that can be used"),
-            schema::any_of("valid", {schema::text("", ""), schema::null()},
-                           "The BoolGrid that masks the field; null for none. The default one may be missing.")
-                .with_default("\"valid\""),
-            schema::integer("step", "", "Which of the file's steps in time.", 0, 1'000'000).with_default("the scene's, see `time`"),
-            schema::choice("axes", {"zyx", "xyz"}, "`.npy`, `.npz`: which way an array's indices go; `zyx`: the last one is x.")
-                .with_default("`zyx`"),
-            schema::vec3("spacing", "world", "`.npy`, `.npz`: edges of a voxel.").positive().with_default("`[1, 1, 1]`"),
-            schema::vec3("origin", "world", "`.npy`, `.npz`: place of the first voxel's centre.").with_default("`[0, 0, 0]`"),
-            unit_key(),
-            schema::text("package", "The Debian package that brings the file: it is named where the file is missing.")};
+  Keys keys{
+      file_key(false),
+      schema::text("grid", "Name of the grid in the file.").with_default("the first grid that can be read"),
+      schema::any_of("valid", {schema::text("", ""), schema::null()},
+                     "Name of the BoolGrid that masks the field; `null`: no mask. Only the default grid may be missing from the file.")
+          .with_default("\"valid\""),
+      schema::integer("step", "", "Time step of the field.", 0, 1'000'000).with_default("`step` of `time`"),
+      schema::choice("axes", {"zyx", "xyz"}, "Order of the array's indices (`.npy`, `.npz`); `zyx`: the last index is x.")
+          .with_default("`zyx`"),
+      schema::vec3("spacing", "world", "Edge lengths of a voxel (`.npy`, `.npz`).").positive().with_default("`[1, 1, 1]`"),
+      schema::vec3("origin", "world", "Position of the centre of the first voxel (`.npy`, `.npz`).").with_default("`[0, 0, 0]`"),
+      unit_key(),
+      schema::text("package", "Debian package that contains the file; named in the error message when the file is missing.")};
   return schema::concatenate(std::move(keys), grid_source_keys());
 }
 
@@ -64,7 +65,7 @@ const LayoutTable& layout_table() {
   static const auto table = [] {
     LayoutTable t;
     t.companion(file_key(true));
-    t.custom(schema::vec3("shape", "voxels", "Voxels along x, y and z.").within(2, 65536).required(),
+    t.custom(schema::vec3("shape", "voxels", "Number of voxels along x, y and z.").within(2, 65536).required(),
              [](const std::string&, const json::Node& node, field::RawLayout& layout) -> Outcome {
                const json::Node* shape = node.find("shape");
                if (shape == nullptr)
@@ -77,10 +78,10 @@ const LayoutTable& layout_table() {
                layout.shape = {static_cast<int>(size.x), static_cast<int>(size.y), static_cast<int>(size.z)};
                return Done{};
              });
-    t.bind(schema::vec3("spacing", "world", "Edges of a voxel.").positive(), &field::RawLayout::spacing);
-    t.bind(schema::vec3("origin", "world", "Place of the first voxel's centre."), &field::RawLayout::origin);
+    t.bind(schema::vec3("spacing", "world", "Edge lengths of a voxel.").positive(), &field::RawLayout::spacing);
+    t.bind(schema::vec3("origin", "world", "Position of the centre of the first voxel."), &field::RawLayout::origin);
     t.custom(schema::choice("type", {"float32", "float64", "uint8", "int8", "uint16", "int16", "uint32", "int32", "float32x3"},
-                            "How a number is stored; `float32x3` for vectors.")
+                            "Data type of a voxel; `float32x3`: vectors.")
                  .with_default("`float32`"),
              [](const std::string&, const json::Node& node, field::RawLayout& layout) -> Outcome {
                const Key& key = *schema::find(layout_table().keys(), "type");
@@ -108,7 +109,8 @@ Outcome read_array_keys(const json::Node& node, LoadRequest& request) {
   request.axes_xyz = axes == "xyz";
   for (const char* key : {"axes", "spacing", "origin"})
     if (node.find(key) != nullptr && !io::is_numpy_file(request.path))
-      return json::error_at(*node.find(key), in_quotes(key) + " belongs to arrays of NumPy (.npy, .npz); this file says it itself");
+      return json::error_at(
+          *node.find(key), in_quotes(key) + " is given for a file that is not a NumPy array; it was expected for .npy and .npz files only");
   if (const json::Node* spacing = node.find("spacing")) {
     CATENA_TRY(request.spacing, json::as_vec3(*spacing, "spacing"));
     if (!(request.spacing.x > 0 && request.spacing.y > 0 && request.spacing.z > 0))
@@ -120,7 +122,7 @@ Outcome read_array_keys(const json::Node& node, LoadRequest& request) {
   return Done{};
 }
 
-/// Reads which step, and which of a pattern's files, a field shows.
+/// Reads the time step of a field, and selects the file of that step if the path is a pattern.
 Outcome read_series(const json::Node& node, int scene_step, LoadRequest& request, FieldSource& source) {
   source.has_own_step = node.find("step") != nullptr;
   CATENA_TRY(const int step, json::get_integer(node, "step", scene_step, 0, 1'000'000));
@@ -131,7 +133,8 @@ Outcome read_series(const json::Node& node, int scene_step, LoadRequest& request
   source.pattern = request.path;
   source.series = expand_pattern(request.path);
   if (source.series.empty())
-    return json::error_at(*node.find("file"), "field " + in_quotes(node.label) + ": no file is called like " + in_quotes(request.path));
+    return json::error_at(*node.find("file"),
+                          "field " + in_quotes(node.label) + ": no file matches the pattern " + in_quotes(request.path));
   request.path = source.series[static_cast<std::size_t>(std::min(step, static_cast<int>(source.series.size()) - 1))];
   return Done{};
 }
@@ -152,16 +155,16 @@ Outcome read_file_source(const std::string& scene_path, int scene_step, const js
       request.mask_grid.reset();
     } else if (valid != nullptr) {
       if (valid->kind != json::Kind::string || valid->string.empty())
-        return json::error_at(*valid, "\"valid\" is no name; the name of a BoolGrid, or null for none, was expected");
+        return json::error_at(*valid, "\"valid\" is not a name; the name of a BoolGrid, or null for none, was expected");
       request.mask_grid = valid->string;
       request.mask_required = true;
     }
     CATENA_CHECK(read_array_keys(node, request));
   }
   CATENA_TRY(const std::string package, json::get_string(node, "package", {}));
-  if (const std::string fault = field_fault(request.path); !replaced && !fault.empty())
-    return json::error_at(*node.find("file"), "field " + in_quotes(node.label) + ": file " + fault +
-                                                  (package.empty() ? "" : "; the Debian package " + in_quotes(package) + " brings it"));
+  if (const std::string problem = field_fault(request.path); !replaced && !problem.empty())
+    return json::error_at(*node.find("file"), "field " + in_quotes(node.label) + ": file " + problem +
+                                                  (package.empty() ? "" : "; the Debian package " + in_quotes(package) + " contains it"));
   source.file = std::move(request);
   return read_grid_source(scene_path, node, source);
 }
@@ -171,21 +174,25 @@ Outcome read_file_source(const std::string& scene_path, int scene_step, const js
 Keys formula_keys() {
   std::vector<std::string> names;
   for (const std::string_view name : field::analytic_names()) names.emplace_back(name);
-  const FieldSource usual;
-  return {
-      schema::choice("analytic", std::move(names), "Which formula.").required(),
-      schema::number("scale", "", "Multiplies the values.").with_range_text("not 0").with_default("1"),
-      schema::direction("direction", "Of `uniform` only.").with_default("[1, 0, 0]"),
-      schema::vec3("center", "world", "Where the formula's origin lies.").with_default("[0, 0, 0]"),
-      schema::integer("seed", "", "Of `vortices` only: which of them.", 0, kMostSeed).with_default("1"),
-      schema::integer("dimensions", "", "Of `vortices` only: 2: in the plane of x and y, the same at every z.", 2, 3).with_default("3"),
-      schema::text("part",
-                   "A grid of what `generate` writes, where it writes several: of `left-ventricle`, `density`, `transmural` or `fibre`."),
-      schema::text("grid", "Another word for `part`."),
-      schema::integer("resolution", "nodes", "Along an axis of the grid that is drawn.", 2, kMaxNodes)
-          .with_default(std::to_string(usual.resolution)),
-      schema::vector("box", 2, "world", "The cube that is sampled for the picture.").with_range_text("rising").with_default("[-2, 2]"),
-      unit_key()};
+  const FieldSource defaults;
+  return {schema::choice("analytic", std::move(names), "Name of the formula.").required(),
+          schema::number("scale", "", "Factor by which the values are multiplied.").with_range_text("not 0").with_default("1"),
+          schema::direction("direction", "Direction of the field `uniform`, the only one that accepts this key.").with_default("[1, 0, 0]"),
+          schema::vec3("center", "world", "Position of the formula's origin.").with_default("[0, 0, 0]"),
+          schema::integer("seed", "", "Seed of the random numbers of `vortices`, the only field that accepts this key.", 0, kMaxSeed)
+              .with_default("1"),
+          schema::integer("dimensions", "",
+                          "Dimensions of `vortices`, the only field that accepts this key; 2: vectors in the x-y plane, independent of z.",
+                          2, 3)
+              .with_default("3"),
+          schema::text("part", "Grid of a formula that has several: `density`, `transmural` or `fibre` of `left-ventricle`."),
+          schema::text("grid", "Synonym of `part`."),
+          schema::integer("resolution", "nodes", "Nodes per axis of the grid that stands for the formula in images.", 2, kMaxNodes)
+              .with_default(std::to_string(defaults.resolution)),
+          schema::vector("box", 2, "world", "Minimum and maximum coordinate, on each axis, of the cube that is sampled for images.")
+              .with_range_text("increasing")
+              .with_default("[-2, 2]"),
+          unit_key()};
 }
 
 Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
@@ -211,10 +218,10 @@ Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
 
   CATENA_TRY(source.parameters.center, json::get_vec3(node, "center", Vec3(0.0)));
   for (const char* key : {"seed", "dimensions"})
-    if (const json::Node* own = node.find(key); own != nullptr && source.analytic != "vortices")
+    if (const json::Node* value = node.find(key); value != nullptr && source.analytic != "vortices")
       return json::error_at(
-          *own, in_quotes(key) + " does not belong to " + in_quotes(source.analytic) + "; it was expected for \"vortices\" only");
-  CATENA_TRY(source.parameters.seed, json::get_integer(node, "seed", 1, 0, kMostSeed));
+          *value, in_quotes(key) + " does not belong to " + in_quotes(source.analytic) + "; it was expected for \"vortices\" only");
+  CATENA_TRY(source.parameters.seed, json::get_integer(node, "seed", 1, 0, kMaxSeed));
   CATENA_TRY(source.parameters.dimensions, json::get_integer(node, "dimensions", 3, 2, 3));
 
   // "part" selects one grid of the files that `generate` writes
@@ -236,7 +243,7 @@ Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
     const bool pair = box->kind == json::Kind::array && box->items.size() == 2 && box->items[0].kind == json::Kind::number &&
                       box->items[1].kind == json::Kind::number;
     if (!pair || !(box->items[0].number < box->items[1].number))
-      return json::error_at(*box, "\"box\" is no interval; two finite numbers [LO, HI] with LO < HI were expected");
+      return json::error_at(*box, "\"box\" is not an interval; two finite numbers [LO, HI] with LO < HI were expected");
     source.box = {box->items[0].number, box->items[1].number};
   }
   return Done{};
@@ -255,7 +262,7 @@ Outcome read_source(const std::string& scene_path, int scene_step, const json::N
 
 // ---- --field NAME=FILE[:GRID] ----
 
-/// The source of the field with that name; a new one if there is none.
+/// Returns the source of the field with that name; a new one if there is none.
 FieldSource& source_named(Scene& scene, const std::string& name) {
   Entity entity = find_field(scene, name);
   if (!entity) {
@@ -266,11 +273,11 @@ FieldSource& source_named(Scene& scene, const std::string& name) {
   return scene.entities.get<FieldSource>(entity);
 }
 
-/// Replaces the source of a field by one that the caller created in memory.
-Outcome take_given(Scene& scene, const FieldOverride& with) {
+/// Replaces the source of a field by a field that the caller created in memory.
+Outcome take_in_memory_field(Scene& scene, const FieldOverride& with) {
   if (!is_identifier(with.name)) return Error{"field " + in_quotes(with.name) + ": a name like [a-z][a-z0-9_]* was expected"};
   FieldSource& source = source_named(scene, with.name);
-  const FieldSource usual;
+  const FieldSource defaults;
   source.file.reset();
   source.label.reset();
   source.analytic.clear();
@@ -279,16 +286,16 @@ Outcome take_given(Scene& scene, const FieldOverride& with) {
   load_label_map(source);
   const Bounds bounds = with.in_memory_field.get()->world_bounds();
   const double lo = std::min({bounds.lo.x, bounds.lo.y, bounds.lo.z}), hi = std::max({bounds.hi.x, bounds.hi.y, bounds.hi.z});
-  source.box = lo < hi ? std::array{lo, hi} : usual.box;
+  source.box = lo < hi ? std::array{lo, hi} : defaults.box;
   return Done{};
 }
 
 Outcome apply_override(Scene& scene, const FieldOverride& with) {
-  if (with.in_memory_field.get() != nullptr) return take_given(scene, with);
+  if (with.in_memory_field.get() != nullptr) return take_in_memory_field(scene, with);
   const std::string text = "--field " + with.name + "=" + with.file + (with.grid.empty() ? "" : ":" + with.grid);
   const auto failed = [&](const std::string& what) { return Error{one_line(text + ": " + what)}; };
-  if (!is_identifier(with.name)) return failed(in_quotes(with.name) + " is no name; a name like [a-z][a-z0-9_]* was expected");
-  if (const std::string fault = field_fault(with.file); !fault.empty()) return failed("file " + fault);
+  if (!is_identifier(with.name)) return failed(in_quotes(with.name) + " is not a valid name; a name like [a-z][a-z0-9_]* was expected");
+  if (const std::string problem = field_fault(with.file); !problem.empty()) return failed("file " + problem);
 
   FieldSource& source = source_named(scene, with.name);
   LoadRequest request = source.file.value_or(LoadRequest{});
@@ -344,14 +351,17 @@ Outcome read_fields(Scene& scene, const json::Node* fields, const std::vector<Fi
 
 Part fields_part() {
   schema::Section component{"fields",
-                            "What there is: grids from files, formulas, surfaces of labels. Names and their fields; a field has one of "
-                            "`file`, `analytic`, `label`.",
+                            "Map of names to fields: grids from files, formulas and surfaces of labels. A field has exactly one of "
+                            "`file`, `analytic` and `label`.",
                             schema::Section::Layout::map};
   component.variants = {
-      {"file", "A file that says itself what it holds.", grid_keys()},
-      {"raw", "A file of bare numbers, little-endian, x fastest.", layout_table().keys()},
-      {"analytic", "A formula. The hand feels it exactly; the picture draws it from a grid.", formula_keys()},
-      {"label", "The surface of labels of a label map, seen and felt: 1 within them, 0 outside, the surface at level 0.5.", label_keys()}};
+      {"file", "Grid from a file that describes its own layout.", grid_keys()},
+      {"raw", "Grid from a file without a header: little-endian numbers, x varying fastest.", layout_table().keys()},
+      {"analytic", "Analytic formula. Haptics evaluates the formula exactly; images show a grid sampled from it.", formula_keys()},
+      {"label",
+       "Surface of labels of a label map, for images and haptics: the field is 1 inside the labels and 0 outside, with the surface at "
+       "level 0.5.",
+       label_keys()}};
   return {component, nullptr};
 }
 

@@ -10,14 +10,14 @@ namespace {
 
 using On = GlyphSet::Support;
 
-/// In the order of GlyphSet::On.
+/// Keys of "on", in the order of GlyphSet::Support.
 constexpr std::string_view kOn[] = {"box", "plane", "slice", "isosurface", "mesh"};
 
 const Table<field::Box>& glyph_box_table() {
   static const auto table = [] {
     Table<field::Box> t;
-    t.bind(schema::vec3("min", "world", "Its lowest corner.").required(), &field::Box::lo);
-    t.bind(schema::vec3("max", "world", "Its highest corner.").required(), &field::Box::hi);
+    t.bind(schema::vec3("min", "world", "Minimum corner of the box.").required(), &field::Box::lo);
+    t.bind(schema::vec3("max", "world", "Maximum corner of the box.").required(), &field::Box::hi);
     t.check([](Scene&, const json::Node& node, field::Box& box) -> Outcome {
       if (box.lo.x <= box.hi.x && box.lo.y <= box.hi.y && box.lo.z <= box.hi.z) return Done{};
       return json::error_at(*node.find("max"), "\"max\" lies below \"min\"; a corner above it was expected");
@@ -29,16 +29,19 @@ const Table<field::Box>& glyph_box_table() {
 
 Key on_key() {
   const auto index = [](std::string_view key, const std::string& of) {
-    return schema::integer(std::string(key), "", "This item of `" + of + "`, counted from 0; they follow it.", 0, 1000000)
+    return schema::integer(std::string(key), "",
+                           "Index, counted from 0, of the item of `" + of + "` on which the glyphs lie and which they follow.", 0, 1000000)
         .with_range_text("an index")
         .without_default();
   };
   return schema::object("on",
-                        {schema::object(std::string(kOn[0]), glyph_box_table().keys(), "In a box with edges along the world's axes."),
-                         schema::object(std::string(kOn[1]), plane_keys(), "On a plane of their own."), index(kOn[2], "slices"),
-                         index(kOn[3], "isosurfaces"), schema::reference(std::string(kOn[4]), Role::mesh, "On a mesh, by its name.")},
-                        "Where they stand: one of these.")
-      .with_default("in the field's domain");
+                        {schema::object(std::string(kOn[0]), glyph_box_table().keys(),
+                                        "Box with edges along the world axes, in which the glyphs lie."),
+                         schema::object(std::string(kOn[1]), plane_keys(), "Plane on which the glyphs lie."), index(kOn[2], "slices"),
+                         index(kOn[3], "isosurfaces"),
+                         schema::reference(std::string(kOn[4]), Role::mesh, "Name of the mesh on which the glyphs lie.")},
+                        "Geometry on or in which the glyphs lie: exactly one of these keys.")
+      .with_default("the domain of the field, as a box");
 }
 
 Outcome read_on(Scene& scene, const json::Node& item, GlyphSet& set) {
@@ -51,7 +54,7 @@ Outcome read_on(Scene& scene, const json::Node& item, GlyphSet& set) {
                                    join_words(std::vector<std::string_view>(std::begin(kOn), std::end(kOn))) + " was expected");
   const auto& [key, node] = on->members.front();
   set.support = static_cast<On>(std::find(std::begin(kOn), std::end(kOn), key) - std::begin(kOn));
-  const std::string whose = "glyphs";
+  const std::string referrer = "glyphs";
   switch (set.support) {
     case On::box:
       CATENA_CHECK(json::expect_object(node, key));
@@ -61,11 +64,11 @@ Outcome read_on(Scene& scene, const json::Node& item, GlyphSet& set) {
       CATENA_CHECK(json::check_known_keys(node, schema::key_names(plane_keys())));
       return read_plane(scene, node, "set of glyphs", set.point, set.normal, set.widget);
     case On::slice: {
-      CATENA_TRY(set.support_entity, read_index<Slice>(scene, *on, key, "slices", whose));
+      CATENA_TRY(set.support_entity, read_index<Slice>(scene, *on, key, "slices", referrer));
       return Done{};
     }
     case On::isosurface: {
-      CATENA_TRY(set.support_entity, read_index<Isosurface>(scene, *on, key, "isosurfaces", whose));
+      CATENA_TRY(set.support_entity, read_index<Isosurface>(scene, *on, key, "isosurfaces", referrer));
       return Done{};
     }
     case On::mesh: {
@@ -77,10 +80,10 @@ Outcome read_on(Scene& scene, const json::Node& item, GlyphSet& set) {
 }
 
 template <class T>
-std::string index_of(const Scene& scene, Entity wanted) {
+std::string index_of(const Scene& scene, Entity entity) {
   int index = 0, found = 0;
   scene.entities.each<T>([&](Entity e, const T&) {
-    if (e == wanted) found = index;
+    if (e == entity) found = index;
     ++index;
   });
   return schema::write_value(found);
@@ -112,28 +115,37 @@ std::string write_on(const Scene& scene, const GlyphSet& set) {
 const Table<GlyphSet>& glyphs_table() {
   static const auto table = [] {
     Table<GlyphSet> t;
-    bind_field(t, schema::reference("field", Role::vector_field, "A vector field.").required(), &GlyphSet::field);
+    bind_field(t, schema::reference("field", Role::vector_field, "Vector field that the glyphs show.").required(), &GlyphSet::field);
     t.custom(on_key(), read_on, write_on);
-    t.bind(schema::number("spacing", "world", "Of neighbours.").positive().with_default("1/24 of the domain's diagonal, 1/16 in a box"),
-           &GlyphSet::spacing);
-    t.bind(schema::choice("scale", {"magnitude", "constant"}, "Whether they are as long as the vectors."), &GlyphSet::constant_length);
-    t.bind(schema::number("length", "world", "Of the longest.").positive().with_default("the spacing"), &GlyphSet::length);
-    t.bind(schema::number("reference_speed", "value", "The speed whose glyph has the length `length`.")
+    t.bind(schema::number("spacing", "world", "Distance between neighbouring glyphs.")
                .positive()
-               .with_default("the greatest that is drawn"),
+               .with_default("1/24 of the domain's diagonal, 1/16 in a box"),
+           &GlyphSet::spacing);
+    t.bind(
+        schema::choice("scale", {"magnitude", "constant"}, "Length of a glyph: proportional to the magnitude of the vector, or constant."),
+        &GlyphSet::constant_length);
+    t.bind(schema::number("length", "world", "Length of a glyph at the reference speed; with `scale` `constant`, of every glyph.")
+               .positive()
+               .with_default("the spacing"),
+           &GlyphSet::length);
+    t.bind(schema::number("reference_speed", "value", "Speed at which a glyph has the length `length`.")
+               .positive()
+               .with_default("the maximum speed of the glyphs"),
            &GlyphSet::reference_speed);
-    t.bind(schema::number("min_speed", "value", "Speeds up to this have none.").non_negative(), &GlyphSet::min_speed);
-    t.bind(schema::number("radius", "world", "Of the longest one's shaft.").positive().with_default("0.06 of its length"),
+    t.bind(schema::number("min_speed", "value", "Speed at or below which no glyph is drawn.").non_negative(), &GlyphSet::min_speed);
+    t.bind(schema::number("radius", "world", "Shaft radius of a glyph that has the length `length`.")
+               .positive()
+               .with_default("0.06 times `length`"),
            &GlyphSet::radius);
-    t.bind(schema::choice("anchor", {"center", "tail", "head"}, "What of it lies at its place."), &GlyphSet::anchor);
+    t.bind(schema::choice("anchor", {"center", "tail", "head"}, "Part of a glyph that lies at its sample point."), &GlyphSet::anchor);
     t.bind(schema::line_kind_key(), &GlyphSet::is_line_field);
-    t.bind(schema::color("color", "Of all, without `color_by`."), &GlyphSet::color);
+    t.bind(schema::color("color", "Colour of all glyphs if there is no `color_by`."), &GlyphSet::color);
     bind_color_by(t, ColorTarget::glyphs, &GlyphSet::color_by);
     t.bind(clip_key(), &GlyphSet::clipped);
     t.companion(visible_key());
     t.check([](Scene&, const json::Node& item, GlyphSet& set) -> Outcome {
       if (!set.is_line_field || set.anchor == GlyphSet::Anchor::center) return Done{};
-      return json::error_at(*item.find("anchor"), "a line has neither head nor tail; \"center\" was expected beside the kind \"line\"");
+      return json::error_at(*item.find("anchor"), "a line has neither head nor tail; \"center\" was expected with the kind \"line\"");
     });
     return t;
   }();
@@ -156,10 +168,10 @@ Outcome read_glyphs(Scene& scene, const json::Node& node) {
 std::string to_json(const Scene& scene, const GlyphSet& set) { return glyphs_table().write(scene, set); }
 
 static Part glyphs_part() {
-  return {make_list_component("glyphs", "Arrows of a vector field, evenly placed on a surface or in a box.", glyphs_table()), read_glyphs};
+  return {make_list_component("glyphs", "Arrows of a vector field, evenly spaced on a surface or in a box.", glyphs_table()), read_glyphs};
 }
 
-/// Loads the vector fields, the fields that color them, and the surfaces that the glyphs lie on, visible or not.
+/// Loads the vector fields of the glyphs, the fields that color the glyphs, and the surfaces, visible or not, on which the glyphs lie.
 static Outcome load_glyphs(Scene& scene) {
   return load_visible<GlyphSet>(scene, [&](Entity, const GlyphSet& set) -> Outcome {
     CATENA_CHECK(resolve_field(scene, set.field, set.where));

@@ -12,21 +12,22 @@
 namespace catena::scene {
 namespace {
 
-constexpr int kMostNames = 65536;
+constexpr int kMaxNames = 65536;
 
 Keys labels_keys() {
-  return {schema::file("file", "The table: of FreeSurfer, ITK-SNAP, comma-separated with column names, or rows of a number and a name."),
-          schema::numbers("values", "", "Or the numbers themselves: with `names`.").with_size(1, kMostNames),
-          schema::texts("names", "Of `values`, one each.").with_size(1, kMostNames),
-          schema::points("colors", "", "Of `values`, one each: red, green and blue from 0 to 1."),
-          schema::text("package", "The Debian package that brings the file: it is named where the file is missing.")};
+  return {schema::file(
+              "file", "Label table of FreeSurfer or ITK-SNAP, comma-separated with column names, or with a number and a name in each row."),
+          schema::numbers("values", "", "Values of the labels, together with `names`; instead of `file`.").with_size(1, kMaxNames),
+          schema::texts("names", "Names of the labels, one for each of `values`.").with_size(1, kMaxNames),
+          schema::points("colors", "", "Colours of the labels, one for each of `values`: red, green and blue from 0 to 1."),
+          schema::text("package", "Debian package that contains the file; named in the error message when the file cannot be read.")};
 }
 
 /// Returns an Error unless the node is an integer that floats represent exactly.
 Outcome check_label(const json::Node& node) {
   const double value = node.number;
   if (node.kind == json::Kind::number && value == std::nearbyint(value) && std::fabs(value) <= kMaxLabelValue) return Done{};
-  return json::error_at(node, "a label is no whole number; one of at most 16777216 in size was expected");
+  return json::error_at(node, "a label is not an integer of at most 16777216 in magnitude; such a number was expected");
 }
 
 Result<LabelTable> read_rows(const json::Node& node) {
@@ -78,7 +79,7 @@ Outcome read_labels_table(const std::string& scene_path, const json::Node& node,
   CATENA_TRY(const std::string package, json::get_string(node, "package", {}));
   if (!table)
     return with_cause(json::error_at(*file, "field " + in_quotes(source.where.label) + ": " + table.error().message +
-                                                (package.empty() ? "" : "; the Debian package " + in_quotes(package) + " brings it")),
+                                                (package.empty() ? "" : "; the Debian package " + in_quotes(package) + " contains it")),
                       table.error());
   source.labels_table = std::move(*table);
   return Done{};
@@ -87,7 +88,8 @@ Outcome read_labels_table(const std::string& scene_path, const json::Node& node,
 }  // namespace
 
 Keys crop_keys() {
-  return {schema::vec3("min", "world", "Its lowest corner.").required(), schema::vec3("max", "world", "Its highest corner.").required()};
+  return {schema::vec3("min", "world", "Minimum corner of the box.").required(),
+          schema::vec3("max", "world", "Maximum corner of the box, greater than `min` on every axis.").required()};
 }
 
 Outcome read_crop(const json::Node& node, std::optional<field::Box>& crop) {
@@ -101,17 +103,21 @@ Outcome read_crop(const json::Node& node, std::optional<field::Box>& crop) {
 }
 
 Keys grid_source_keys() {
-  return {schema::choice("interpolation", {"linear", "nearest", "cubic"},
-                         "What lies between voxel centres: a mix of the eight nearest; the value of the nearest, as of a label map; or the "
-                         "cubic of the 64 nearest, which is smooth (C1), nearer to smooth data, and takes longer.")
-              .with_default("`linear`; with `labels` `nearest`"),
-          schema::integer("level_of_detail", "", "Every 2nd, 4th or 8th voxel of each axis, for the eye and the hand alike: 1, 2 or 3.", 0,
-                          field::kMaxLevels)
-              .with_default("0: all of them"),
-          schema::object("crop", crop_keys(),
-                         "The field is the voxels that this box needs, for the eye and the hand alike; of a `.vdb` no others are read.")
-              .with_default("all of them"),
-          schema::object("labels", labels_keys(), "Of a label map: names and colours of the numbers in its voxels.").with_default("none")};
+  return {
+      schema::choice(
+          "interpolation", {"linear", "nearest", "cubic"},
+          "Interpolation between voxel centres: of the 8 nearest voxels; of the nearest one, for label maps; or of the 64 nearest, with a "
+          "continuous gradient, more accurate for smooth data, and slower.")
+          .with_default("`linear`; with `labels` `nearest`"),
+      schema::integer("level_of_detail", "",
+                      "Reduction of the grid for rendering and haptics: 1, 2 or 3 keeps every 2nd, 4th or 8th voxel along each axis.", 0,
+                      field::kMaxLevels)
+          .with_default("0: all voxels"),
+      schema::object("crop", crop_keys(),
+                     "Box to which the grid is cropped for rendering and haptics. Of a `.vdb` file only the blocks of voxels that the box "
+                     "meets are read.")
+          .with_default("the whole grid"),
+      schema::object("labels", labels_keys(), "Names and colours of the labels of a label map.").with_default("none")};
 }
 
 Outcome read_grid_source(const std::string& scene_path, const json::Node& node, FieldSource& source) {
@@ -127,22 +133,24 @@ Outcome read_grid_source(const std::string& scene_path, const json::Node& node, 
 }
 
 Keys label_keys() {
-  return {schema::any_of("label",
-                         {schema::integer("", "", "", -int(kMaxLabelValue), int(kMaxLabelValue)), schema::text("", ""),
-                          schema::numbers("", "", ""), schema::texts("", "")},
-                         "The label, by its number or its name; a list: several together; `\"*\"`: every label but 0.")
-              .required(),
-          schema::reference("of", Role::scalar_field, "The field from a file whose labels they are.").required(),
-          schema::number("smooth", "voxels", "Of the surface: a Gaussian that leaves every voxel centre on its side.")
-              .within(0, field::kMaxLabelSmoothing)
-              .with_default(to_text(field::kDefaultLabelSmoothing))};
+  return {
+      schema::any_of("label",
+                     {schema::integer("", "", "", -int(kMaxLabelValue), int(kMaxLabelValue)), schema::text("", ""),
+                      schema::numbers("", "", ""), schema::texts("", "")},
+                     "Number or name of the label; a list: the union of several labels; `\"*\"`: all labels but 0.")
+          .required(),
+      schema::reference("of", Role::scalar_field, "Label map that holds the labels: a field from a file.").required(),
+      schema::number("smooth", "voxels",
+                     "Standard deviation of the Gaussian that smooths the surface; every voxel centre stays on its side of the surface.")
+          .within(0, field::kMaxLabelSmoothing)
+          .with_default(to_text(field::kDefaultLabelSmoothing))};
 }
 
 Outcome read_label_source(const json::Node& node, FieldSource& source) {
   CATENA_CHECK(json::check_known_keys(node, schema::key_names(label_keys())));
   LabelSource& label = source.label.emplace();
   CATENA_TRY(label.label_map, json::require_string(node, "of"));
-  const json::Node& wanted = *node.find("label");
+  const json::Node& smoothing = *node.find("label");
   const auto add = [&](const json::Node& item) -> Outcome {
     if (item.kind == json::Kind::string && !item.string.empty()) {
       label.names.push_back(item.string);
@@ -152,13 +160,13 @@ Outcome read_label_source(const json::Node& node, FieldSource& source) {
     label.values.push_back(item.number);
     return Done{};
   };
-  if (wanted.kind == json::Kind::string && wanted.string == "*") {
+  if (smoothing.kind == json::Kind::string && smoothing.string == "*") {
     label.all_labels = true;
-  } else if (wanted.kind == json::Kind::array) {
-    if (wanted.items.empty()) return json::error_at(wanted, "\"label\" is an empty list; at least one label was expected");
-    for (const json::Node& item : wanted.items) CATENA_CHECK(add(item));
+  } else if (smoothing.kind == json::Kind::array) {
+    if (smoothing.items.empty()) return json::error_at(smoothing, "\"label\" is an empty list; at least one label was expected");
+    for (const json::Node& item : smoothing.items) CATENA_CHECK(add(item));
   } else {
-    CATENA_CHECK(add(wanted));
+    CATENA_CHECK(add(smoothing));
   }
   CATENA_TRY(label.smoothing_voxels, json::get_number(node, "smooth", field::kDefaultLabelSmoothing, json::NumberRange::non_negative));
   if (label.smoothing_voxels > field::kMaxLabelSmoothing)
@@ -177,8 +185,8 @@ Outcome check_label_sources(const Scene& scene) {
     scene.entities.each<FieldSource>([&](Entity e, const FieldSource& other) {
       if (other.file) names.push_back(scene.entities.get<Name>(e).value);
     });
-    outcome = json::error_at(where, in_quotes(source.label->label_map) + " is no field from a file, whose labels could be meant; one of " +
-                                        (names.empty() ? "them" : join_words(names)) + " was expected" +
+    outcome = json::error_at(where, in_quotes(source.label->label_map) + " is not a field from a file; one of " +
+                                        (names.empty() ? "the scene's label maps" : join_words(names)) + " was expected" +
                                         suggestion(source.label->label_map, names));
   });
   return outcome;

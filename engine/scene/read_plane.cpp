@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Reads a plane: a point with a normal, an axis with a position on it, or a widget.
+/// Reads a plane: a point with a normal, an axis with a position on that axis, or a widget.
 #include "engine/base/text.h"
 #include "engine/scene/readers.h"
 #include "engine/scene/widgets.h"
@@ -23,10 +23,12 @@ Outcome read_followed(const Scene& scene, const json::Node& item, const std::str
 }  // namespace
 
 Keys plane_keys() {
-  return {schema::vec3("point", "world", "A point of the plane: with `normal`."), schema::direction("normal", "Its normal, of any length."),
-          schema::choice("axis", {"x", "y", "z"}, "Or the axis that is its normal: with `at`."),
-          schema::number("at", "world", "Where it crosses the axis."),
-          schema::reference("widget", Role::widget, "Or a cutting plane to follow: one of the three.")};
+  return {schema::vec3("point", "world", "Point on the plane; given with `normal`."),
+          schema::direction("normal", "Normal of the plane, of any length; given with `point`."),
+          schema::choice("axis", {"x", "y", "z"}, "Axis perpendicular to the plane; given with `at`, in place of `point` and `normal`."),
+          schema::number("at", "world", "Coordinate of the plane on `axis`."),
+          schema::reference("widget", Role::widget,
+                            "Cutting plane widget that sets the plane, in place of `point` and `normal` or `axis` and `at`.")};
 }
 
 Outcome read_plane(const Scene& scene, const json::Node& item, const std::string& word, Vec3& point, Vec3& normal, Entity& widget) {
@@ -41,10 +43,10 @@ Outcome read_plane(const Scene& scene, const json::Node& item, const std::string
                           "a " + word + " has no plane; \"widget\", \"axis\" with \"at\", or \"point\" with \"normal\", was expected");
   if (axis || at) {
     if (!axis) return json::error_at(*at, "\"at\" is given without \"axis\"; \"x\", \"y\" or \"z\" was expected beside it");
-    CATENA_TRY(const int which, json::get_choice(item, "axis", 0, {"x", "y", "z"}));
+    CATENA_TRY(const int axis_index, json::get_choice(item, "axis", 0, {"x", "y", "z"}));
     point = normal = Vec3(0.0);
-    CATENA_TRY(point[which], json::require_number(item, "at"));
-    normal[which] = 1;
+    CATENA_TRY(point[axis_index], json::require_number(item, "at"));
+    normal[axis_index] = 1;
     return Done{};
   }
   CATENA_TRY(point, json::require_vec3(item, "point"));

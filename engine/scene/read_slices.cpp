@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Reads "slices": plane, colors, contours.
+/// Reads "slices": their planes, colors and contour lines.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/drawable_rows.h"
@@ -15,17 +15,22 @@ const Table<Slice::Contours>& contours_table() {
   using Contours = Slice::Contours;
   static const auto table = [] {
     Table<Contours> t;
-    t.bind(schema::numbers("levels", "value", "These values: one of the three.")
+    t.bind(schema::numbers("levels", "value", "Values of the lines; exactly one of `levels`, `count` and `spacing` is required.")
                .with_range_text("rising")
                .without_default()
                .with_size(1, kMaxContours),
            &Contours::levels);
     t.bind(
-        schema::integer("count", "", "Or so many within the range of the colours, its ends left out.", 1, kMaxContours).without_default(),
+        schema::integer("count", "", "Number of lines, evenly spaced within the range of the colours; the ends of the range have no line.",
+                        1, kMaxContours)
+            .without_default(),
         &Contours::count);
-    t.bind(schema::number("spacing", "value", "Or all multiples of this.").positive().without_default(), &Contours::spacing);
-    t.bind(schema::color("color", "Of the lines."), &Contours::color);
-    t.bind(schema::number("width", "pixels", "Of the lines.").with_limits({0.0, kWidest, true}), &Contours::width);
+    t.bind(schema::number("spacing", "value", "Value step between lines; the lines are at all multiples of this step.")
+               .positive()
+               .without_default(),
+           &Contours::spacing);
+    t.bind(schema::color("color", "Colour of the lines."), &Contours::color);
+    t.bind(schema::number("width", "pixels", "Width of the lines.").with_limits({0.0, kWidest, true}), &Contours::width);
     t.check([](Scene&, const json::Node& node, Contours& contours) -> Outcome {
       if (contours.levels.size() > static_cast<std::size_t>(kMaxContours))
         return json::error_at(*node.find("levels"), "\"levels\" holds " + std::to_string(contours.levels.size()) + " levels; at most " +
@@ -45,13 +50,13 @@ Outcome read_contours(Scene& scene, const json::Node& item, Slice& slice) {
   const json::Node* node = item.find("contours");
   if (node == nullptr) return Done{};
   CATENA_CHECK(json::expect_object(*node, "contours"));
-  int ways = 0;
-  for (const char* key : {"levels", "count", "spacing"}) ways += node->find(key) != nullptr;
+  int given_count = 0;
+  for (const char* key : {"levels", "count", "spacing"}) given_count += node->find(key) != nullptr;
   slice.contours.emplace().where = *node;
   CATENA_CHECK(json::check_known_keys(*node, schema::key_names(contours_table().keys())));
-  if (ways != 1)
+  if (given_count != 1)
     return json::error_at(*node,
-                          "contours say their levels in no way, or in several; one of \"levels\", \"count\" and \"spacing\" was expected");
+                          "\"contours\" has none or several of \"levels\", \"count\" and \"spacing\"; exactly one of them was expected");
   return contours_table().read_own_keys(scene, *node, *slice.contours);
 }
 
@@ -67,7 +72,10 @@ const Table<Slice>& slice_table() {
   static const auto table = [] {
     Table<Slice> t;
     bind_field(
-        t, schema::reference("field", Role::any_field, "A scalar field, or a vector field, whose magnitude is shown.").required(),
+        t,
+        schema::reference("field", Role::any_field,
+                          "Scalar field that the slice shows, or a vector field, of which it shows the magnitude.")
+            .required(),
         [](auto& slice) -> auto& { return slice.color_by.field; });
     t.group(
         plane_keys(),
@@ -77,12 +85,12 @@ const Table<Slice>& slice_table() {
         [](const Scene& scene, const Slice& slice) { return plane_members(scene, slice.point, slice.normal, slice.widget); });
     t.group(color_scale_keys(), read_colors,
             [](const Scene&, const Slice& slice) { return color_scale_members(slice.color_by.colors, slice.color_by.named); });
-    t.bind(opacity_key("Of the slice."), &Slice::opacity);
-    t.custom(schema::object("contours", contours_table().keys(), "Lines of constant value; they say their levels in one of three ways."),
+    t.bind(opacity_key("Opacity of the slice."), &Slice::opacity);
+    t.custom(schema::object("contours", contours_table().keys(), "Contour lines, with exactly one of `levels`, `count` and `spacing`."),
              read_contours, [](const Scene& scene, const Slice& slice) {
                return slice.contours ? contours_table().write(scene, *slice.contours) : std::string();
              });
-    t.bind(schema::boolean("shade", "Lit as a surface is."), &Slice::lit);
+    t.bind(schema::boolean("shade", "Lighting as on surfaces; false: the colours of the values are shown unchanged."), &Slice::lit);
     t.bind(clip_key(), &Slice::clipped);
     t.companion(visible_key());
     return t;
@@ -106,12 +114,11 @@ Outcome read_slices(Scene& scene, const json::Node& node) {
 std::string to_json(const Scene& scene, const Slice& slice) { return slice_table().write(scene, slice); }
 
 static Part slices_part() {
-  return {
-      make_list_component(
-          "slices",
-          "Planes through a field, coloured by its values. A plane is said as `axis` and `at`, as `point` and `normal`, or as `widget`.",
-          slice_table()),
-      read_slices};
+  return {make_list_component("slices",
+                              "Planes through a field, coloured by the field's values. A plane is given by `axis` and `at`, by `point` and "
+                              "`normal`, or by `widget`.",
+                              slice_table()),
+          read_slices};
 }
 
 static Outcome load_slices(Scene& scene) {

@@ -21,29 +21,31 @@ Outcome read_set_seeds(Scene& scene, const json::Node& item, StreamlineSet& set)
 const Table<StreamlineSet>& streamlines_table() {
   static const auto table = [] {
     Table<StreamlineSet> t;
-    bind_field(t, schema::reference("field", Role::vector_field, "A vector field.").required(), &StreamlineSet::field);
+    bind_field(t, schema::reference("field", Role::vector_field, "Vector field of the streamlines.").required(), &StreamlineSet::field);
     t.custom(seeds_key(), read_set_seeds, [](const Scene& scene, const StreamlineSet& set) { return write_seeds(scene, set.seeds); });
-    t.bind(schema::number("radius", "world", "Of the tubes.").positive().with_default("0.003 diagonals of the domain"),
+    t.bind(schema::number("radius", "world", "Radius of the tubes.").positive().with_default("0.003 times the domain's diagonal"),
            &StreamlineSet::radius);
     t.custom(
-        schema::color("color", "Of all lines, without `color_by`.").with_default(schema::write_value(StreamlineSet{}.color)),
+        schema::color("color", "Colour of all lines if there is no `color_by`.").with_default(schema::write_value(StreamlineSet{}.color)),
         [](Scene&, const json::Node& item, StreamlineSet& set) { return read_plain_color(item, set.color); },
         [](const Scene&, const StreamlineSet& set) { return set.color_by ? std::string() : schema::write_value(set.color); });
     bind_color_by(t, ColorTarget::lines, &StreamlineSet::color_by);
     t.bind(schema::line_kind_key(), &StreamlineSet::is_line_field);
-    t.bind(schema::number("min_speed", "value", "Speeds up to this end a line.").non_negative(), &StreamlineSet::min_speed);
-    t.bind(schema::number("length", "world", "Longest arc length in each direction. Without it lines of a formula end at its `box`.")
+    t.bind(schema::number("min_speed", "value", "Speed at or below which a line ends.").non_negative(), &StreamlineSet::min_speed);
+    t.bind(schema::number("length", "world",
+                          "Maximum arc length in each direction. If it is absent, lines of a formula end at the `box` of the field.")
                .positive()
                .with_default("10 L"),
            &StreamlineSet::length);
-    t.bind(schema::number("tolerance", "L", "Embedded error of a step.")
+    t.bind(schema::number("tolerance", "L", "Maximum estimated error of an integration step.")
                .with_limits({0.0, 0.01, true})
-               .with_default("1e-10 for places, 1e-7 for patterns"),
+               .with_default("1e-10; for patterns and rakes 1e-7"),
            &StreamlineSet::tolerance);
-    t.bind(schema::number("arrows", "world", "An arrowhead every so far along a line.").positive().with_default("none"),
+    t.bind(schema::number("arrows", "world", "Distance between arrowheads along a line.").positive().with_default("none"),
            &StreamlineSet::arrow_spacing);
-    t.bind(schema::number("animated_bands", "world", "Bands of this length run with the flow.").positive().with_default("none"),
-           &StreamlineSet::band_length);
+    t.bind(
+        schema::number("animated_bands", "world", "Length of the animated bands, which move downstream.").positive().with_default("none"),
+        &StreamlineSet::band_length);
     t.bind(clip_key(), &StreamlineSet::clipped);
     t.companion(visible_key());
     return t;
@@ -54,11 +56,13 @@ const Table<StreamlineSet>& streamlines_table() {
 const Table<Indicator>& indicator_table() {
   static const auto table = [] {
     Table<Indicator> t;
-    bind_field(t, schema::reference("field", Role::vector_field, "A vector field.").required(), &Indicator::field);
-    t.bind(schema::number("length", "world", "Of the piece.").positive().with_default("0.1 L"), &Indicator::length);
-    t.bind(schema::number("radius", "world", "Of its tube.").positive().with_default("0.004 diagonals of the domain"), &Indicator::radius);
-    t.bind(schema::color("color", "Its colour."), &Indicator::color);
-    t.bind(schema::choice("anchor", {"center", "tail"}, "Where the cursor is: in its middle, or at its upstream end."),
+    bind_field(t, schema::reference("field", Role::vector_field, "Vector field whose direction is shown.").required(), &Indicator::field);
+    t.bind(schema::number("length", "world", "Length of the piece of streamline.").positive().with_default("0.1 L"), &Indicator::length);
+    t.bind(schema::number("radius", "world", "Radius of the tube.").positive().with_default("0.004 times the domain's diagonal"),
+           &Indicator::radius);
+    t.bind(schema::color("color", "Colour of the indicator."), &Indicator::color);
+    t.bind(schema::choice("anchor", {"center", "tail"},
+                          "Position of the cursor on the piece: its middle (`center`) or its upstream end (`tail`)."),
            &Indicator::starts_at_cursor);
     return t;
   }();
@@ -90,7 +94,7 @@ Outcome read_indicator(Scene& scene, const json::Node& node) {
 std::string to_json(const Scene& scene, const StreamlineSet& set) { return streamlines_table().write(scene, set); }
 
 static Part streamlines_part() {
-  return {make_list_component("streamlines", "Tubes along streamlines.", streamlines_table()), read_streamlines};
+  return {make_list_component("streamlines", "Streamlines of vector fields, rendered as tubes.", streamlines_table()), read_streamlines};
 }
 
 static Outcome load_streamlines(Scene& scene) {
@@ -103,7 +107,7 @@ Drawable streamlines() {
 }
 
 Part indicator_part() {
-  return {{"indicator", "A short piece of the streamline through the cursor, with an arrowhead.", schema::Section::Layout::object,
+  return {{"indicator", "Short piece of the streamline through the cursor, with an arrowhead.", schema::Section::Layout::object,
            indicator_table().keys()},
           read_indicator};
 }

@@ -8,10 +8,12 @@ namespace {
 const Table<TimeLine>& time_table() {
   static const auto table = [] {
     Table<TimeLine> t;
-    t.bind(schema::integer("step", "", "Of all fields that have steps and state none of their own; beyond the last one the last.", 0,
-                           1'000'000),
-           &TimeLine::step);
-    t.bind(schema::number("per_second", "1/s", "Steps that go by while they are played.").within(0.01, 1000), &TimeLine::steps_per_second);
+    t.bind(
+        schema::integer("step", "",
+                        "Time step of all data that have steps and do not specify their own; a step beyond the last one selects the last.",
+                        0, 1'000'000),
+        &TimeLine::step);
+    t.bind(schema::number("per_second", "1/s", "Playback rate in steps per second.").within(0.01, 1000), &TimeLine::steps_per_second);
     return t;
   }();
   return table;
@@ -25,7 +27,7 @@ Outcome read_time(Scene& scene, const json::Node& node) {
 }
 
 Part time_part() {
-  return {{"time", "Steps in time, of fields that have them.", schema::Section::Layout::object, time_table().keys()}, nullptr};
+  return {{"time", "Time step that is shown, and playback rate.", schema::Section::Layout::object, time_table().keys()}, nullptr};
 }
 
 }  // namespace catena::scene

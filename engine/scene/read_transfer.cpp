@@ -56,16 +56,16 @@ Result<std::optional<ValueMapping>> read_mapping(const json::Node& object) {
 
 /// Checks the mapping against explicit values; automatic ones are checked when the data are loaded.
 Outcome check_mapping(const json::Node& object, const TransferFunction& transfer) {
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   std::string what;
-  const auto take = [&](const auto& points, const char* key) {
-    if (!points.empty() && points.front().value < least) least = points.front().value, what = in_quotes(key);
+  const auto update_minimum = [&](const auto& points, const char* key) {
+    if (!points.empty() && points.front().value < minimum) minimum = points.front().value, what = in_quotes(key);
   };
-  take(transfer.colors, "color");
-  take(transfer.opacities, "opacity");
-  take(transfer.extinctions, "extinction");
-  if (transfer.named.range && (*transfer.named.range)[0] < least) least = (*transfer.named.range)[0], what = "\"range\"";
-  const std::string problem = mapping_error(transfer.named.mapping, least, what);
+  update_minimum(transfer.colors, "color");
+  update_minimum(transfer.opacities, "opacity");
+  update_minimum(transfer.extinctions, "extinction");
+  if (transfer.named.range && (*transfer.named.range)[0] < minimum) minimum = (*transfer.named.range)[0], what = "\"range\"";
+  const std::string problem = mapping_error(transfer.named.mapping, minimum, what);
   return problem.empty() ? Outcome(Done{}) : json::error_at(json::member_or_parent(object, "mapping"), problem);
 }
 
@@ -145,15 +145,15 @@ void each_value(TransferFunction& transfer, Each&& each) {
 }
 
 bool rises(const TransferFunction& transfer) {
-  const auto falls = [](const auto& a, const auto& b) { return !(a.value < b.value); };
-  return std::adjacent_find(transfer.colors.begin(), transfer.colors.end(), falls) == transfer.colors.end() &&
-         std::adjacent_find(transfer.opacities.begin(), transfer.opacities.end(), falls) == transfer.opacities.end() &&
-         std::adjacent_find(transfer.extinctions.begin(), transfer.extinctions.end(), falls) == transfer.extinctions.end();
+  const auto not_rising = [](const auto& a, const auto& b) { return !(a.value < b.value); };
+  return std::adjacent_find(transfer.colors.begin(), transfer.colors.end(), not_rising) == transfer.colors.end() &&
+         std::adjacent_find(transfer.opacities.begin(), transfer.opacities.end(), not_rising) == transfer.opacities.end() &&
+         std::adjacent_find(transfer.extinctions.begin(), transfer.extinctions.end(), not_rising) == transfer.extinctions.end();
 }
 
 /// Moves the values of the tables from their own range to `range`: each keeps its relative position, measured on the scale of the file's
 /// mapping and set on the scale of `mapping`.
-Outcome lay_anew(TransferFunction& transfer, const Pair& range, const ValueMapping& mapping, const json::Node& where) {
+Outcome stretch_to_range(TransferFunction& transfer, const Pair& range, const ValueMapping& mapping, const json::Node& where) {
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
   each_value(transfer, [&](const double& v) { lo = std::min(lo, v), hi = std::max(hi, v); });
   if (const std::string problem = mapping_error(mapping, range[0], "\"range\""); !problem.empty()) return json::error_at(where, problem);
@@ -190,9 +190,9 @@ Result<TransferFunction> read_transfer_file(const std::string& scene_path, const
   CATENA_TRY(TransferFunction transfer, parse_transfer(text, path));
   transfer.file = path;
   CATENA_TRY(const std::optional<Pair> range, read_range(object));
-  CATENA_TRY(const std::optional<ValueMapping> stated, read_mapping(object));
-  const ValueMapping mapping = stated.value_or(transfer.named.mapping);
-  if (range) CATENA_CHECK(lay_anew(transfer, *range, mapping, *object.find("range")));
+  CATENA_TRY(const std::optional<ValueMapping> explicit_mapping, read_mapping(object));
+  const ValueMapping mapping = explicit_mapping.value_or(transfer.named.mapping);
+  if (range) CATENA_CHECK(stretch_to_range(transfer, *range, mapping, *object.find("range")));
   transfer.named.mapping = mapping;
   CATENA_CHECK(check_mapping(object, transfer));
   return transfer;
@@ -214,10 +214,10 @@ Result<ColorScale> read_color_scale(const std::string& scene_path, const json::N
   ColorScale scale;
   if (object.find("transfer") == nullptr) {
     CATENA_CHECK(read_colors(object, scale.colors, scale.named));
-    TransferFunction stated;
-    stated.colors = scale.colors;
-    stated.named = scale.named;
-    CATENA_CHECK(check_mapping(object, stated));
+    TransferFunction explicit_values;
+    explicit_values.colors = scale.colors;
+    explicit_values.named = scale.named;
+    CATENA_CHECK(check_mapping(object, explicit_values));
     return scale;
   }
   CATENA_TRY(TransferFunction transfer, read_transfer_file(scene_path, object));

@@ -18,7 +18,8 @@ Outcome check_camera(Scene&, const json::Node& node, Camera& camera) {
     return json::error_at(*node.find("target"), "\"target\": " + problem);
   const auto parallel = [&](const Vec3& v) { return norm(cross(direction(view), direction(v))) < 1e-9; };
   const json::Node* up = node.find("up");
-  if (up != nullptr && parallel(camera.up)) return json::error_at(*up, "\"up\" is parallel to the view; a vector across it was expected");
+  if (up != nullptr && parallel(camera.up))
+    return json::error_at(*up, "\"up\" is parallel to the view direction; a vector in another direction was expected");
   if (up == nullptr && parallel(camera.up)) camera.up = {0.0, 1.0, 0.0};
   if (const std::string problem = validate_fovy(camera.fovy_deg); !problem.empty())
     return json::error_at(*node.find("fovy_deg"), "\"fovy_deg\" " + problem);
@@ -36,14 +37,20 @@ Outcome check_camera(Scene&, const json::Node& node, Camera& camera) {
 const Table<Camera>& camera_table() {
   static const auto table = [] {
     Table<Camera> t;
-    t.bind(schema::vec3("position", "world", "Of the eye.").with_range_text("to 1e15").required(), &Camera::position);
-    t.bind(schema::vec3("target", "world", "Where it looks.").with_range_text("to 1e15").required(), &Camera::target);
-    t.bind(schema::direction("up", "What is up in the picture; where it is stated, not along the view."), &Camera::up);
-    t.bind(schema::number("fovy_deg", "degrees", "Vertical angle of view.").positive().with_range_text("0.001 to 179.9"),
+    t.bind(schema::vec3("position", "world", "Position of the camera.").with_range_text("to 1e15").required(), &Camera::position);
+    t.bind(schema::vec3("target", "world", "Point that the camera looks at.").with_range_text("to 1e15").required(), &Camera::target);
+    t.bind(
+        schema::direction(
+            "up", "Up direction of the image; not parallel to the view direction. A default that is parallel is replaced by `[0, 1, 0]`."),
+        &Camera::up);
+    t.bind(schema::number("fovy_deg", "degrees", "Vertical angle of view of a perspective camera.")
+               .positive()
+               .with_range_text("0.001 to 179.9"),
            &Camera::fovy_deg);
-    t.bind(schema::choice("projection", {"perspective", "orthographic"}, "How depth becomes size."), &Camera::orthographic);
+    t.bind(schema::choice("projection", {"perspective", "orthographic"}, "Projection of the image."), &Camera::orthographic);
     t.custom(
-        schema::number("height", "world", "Height of an orthographic picture, which needs it; of no other.")
+        schema::number("height", "world",
+                       "Height of an orthographic image; required with, and allowed only with, `\"projection\": \"orthographic\"`.")
             .with_range_text("1e-15 to 1e15"),
         [](Scene&, const json::Node& node, Camera& camera) {
           return schema::read_value(schema::number("height", "", "").positive(), node, camera.ortho_height);
@@ -67,21 +74,21 @@ Outcome read_background(Scene& scene, const json::Node& node) {
   }
   const std::string expected = "[r, g, b] with components from 0 to 1, or \"transparent\", was expected";
   const auto color = json::as_vec3(node, "background");
-  const bool good = color && std::min({color->x, color->y, color->z}) >= 0 && std::max({color->x, color->y, color->z}) <= 1;
-  if (!good) return json::error_at(node, "\"background\" is no colour; " + expected);
+  const bool valid = color && std::min({color->x, color->y, color->z}) >= 0 && std::max({color->x, color->y, color->z}) <= 1;
+  if (!valid) return json::error_at(node, "\"background\" is not a colour; " + expected);
   scene.background.color = {static_cast<float>(color->x), static_cast<float>(color->y), static_cast<float>(color->z)};
   return Done{};
 }
 
 Outcome read_quality(Scene& scene, const json::Node& node) {
   const std::string& word = node.string;
-  bool good = node.kind == json::Kind::string && (word == "draft" || word == "balanced" || word == "reference");
+  bool valid = node.kind == json::Kind::string && (word == "draft" || word == "balanced" || word == "reference");
   for (std::string_view prefix : {"time=", "error=", "step="})
     if (node.kind == json::Kind::string && word.starts_with(prefix)) {
       const auto value = parse_double(std::string_view(word).substr(prefix.size()));
-      good = value && std::isfinite(*value) && *value > 0 && (prefix != "step=" || (*value >= 0.01 && *value <= 100));
+      valid = value && std::isfinite(*value) && *value > 0 && (prefix != "step=" || (*value >= 0.01 && *value <= 100));
     }
-  if (!good)
+  if (!valid)
     return json::error_at(
         node, "\"quality\" is not known; draft, balanced, reference, time=MS, error=E or step=VOXELS (0.01 to 100) was expected");
   scene.quality = word;
@@ -90,7 +97,7 @@ Outcome read_quality(Scene& scene, const json::Node& node) {
 }
 
 Outcome read_jitter(Scene& scene, const json::Node& node) {
-  if (node.kind != json::Kind::boolean) return json::error_at(node, "\"jitter\" is no truth value; true or false was expected");
+  if (node.kind != json::Kind::boolean) return json::error_at(node, "\"jitter\" is not a boolean; true or false was expected");
   scene.jitter = node.boolean;
   return Done{};
 }
@@ -107,40 +114,44 @@ TuningTargets image_targets(std::string_view quality) {
 }
 
 Part camera_part() {
-  return {{"camera", "The eye. Without it the picture is fitted to what is drawn.", Section::Layout::object, camera_table().keys()},
-          read_camera};
+  return {{"camera", "Camera. Default: fitted to the visible objects.", Section::Layout::object, camera_table().keys()}, read_camera};
 }
 
 Part background_part() {
   const Key key =
-      schema::any_of("background", {schema::color("", ""), schema::choice("", {"transparent"}, "")}, "A colour, or `transparent`.")
+      schema::any_of("background", {schema::color("", ""), schema::choice("", {"transparent"}, "")}, "Background colour, or `transparent`.")
           .with_default(schema::write_value(Background{}.color));
-  return {{"background", "Behind everything.", Section::Layout::value, {key}}, read_background};
+  return {{"background", "Background of the image.", Section::Layout::value, {key}}, read_background};
 }
 
 Part quality_part() {
   const Key key =
-      schema::text("quality", "`draft`, `balanced`, `reference`, `time=MS`, `error=E` or `step=VOXELS`, as in `render --quality`.")
+      schema::text("quality",
+                   "Quality of images: `draft`, `balanced`, `reference`, `time=MS`, `error=E` or `step=VOXELS`, as in `render --quality`.")
           .with_default("\"balanced\"");
-  return {{"quality", "Accuracy or time of an image.", Section::Layout::value, {key}}, read_quality};
+  return {{"quality", "Quality of images, or a target for their error or time.", Section::Layout::value, {key}}, read_quality};
 }
 
 Part jitter_part() {
-  const Key key = schema::boolean("jitter", "Grain instead of rings in volumes.").with_default("false");
-  return {{"jitter", "Grain instead of rings in volumes.", Section::Layout::value, {key}}, read_jitter};
+  const Key key =
+      schema::boolean("jitter",
+                      "Random offset of the ray samples in volumes: noise in place of ring artefacts. No effect on the fast raycast.")
+          .with_default("set by `quality`");
+  return {{"jitter", "Random offset of the ray samples in volumes.", Section::Layout::value, {key}}, read_jitter};
 }
 
 std::string to_json(const Camera& camera) { return camera_table().write({}, camera); }
 
-/// Reads "clip": planes, boxes and widgets; the intersection of what they keep is rendered.
+/// Reads "clip": planes, boxes and widgets; the intersection of the regions that they keep is rendered.
 
 namespace {
 
 const Table<ClipPlane>& plane_table() {
   static const auto table = [] {
     Table<ClipPlane> t;
-    t.bind(schema::vec3("point", "world", "A point of the plane.").required(), &ClipPlane::point);
-    t.bind(schema::direction("normal", "Points to what is kept; of any length.").required(), &ClipPlane::normal);
+    t.bind(schema::vec3("point", "world", "Point on the plane.").required(), &ClipPlane::point);
+    t.bind(schema::direction("normal", "Normal of the plane, of any length; points to the side that is kept.").required(),
+           &ClipPlane::normal);
     return t;
   }();
   return table;
@@ -153,8 +164,8 @@ struct Box {
 const Table<Box>& box_table() {
   static const auto table = [] {
     Table<Box> t;
-    t.bind(schema::vec3("min", "world", "Its lowest corner.").required(), &Box::lo);
-    t.bind(schema::vec3("max", "world", "Its highest corner.").required(), &Box::hi);
+    t.bind(schema::vec3("min", "world", "Minimum corner of the box.").required(), &Box::lo);
+    t.bind(schema::vec3("max", "world", "Maximum corner of the box, greater than `min` on every axis.").required(), &Box::hi);
     t.check([](Scene&, const json::Node& node, Box& box) -> Outcome {
       for (int i = 0; i < 3; ++i)
         if (!(box.lo[i] < box.hi[i]))
@@ -167,11 +178,12 @@ const Table<Box>& box_table() {
 }
 
 Keys clip_keys() {
-  return {
-      schema::object("plane", plane_table().keys(), "Keeps the side to which the normal points."),
-      schema::object("box", box_table().keys(), "Keeps the inside."),
-      schema::reference("widget", Role::widget, "Follows a cutting plane, or a box."),
-      schema::choice("side", {"front", "behind"}, "Of a cutting plane that is followed: which side is kept.").with_default("\"front\"")};
+  return {schema::object("plane", plane_table().keys(), "Plane that keeps the side to which the normal points."),
+          schema::object("box", box_table().keys(), "Box that keeps the inside."),
+          schema::reference("widget", Role::widget, "Cutting plane or box widget that moves the clip planes."),
+          schema::choice("side", {"front", "behind"},
+                         "Side of the cutting plane that is kept; `front`: the side to which the normal points. For cutting planes only.")
+              .with_default("\"front\"")};
 }
 
 Outcome read_plane(Scene& scene, const json::Node& node) {
@@ -195,7 +207,7 @@ Outcome read_box(Scene& scene, const json::Node& node) {
   return Done{};
 }
 
-/// Reads a clip item bound to a widget. A cutting plane is one plane, a box six.
+/// Reads a clip item bound to a widget. A cutting plane counts as one plane, a box as six.
 Outcome read_followed(Scene& scene, const json::Node& item) {
   ClipPlane plane;
   CATENA_TRY(plane.widget, read_widget_name(scene, item, {widget::Kind::cutting_plane, widget::Kind::box}, "a cutting plane or a box"));
@@ -207,7 +219,7 @@ Outcome read_followed(Scene& scene, const json::Node& item) {
     return Done{};
   }
   if (const json::Node* node = item.find("side"))
-    return json::error_at(*node, "\"side\" is given with a box, which keeps its inside; it belongs to a cutting plane");
+    return json::error_at(*node, "\"side\" is given with a box widget; it was expected with a cutting plane only");
   for (plane.box_face = 0; plane.box_face < 6; ++plane.box_face) scene.clip_planes.push_back(make_clip_plane(spec.pose, plane));
   return Done{};
 }
@@ -217,7 +229,9 @@ Outcome read_clip(Scene& scene, const json::Node& node) {
     CATENA_CHECK(json::check_known_keys(item, schema::key_names(clip_keys())));
     const json::Node *plane = item.find("plane"), *box = item.find("box"), *widget = item.find("widget");
     if ((plane != nullptr) + (box != nullptr) + (widget != nullptr) != 1)
-      return json::error_at(item, "a clip names a plane, a box or a widget; one of \"plane\", \"box\" and \"widget\" was expected");
+      return json::error_at(
+          item,
+          "a clip names none or several of a plane, a box and a widget; exactly one of \"plane\", \"box\" and \"widget\" was expected");
     if (const json::Node* side = item.find("side"); side != nullptr && widget == nullptr)
       return json::error_at(*side, "\"side\" is given without \"widget\"; the name of a cutting plane was expected beside it");
     CATENA_CHECK(plane ? read_plane(scene, *plane) : box ? read_box(scene, *box) : read_followed(scene, item));
@@ -231,7 +245,9 @@ Outcome read_clip(Scene& scene, const json::Node& node) {
 }  // namespace
 
 Part clip_part() {
-  return {{"clip", "What every item keeps is drawn. A box counts as six planes, and at most eight planes are allowed.",
+  return {{"clip",
+           "Clip planes and boxes: the intersection of the regions that they keep is rendered. A box counts as six planes; the maximum is "
+           "eight.",
            schema::Section::Layout::list, clip_keys()},
           read_clip};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Reads "widgets", which the user grabs and moves with the device, by type.
+/// Reads "widgets": objects that the user can grab and move with the device, by type.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/reader_bindings.h"
@@ -38,8 +38,8 @@ Result<double> read_size(const json::Node& item, std::string_view key) {
 }
 
 /// Key of a length for which the widget type has a default.
-Key size_key(const std::string& name, const std::string& help, const std::string& usual) {
-  return schema::number(name, "world", help).with_limits({0.0, kLargest, true}).with_range_text("> 0").with_default(usual);
+Key size_key(const std::string& name, const std::string& help, const std::string& default_text) {
+  return schema::number(name, "world", help).with_limits({0.0, kLargest, true}).with_range_text("> 0").with_default(default_text);
 }
 
 template <class Access>
@@ -78,59 +78,62 @@ Outcome read_facing(Scene&, const json::Node& item, Widget& widget) {
 
 Table<Widget> cutting_plane_table() {
   Table<Widget> t;
-  t.bind(schema::vec3("center", "world", "The middle of the plane and of the sphere.").required(), kPoint<0>);
-  t.group({schema::direction("normal", "Its normal, of any length: this or the next."),
-           schema::vector("orientation", 4, "", "A unit quaternion `[w, x, y, z]`; its z is the normal.")},
+  t.bind(schema::vec3("center", "world", "Centre of the plane and of the sphere.").required(), kPoint<0>);
+  t.group({schema::direction("normal", "Normal of the plane, of any length. Exactly one of `normal` and `orientation` is required."),
+           schema::vector("orientation", 4, "",
+                          "Orientation of the plane as a unit quaternion `[w, x, y, z]`; the rotated z axis is the normal.")},
           read_facing, [](const Scene&, const Widget& widget) {
             return schema::Members{{"orientation", to_json(widget.spec.pose.orientation)}};
           });
   bind_size(
-      t, size_key("snap", "The plane takes hold of the hand within this distance.", "0.02 L"),
+      t, size_key("snap", "Distance between probe and plane within which the probe snaps to the plane.", "0.02 L"),
       [](auto& widget) -> auto& { return widget.spec.snap; });
   bind_size(
-      t, size_key("release", "And lets it go at this distance, longer than `snap`.", "0.05 L"),
+      t, size_key("release", "Distance between probe and plane beyond which the plane releases the probe; greater than `snap`.", "0.05 L"),
       [](auto& widget) -> auto& { return widget.spec.release; });
   t.bind(
-      schema::choice("rotation", {"any", "free", "axis"}, "How the sphere turns; `axis`: about the nearest axis only."),
+      schema::choice("rotation", {"any", "free", "axis"},
+                     "Rotation of the sphere; `any`: about an axis if grabbed near the axis's great circle, else free; `free`: always "
+                     "free; `axis`: about the nearest axis only."),
       [](auto& widget) -> auto& { return widget.spec.rotation; });
   t.bind(
-      schema::boolean("rotate_on_contact", "The sphere turns without the button."),
+      schema::boolean("rotate_on_contact", "Rotation of the sphere on contact, without the button."),
       [](auto& widget) -> auto& { return widget.spec.rotate_on_contact; });
   t.check([](Scene&, const json::Node& item, Widget& widget) -> Outcome {
     const widget::Spec& spec = widget.spec;
     if (!(spec.snap > 0 && spec.release > 0 && !(spec.release > spec.snap))) return Done{};
     return json::error_at(*item.find("release"), "\"release\" is " + to_text(spec.release) + " where \"snap\" is " + to_text(spec.snap) +
-                                                     "; a longer distance than snap's was expected");
+                                                     "; a distance greater than \"snap\" was expected");
   });
   return t;
 }
 
 Table<Widget> seed_table() {
   Table<Widget> t;
-  t.bind(schema::vec3("position", "world", "Its place.").required(), kPoint<0>);
+  t.bind(schema::vec3("position", "world", "Position of the seed.").required(), kPoint<0>);
   return t;
 }
 
 Table<Widget> rake_table() {
   Table<Widget> t;
-  t.bind(schema::vec3("from", "world", "One end.").required(), kPoint<0>);
-  t.bind(schema::vec3("to", "world", "The other end.").required(), kPoint<1>);
+  t.bind(schema::vec3("from", "world", "First end of the segment.").required(), kPoint<0>);
+  t.bind(schema::vec3("to", "world", "Second end of the segment.").required(), kPoint<1>);
   return t;
 }
 
 /// The keys of an isolevel widget. resolve_widget() checks that the field is scalar and contains the position, because it loads the field.
 Table<Widget> isolevel_table() {
   Table<Widget> t;
-  bind_field(t, schema::reference("field", Role::scalar_field, "A scalar field; the level is its value at the handle.").required(),
+  bind_field(t, schema::reference("field", Role::scalar_field, "Scalar field whose value at the handle is the level.").required(),
              &Widget::field);
-  t.bind(schema::vec3("position", "world", "The handle's place.").required(), kPoint<0>);
+  t.bind(schema::vec3("position", "world", "Position of the handle.").required(), kPoint<0>);
   return t;
 }
 
 Table<Widget> box_widget_table() {
   Table<Widget> t;
-  t.bind(schema::vec3("min", "world", "Its lowest corner.").required(), kPoint<0>);
-  t.bind(schema::vec3("max", "world", "Its highest corner, above `min` on every axis.").required(), kPoint<1>);
+  t.bind(schema::vec3("min", "world", "Minimum corner of the box.").required(), kPoint<0>);
+  t.bind(schema::vec3("max", "world", "Maximum corner of the box, greater than `min` on every axis.").required(), kPoint<1>);
   t.check([](Scene&, const json::Node& item, Widget& widget) -> Outcome {
     const auto& [lo, hi] = widget.spec.pose.points;
     for (int i = 0; i < 3; ++i)
@@ -140,7 +143,7 @@ Table<Widget> box_widget_table() {
   return t;
 }
 
-/// Whether the chain has this link, or a link whose ready-made mode may generate it (NAME_...); the exact names are known when the haptic
+/// Returns whether the chain has this link, or a preset that may generate it (NAME_...); the exact names are known only when the haptic
 /// program is built.
 bool is_link(const Scene& scene, std::string_view name) {
   bool found = false;
@@ -152,14 +155,14 @@ Outcome read_along(Scene& scene, const json::Node& item, Widget& widget) {
   const json::Node* along = item.find("along");
   if (along == nullptr) return Done{};
   if (along->kind != json::Kind::array || along->items.empty())
-    return json::error_at(*along, "\"along\" is no list or empty; names of links [\"curve\", ...] were expected");
+    return json::error_at(*along, "\"along\" is not a list or is empty; names of links [\"curve\", ...] were expected");
   for (const json::Node& node : along->items) {
     CATENA_TRY(const std::string name, json::as_string(node, "along"));
     if (!is_link(scene, name)) {
       std::vector<std::string_view> names;
       scene.entities.each<Link>([&](Entity, const Link& link) { names.push_back(link.name); });
       return json::error_at(node, "\"along\" names " + in_quotes(name) +
-                                      ", which is no link of the chain; one of its links was expected: " +
+                                      ", which is not a link of the chain; one of its links was expected: " +
                                       (names.empty() ? "it has none" : join_words(names)) + suggestion(name, names));
     }
     for (const std::string& other : widget.along_links)
@@ -171,9 +174,10 @@ Outcome read_along(Scene& scene, const json::Node& item, Widget& widget) {
 
 Table<Widget> ruler_table() {
   Table<Widget> t = rake_table();
-  t.custom(schema::texts("along", "Links that its ends keep to: it measures along their line or surface.")
+  t.custom(schema::texts("along",
+                         "Links of the chain whose line or surface the ends stay on; the length is measured along that line or surface.")
                .with_size(1, 0)
-               .with_default("straight"),
+               .with_default("none: straight distance"),
            read_along, [](const Scene&, const Widget& widget) {
              return widget.along_links.empty() ? std::string() : schema::write_value(widget.along_links);
            });
@@ -186,15 +190,15 @@ struct WidgetType {
   Table<Widget> own;
 };
 
-/// In the order of kWordsPerTick.
+/// Widget types, in the order of kWords.
 const std::vector<WidgetType>& types() {
   static const std::vector<WidgetType> all{
-      {Kind::cutting_plane, "A plane that the hand keeps to, with a sphere that turns it.", cutting_plane_table()},
-      {Kind::seed, "A place from which a line begins.", seed_table()},
-      {Kind::rake, "A segment along which lines begin.", rake_table()},
-      {Kind::isolevel, "A place that names a level: its field's value there.", isolevel_table()},
-      {Kind::box, "A box that clips.", box_widget_table()},
-      {Kind::ruler, "A length between two ends.", ruler_table()}};
+      {Kind::cutting_plane, "Plane that the probe snaps to, with a sphere that rotates the plane.", cutting_plane_table()},
+      {Kind::seed, "Seed position of a streamline.", seed_table()},
+      {Kind::rake, "Segment along which streamlines are seeded.", rake_table()},
+      {Kind::isolevel, "Handle that sets an isolevel: the value of a scalar field at its position.", isolevel_table()},
+      {Kind::box, "Box whose faces can be moved, for clipping.", box_widget_table()},
+      {Kind::ruler, "Ruler that shows the length between two ends.", ruler_table()}};
   return all;
 }
 
@@ -202,20 +206,24 @@ const std::vector<WidgetType>& types() {
 const Table<Widget>& common_table() {
   static const auto table = [] {
     Table<Widget> t;
-    t.companion(schema::identifier("name", "By which others follow it.").required());
-    t.companion(schema::choice("type", {std::begin(kWords), std::end(kWords)}, "What it is.").required());
+    t.companion(schema::identifier("name", "Unique name by which other items refer to the widget.").required());
+    t.companion(schema::choice("type", {std::begin(kWords), std::end(kWords)}, "Type of the widget.").required());
     bind_size(
-        t, size_key("radius", "Of a handle's ball, or of a cutting plane's sphere.", "0.012 L; a sphere 0.12 L"),
+        t, size_key("radius", "Radius of the ball of a handle, or of the sphere of a cutting plane.", "0.012 L; cutting plane 0.12 L"),
         [](auto& widget) -> auto& { return widget.spec.radius; });
     bind_size(
-        t, size_key("grab_distance", "A handle, or the sphere, is taken hold of within this distance.", "0.03 L; a sphere 0.02 L"),
+        t,
+        size_key("grab_distance", "Distance from a handle, or from the sphere of a cutting plane, within which the probe can grab.",
+                 "0.03 L; cutting plane 0.02 L"),
         [](auto& widget) -> auto& { return widget.spec.grab_distance; });
     bind_size(
-        t, size_key("step", "A drag leaves an axis when the hand is this far from it.", "0.02 L"),
+        t,
+        size_key("step", "Dead zone of a drag on each axis: the widget moves along an axis only beyond this distance of the probe.",
+                 "0.02 L"),
         [](auto& widget) -> auto& { return widget.spec.step; });
     t.bind(
-        schema::integer("button", "", "The button that grabs.", 1, 32), [](auto& widget) -> auto& { return widget.spec.button; });
-    t.bind(schema::color("color", "Its colour."), &Widget::color);
+        schema::integer("button", "", "Button that grabs the widget.", 1, 32), [](auto& widget) -> auto& { return widget.spec.button; });
+    t.bind(schema::color("color", "Colour of the widget."), &Widget::color);
     return t;
   }();
   return table;
@@ -260,15 +268,17 @@ std::string to_json(const Scene& scene, const std::string& name, const Widget& w
 }
 
 Part widgets_part() {
-  schema::Section component = make_list_component("widgets",
-                                                  "Things to take hold of. A slice, a clip, seeds, a level or a link follows one by "
-                                                  "`{\"widget\": NAME}`. Here L is the longest domain among what is drawn.",
-                                                  common_table(), kMaxWidgets);
+  schema::Section component =
+      make_list_component("widgets",
+                          "Objects that the probe can grab and move. A slice, a clip, seeds, a level or a link follows a widget "
+                          "by `{\"widget\": NAME}`. L is the longest domain among the visible fields.",
+                          common_table(), kMaxWidgets);
   for (const WidgetType& type : types()) component.variants.push_back({to_string(type.kind), std::string(type.help), type.own.keys()});
   return {component, read_widgets};
 }
 
-Result<Entity> read_widget_name(const Scene& scene, const json::Node& object, std::initializer_list<Kind> kinds, std::string_view wanted) {
+Result<Entity> read_widget_name(const Scene& scene, const json::Node& object, std::initializer_list<Kind> kinds,
+                                std::string_view expected) {
   CATENA_TRY(const std::string name, json::require_string(object, "widget"));
   const json::Node& node = *object.find("widget");
   CATENA_TRY(const Entity found, require_named<Widget>(scene, name, node, "widget", "\"widgets\""));
@@ -276,7 +286,7 @@ Result<Entity> read_widget_name(const Scene& scene, const json::Node& object, st
   for (const Kind k : kinds)
     if (k == kind) return found;
   return json::error_at(
-      node, "widget " + in_quotes(name) + " is of type " + in_quotes(to_string(kind)) + "; " + std::string(wanted) + " was expected");
+      node, "widget " + in_quotes(name) + " is of type " + in_quotes(to_string(kind)) + "; " + std::string(expected) + " was expected");
 }
 
 }  // namespace catena::scene

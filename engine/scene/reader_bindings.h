@@ -46,13 +46,13 @@ Result<std::string> read_new_name(const Scene& scene, const json::Node& item, co
   const json::Node& node = *item.find("name");
   CATENA_CHECK(check_name(kind, name, node));
   if (find_named<T>(scene, name))
-    return json::error_at(node, (many ? "second " + kind + " are" : "a second " + kind + " is") + " called " + in_quotes(name) +
-                                    "; a name of " + (many ? "their" : "its") + " own was expected");
+    return json::error_at(
+        node, "the name " + in_quotes(name) + " is already used for " + (many ? "" : "a ") + kind + "; a unique name was expected");
   return name;
 }
 
 /// Returns the path in member "file" of the item `name`: an existing file with one of the endings, or for a pattern the file of the scene's
-/// current step. Sets pattern, files and step of `steps`.
+/// current step. Sets `pattern`, `series` and `step` of `steps`.
 inline Result<std::string> read_path(const Scene& scene, const json::Node& item, const std::string& kind, const std::string& name,
                                      const std::vector<std::string_view>& endings, FileSteps& steps) {
   CATENA_TRY(const std::string file, json::require_string(item, "file"));
@@ -61,7 +61,7 @@ inline Result<std::string> read_path(const Scene& scene, const json::Node& item,
     steps.pattern = path;
     steps.series = expand_pattern(path);
     if (steps.series.empty())
-      return json::error_at(*item.find("file"), kind + " " + in_quotes(name) + ": no file is called like " + in_quotes(path));
+      return json::error_at(*item.find("file"), kind + " " + in_quotes(name) + ": no file matches the pattern " + in_quotes(path));
     path = steps.series[std::min(static_cast<std::size_t>(scene.time.step), steps.series.size() - 1)];
   }
   steps.step = scene.time.step;
@@ -78,36 +78,36 @@ struct FileItem {
   T item;
 };
 
-/// Returns the table of its first keys, "name" and "file". `file`: help text; `needs_file`: whether "file" is required.
+/// Returns the table of the keys "name" and "file". `file`: start of the help of "file"; `needs_file`: whether "file" is required.
 template <class T>
 Table<FileItem<T>> make_file_table(const std::string& kind, const std::string& file, const std::vector<std::string_view>& endings,
                                    bool needs_file = true) {
   Table<FileItem<T>> t;
-  t.custom(schema::identifier("name", "By which a link names them.").required(),
-           [kind](Scene& scene, const json::Node& item, FileItem<T>& made) -> Outcome {
-             CATENA_TRY(made.name, read_new_name<T>(scene, item, kind, true));
+  t.custom(schema::identifier("name", "Unique name, by which links and other items refer to the " + kind + ".").required(),
+           [kind](Scene& scene, const json::Node& item, FileItem<T>& read_item) -> Outcome {
+             CATENA_TRY(read_item.name, read_new_name<T>(scene, item, kind, true));
              return Done{};
            });
   const Key key = schema::file("file", file + ": " + join_alternatives(endings) + ".");
   t.custom(needs_file ? key.required() : key,
-           [kind, endings, needs_file](Scene& scene, const json::Node& item, FileItem<T>& made) -> Outcome {
+           [kind, endings, needs_file](Scene& scene, const json::Node& item, FileItem<T>& read_item) -> Outcome {
              if (!needs_file && item.find("file") == nullptr) return Done{};
-             CATENA_TRY(made.item.path, read_path(scene, item, kind, made.name, endings, made.item.steps));
+             CATENA_TRY(read_item.item.path, read_path(scene, item, kind, read_item.name, endings, read_item.item.steps));
              return Done{};
            });
   return t;
 }
 
-/// Reads an array of such items into new entities.
+/// Reads an array of items with "name" and "file" into new entities.
 template <class T>
 Outcome read_file_items(Scene& scene, const json::Node& node, const Table<FileItem<T>>& table) {
   return each_item(node, [&](const json::Node& item) -> Outcome {
-    FileItem<T> made;
-    made.item.where = item;
-    CATENA_CHECK(table.read(scene, item, made));
+    FileItem<T> read_item;
+    read_item.item.where = item;
+    CATENA_CHECK(table.read(scene, item, read_item));
     const Entity e = scene.entities.create();
-    scene.entities.emplace<Name>(e, {made.name});
-    scene.entities.emplace<T>(e, std::move(made.item));
+    scene.entities.emplace<Name>(e, {read_item.name});
+    scene.entities.emplace<T>(e, std::move(read_item.item));
     return read_visible(scene, e, item);
   });
 }

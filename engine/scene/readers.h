@@ -55,7 +55,8 @@ Part overlay_part();
 /// Calls read(item) for each object of an array. Error: the node is no array, or an item is no object.
 template <class Read>
 Outcome each_item(const json::Node& node, Read&& read) {
-  if (node.kind != json::Kind::array) return json::error_at(node, in_quotes(node.label) + " is no array; an array of objects was expected");
+  if (node.kind != json::Kind::array)
+    return json::error_at(node, in_quotes(node.label) + " is not an array; an array of objects was expected");
   for (const json::Node& item : node.items) {
     CATENA_CHECK(json::expect_object(item, item.label));
     CATENA_CHECK(read(item));
@@ -72,8 +73,8 @@ Outcome check_name(const std::string& kind, const std::string& name, const json:
 /// plane in messages ("slice").
 Outcome read_plane(const Scene& scene, const json::Node& item, const std::string& word, Vec3& point, Vec3& normal, Entity& widget);
 /// Returns an empty string if `path` is an existing file (or folder, with `folders`) and `known`, its type, is true; else the problem, with
-/// `wanted` as what was expected.
-std::string file_problem(const std::string& path, bool known, const std::string& wanted, bool folders = false);
+/// `expected` as what was expected.
+std::string file_problem(const std::string& path, bool known, const std::string& expected, bool folders = false);
 
 /// Returns the path of a file named in the scene; relative paths start at the scene file's folder.
 std::string resolve_path(const std::string& scene_path, const std::string& file);
@@ -96,10 +97,10 @@ Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std
 /// Reads rows [value, r, g, b], values rising.
 Result<std::vector<TransferFunction::ColorPoint>> read_color_table(const json::Node& node, std::string_view what);
 
-/// Returns the widget that member "widget" of `object` names. Error: unknown, or none of `kinds`, which `wanted` states for the message ("a
-/// cutting plane or a box").
+/// Returns the widget that member "widget" of `object` names. Error: unknown, or none of `kinds`, which `expected` states for the message
+/// ("a cutting plane or a box").
 Result<Entity> read_widget_name(const Scene& scene, const json::Node& object, std::initializer_list<widget::Kind> kinds,
-                                std::string_view wanted);
+                                std::string_view expected);
 
 // Keys that several sections share, and the table type of this module.
 
@@ -131,14 +132,14 @@ Keys plane_keys();
 /// Returns the members that state a plane: its widget, else "axis" and "at" if it is across an axis, else "point" and "normal".
 schema::Members plane_members(const Scene& scene, const Vec3& point, const Vec3& normal, Entity widget);
 /// Keys "color", "range", "mapping", "linear_below" and "transfer" of objects that color by value.
-Keys color_scale_keys(std::string_view map = kDefaultLineColorMap, const std::string& range = "that of the values");
-/// The same keys, and the opacity keys of a volume.
+Keys color_scale_keys(std::string_view map = kDefaultLineColorMap, const std::string& range = "the range of the values");
+/// Returns the keys of color_scale_keys(), and the opacity keys of a volume.
 Keys transfer_keys();
 
-/// Returns the section of a list with the item keys of `table`. `most`: maximum number of items; 0: any number.
+/// Returns the section of a list with the item keys of `table`. `max_count`: maximum number of items; 0: any number.
 template <class T>
-schema::Section make_list_component(const std::string& name, const std::string& help, const Table<T>& table, int most = 0) {
-  return {name, help, schema::Section::Layout::list, table.keys(), most};
+schema::Section make_list_component(const std::string& name, const std::string& help, const Table<T>& table, int max_count = 0) {
+  return {name, help, schema::Section::Layout::list, table.keys(), max_count};
 }
 
 /// Kind of object that "color_by" colors, and the values that it allows: volumes and isosurfaces hit by rays (fields), surfaces (fields),
@@ -169,16 +170,17 @@ schema::Members color_scale_members(const std::vector<TransferFunction::ColorPoi
 /// Returns a volume's colors and opacities as members.
 schema::Members transfer_members(const TransferFunction& transfer);
 
-/// Returns the index in member `key` of a list of `count` items. For messages `what` names the items and `whose` the object with the index.
+/// Returns the index in member `key` of a list of `count` items. For messages `what` names the items and `referrer` the object with the
+/// index.
 Result<std::size_t> read_index(const json::Node& object, std::string_view key, std::string_view what, std::size_t count,
-                               const std::string& whose);
+                               const std::string& referrer);
 /// Returns the entity at the index in member `key`, counted among the entities that own a T.
 template <class T>
 Result<Entity> read_index(const Scene& scene, const json::Node& object, std::string_view key, const std::string& what,
-                          const std::string& whose) {
+                          const std::string& referrer) {
   std::vector<Entity> owners;
   scene.entities.each<T>([&](Entity e, const T&) { owners.push_back(e); });
-  CATENA_TRY(const std::size_t index, read_index(object, key, what, owners.size(), whose));
+  CATENA_TRY(const std::size_t index, read_index(object, key, what, owners.size(), referrer));
   return owners[index];
 }
 
@@ -192,7 +194,7 @@ std::string write_seeds(const Scene& scene, const Seeds& seeds);
 ///   "range"     [min, max], the values between which a named map is stretched; default: the range of the data
 ///   "mapping"   "linear", "log" or "symlog", with "linear_below": the scale between the points, also of opacities
 ///   "transfer"  instead of "color": a file, relative to the scene's. Either an object with a volume's keys, or a color map exported by
-///               ParaView (read_paraview.cpp). "range" beside it stretches its tables from their own ends to the range
+///               ParaView (read_paraview.cpp). "range" next to it stretches its tables from their own ends to the range
 /// and a volume, or a transfer file, has also
 ///   "opacity" with "opacity_length", or "extinction", and "gradient_opacity": [[gradient, factor], ...], field units per world
 ///   unit, 0 <= factor <= 1, which multiplies the extinction.

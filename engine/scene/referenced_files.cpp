@@ -32,10 +32,11 @@ void add_files(const json::Node& object, const schema::Keys& keys, std::vector<c
 void add_files(const json::Node& item, const schema::Section& component, std::vector<const json::Node*>& names) {
   add_files(item, component.keys, names);
   for (const schema::Variant& variant : component.variants) add_files(item, variant.keys, names);
-  if (schema::find(component.keys, "color_by") != nullptr) add_string(item, "transfer", names);  // next to "color_by" as a name
+  if (schema::find(component.keys, "color_by") != nullptr)
+    add_string(item, "transfer", names);  // "transfer" is allowed where "color_by" is a name
 }
 
-/// The values that name files, in text order.
+/// Returns the values that name files, in text order.
 std::vector<const json::Node*> file_names(const json::Node& root) {
   std::vector<const json::Node*> names;
   for (const schema::Section& component : scene_components()) {
@@ -49,7 +50,7 @@ std::vector<const json::Node*> file_names(const json::Node& root) {
   }
   if (const json::Node* device = root.find("device")) add_string(*device, "firmware", names);
   std::sort(names.begin(), names.end(), [](const json::Node* a, const json::Node* b) { return a->begin < b->begin; });
-  names.erase(std::unique(names.begin(), names.end()), names.end());  // a key of several variants
+  names.erase(std::unique(names.begin(), names.end()), names.end());  // several variants may have the same key
   return names;
 }
 
@@ -59,15 +60,15 @@ fs::path folder_of(const std::string& path) {
   return code ? fs::path(path).parent_path() : folder;
 }
 
-/// Path of the file relative to a scene in that folder. Links in the folder part are resolved; the file keeps its own name because its
-/// extension matters.
+/// Returns the path of the file relative to a scene in that folder. Links in the folder part are resolved; the file keeps its own name
+/// because its extension matters.
 std::string name_from(const std::string& file, const fs::path& folder) {
   const std::string name = (folder_of(file).lexically_relative(folder) / fs::path(file).filename()).lexically_normal().string();
   std::error_code code;
   return is_same_file((folder / name).string(), file) ? name : fs::absolute(file, code).lexically_normal().string();
 }
 
-/// The scene text with an override in it: the same effect as apply_override, written as a field.
+/// Returns the scene text with an override written as a field; the effect is that of apply_override.
 Result<std::string> with_override(std::string text, const std::string& path, const FieldOverride& with) {
   const std::string name = fs::path(with.file).is_absolute() ? with.file : name_from(with.file, folder_of(path));
   CATENA_TRY(const json::Node root, json::parse(text, path));
@@ -82,16 +83,16 @@ Result<std::string> with_override(std::string text, const std::string& path, con
   CATENA_TRY(text, json::set_value(text, path, pointer + "/file", json::serialize_string(name)));
   if (raw) return text;
 
-  // the grid and the mask of the previous file are optional: if the new file has none of that name, its own are used
+  // the names of the previous file's grid and mask are kept only if the new file has a grid and a mask with these names
   const json::Node *grid = field->find("grid"), *valid = field->find("valid");
-  const bool wish = grid != nullptr && with.grid.empty(), mask = valid != nullptr && valid->kind == json::Kind::string;
-  const auto grids = wish || mask ? field::describe_grids(with.file) : Result<std::vector<field::GridInfo>>(Error{});
+  const bool keeps_grid = grid != nullptr && with.grid.empty(), mask = valid != nullptr && valid->kind == json::Kind::string;
+  const auto grids = keeps_grid || mask ? field::describe_grids(with.file) : Result<std::vector<field::GridInfo>>(Error{});
   const auto lacks = [&](const json::Node& node) {
     return grids && std::none_of(grids->begin(), grids->end(), [&](const field::GridInfo& info) { return info.name == node.string; });
   };
   if (!with.grid.empty()) {
     CATENA_TRY(text, json::set_value(text, path, pointer + "/grid", json::serialize_string(with.grid)));
-  } else if (wish && lacks(*grid)) {
+  } else if (keeps_grid && lacks(*grid)) {
     CATENA_TRY(text, json::remove_value(text, path, pointer + "/grid"));
   }
   if (mask && lacks(*valid)) {
@@ -123,7 +124,7 @@ Result<std::string> relocate_text(std::string_view text, const std::string& from
   if (folder_of(from) != folder) {
     CATENA_TRY(const json::Node root, json::parse(text, from));
     const std::vector<const json::Node*> names = file_names(root);
-    // from the end, so that earlier offsets stay valid
+    // replaced from the end, so that earlier offsets stay valid
     for (auto it = names.rbegin(); it != names.rend(); ++it)
       if (fs::path((*it)->string).is_relative())
         moved.replace((*it)->begin, (*it)->end - (*it)->begin,

@@ -14,7 +14,7 @@ namespace catena::scene {
 Result<std::vector<std::string>> referenced_files(std::string_view text, const std::string& path,
                                                   const std::vector<FieldOverride>& overrides);
 
-/// Same for a parsed scene.
+/// Returns the paths of all files that a parsed scene names, and those of the overrides.
 std::vector<std::string> referenced_files(const json::Node& root, const std::string& path, const std::vector<FieldOverride>& overrides);
 
 /// Returns the text for a file at `to` that is equivalent to the text of the file at `from` with these overrides: relative file names and

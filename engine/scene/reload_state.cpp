@@ -26,18 +26,18 @@ bool same_source(const FieldSource& a, const FieldSource& b) {
   return a.analytic == b.analytic && a.parameters == b.parameters;
 }
 
-/// Whether a label surface is unchanged: its label map is.
-bool same_map(const Scene& old, const FieldSource& before, const Scene& fresh, const FieldSource& source) {
+/// Returns whether the label map of a label surface is unchanged; the surface is then unchanged as well.
+bool same_map(const Scene& old, const FieldSource& before, const Scene& reloaded, const FieldSource& source) {
   if (!source.label) return true;
-  const Entity was = find_field(old, source.label->label_map), is = find_field(fresh, source.label->label_map);
-  if (!was || !is) return false;
-  const FieldSource &map_was = old.entities.get<FieldSource>(was), &map_is = fresh.entities.get<FieldSource>(is);
+  const Entity old_map = find_field(old, source.label->label_map), new_map = find_field(reloaded, source.label->label_map);
+  if (!old_map || !new_map) return false;
+  const FieldSource &map_was = old.entities.get<FieldSource>(old_map), &map_is = reloaded.entities.get<FieldSource>(new_map);
   return before.label == source.label && same_source(map_was, map_is) && map_was.labels_table == map_is.labels_table;
 }
 
 bool same_drawing(const FieldSource& a, const FieldSource& b) { return a.file || (a.resolution == b.resolution && a.box == b.box); }
 
-/// Whether both are the same step of the same file.
+/// Returns whether both are the same step of the same file.
 template <class T>
 bool same_table(const T& a, const T& b) {
   const bool same_step = a.steps.step == b.steps.step || std::max(a.steps.times.size(), b.steps.times.size()) < 2;
@@ -51,10 +51,10 @@ bool same_curves(const CurvesSource& a, const CurvesSource& b) {
 
 bool same_mesh(const MeshSource& a, const MeshSource& b) { return a.placement == b.placement && same_table(a, b); }
 
-void carry_fields(Scene& old, Scene& fresh) {
-  fresh.entities.each<FieldSource>([&](Entity e, FieldSource& source) {
+void carry_fields(Scene& old, Scene& reloaded) {
+  reloaded.entities.each<FieldSource>([&](Entity e, FieldSource& source) {
     old.entities.each<FieldSource>([&](Entity f, const FieldSource& before) {
-      if (before.loaded.get() == nullptr || !same_source(before, source) || !same_map(old, before, fresh, source)) return;
+      if (before.loaded.get() == nullptr || !same_source(before, source) || !same_map(old, before, reloaded, source)) return;
       if (source.loaded.get() == nullptr) source.loaded = before.loaded;
       source.has_changed_step = source.has_changed_step || before.has_changed_step;
       if (source.loaded.get() == before.loaded.get() && source.labels_table == before.labels_table) source.labels = before.labels;
@@ -62,17 +62,17 @@ void carry_fields(Scene& old, Scene& fresh) {
       if (source.rendered.get() == nullptr && source.loaded.get() == before.loaded.get() && same_drawing(before, source))
         source.rendered = before.rendered;
       // keep a value sample that was already computed
-      if (source.rendered.get() != nullptr && source.rendered.get() == before.rendered.get() && old.cache.has<ValueSample>(f) &&
-          !fresh.cache.has<ValueSample>(e))
-        fresh.cache.emplace<ValueSample>(e, old.cache.get<ValueSample>(f));
+      if (source.rendered.get() != nullptr && source.rendered.get() == before.rendered.get() && old.cache.has<SortedValues>(f) &&
+          !reloaded.cache.has<SortedValues>(e))
+        reloaded.cache.emplace<SortedValues>(e, old.cache.get<SortedValues>(f));
     });
   });
 }
 
 /// Transfers loaded meshes, curves or points.
 template <class T, class Same>
-void carry_shapes(Scene& old, Scene& fresh, const Same& is_same) {
-  fresh.entities.each<T>([&](Entity, T& source) {
+void carry_shapes(Scene& old, Scene& reloaded, const Same& is_same) {
+  reloaded.entities.each<T>([&](Entity, T& source) {
     old.entities.each<T>([&](Entity, const T& before) {
       if (source.loaded || !before.loaded || !is_same(before, source)) return;
       source.loaded = before.loaded;
@@ -90,20 +90,21 @@ bool states_colors(const json::Node& where) {
   return color != nullptr && color->kind != json::Kind::string;
 }
 
-void carry_transfers(const Scene& old, Scene& fresh) {
-  fresh.entities.each<Volume>([&](Entity, Volume& volume) {
-    const void* grid = fresh.entities.get<FieldSource>(volume.field).rendered.get();
+void carry_transfers(const Scene& old, Scene& reloaded) {
+  reloaded.entities.each<Volume>([&](Entity, Volume& volume) {
+    const void* grid = reloaded.entities.get<FieldSource>(volume.field).rendered.get();
     TransferFunction& transfer = volume.transfer;
     old.entities.each<Volume>([&](Entity, const Volume& before) {
-      const TransferFunction& made = before.transfer;
-      if (fresh.entities.get<FieldSource>(volume.field).labels != old.entities.get<FieldSource>(before.field).labels) return;
-      if (grid == nullptr || old.entities.get<FieldSource>(before.field).rendered.get() != grid || !made.file.empty() ||
+      const TransferFunction& completed = before.transfer;
+      if (reloaded.entities.get<FieldSource>(volume.field).labels != old.entities.get<FieldSource>(before.field).labels) return;
+      if (grid == nullptr || old.entities.get<FieldSource>(before.field).rendered.get() != grid || !completed.file.empty() ||
           !transfer.file.empty())
         return;
-      if (transfer.colors.empty() && !states_colors(before.where) && made.named == transfer.named) transfer.colors = made.colors;
+      if (transfer.colors.empty() && !states_colors(before.where) && completed.named == transfer.named) transfer.colors = completed.colors;
       if (transfer.opacities.empty() && transfer.extinctions.empty() && !states(before.where, "opacity") &&
-          !states(before.where, "extinction") && made.named.range == transfer.named.range && made.named.mapping == transfer.named.mapping)
-        transfer.extinctions = made.extinctions;
+          !states(before.where, "extinction") && completed.named.range == transfer.named.range &&
+          completed.named.mapping == transfer.named.mapping)
+        transfer.extinctions = completed.extinctions;
     });
   });
 }
@@ -118,33 +119,33 @@ bool names_a_file(const json::Node& node) {
   return false;
 }
 
-/// Whether every T of the fresh scene equals the one of the same name in the old scene.
+/// Returns whether every T of the reloaded scene equals the one of the same name in the old scene.
 template <class T, class Same>
-bool all_same(const Scene& old, const Scene& fresh, const Same& is_same) {
+bool all_same(const Scene& old, const Scene& reloaded, const Same& is_same) {
   bool same = true;
-  fresh.entities.each<T>([&](Entity e, const T& source) {
-    const Entity before = find_named<T>(old, fresh.entities.get<Name>(e).value);
+  reloaded.entities.each<T>([&](Entity e, const T& source) {
+    const Entity before = find_named<T>(old, reloaded.entities.get<Name>(e).value);
     same = same && before && is_same(old.entities.get<T>(before), source);
   });
   return same;
 }
 
-/// Whether all sources are the same, so that equal descriptions mean the same data.
-bool same_sources(const Scene& old, const Scene& fresh) {
+/// Returns whether all sources are the same, so that equal descriptions mean the same data.
+bool same_sources(const Scene& old, const Scene& reloaded) {
   const auto same_field = [](const FieldSource& a, const FieldSource& b) {
     return same_source(a, b) && same_drawing(a, b) && a.labels_table == b.labels_table;
   };
-  return all_same<FieldSource>(old, fresh, same_field) && all_same<MeshSource>(old, fresh, same_mesh) &&
-         all_same<CurvesSource>(old, fresh, same_curves) && all_same<PointsSource>(old, fresh, same_table<PointsSource>);
+  return all_same<FieldSource>(old, reloaded, same_field) && all_same<MeshSource>(old, reloaded, same_mesh) &&
+         all_same<CurvesSource>(old, reloaded, same_curves) && all_same<PointsSource>(old, reloaded, same_table<PointsSource>);
 }
 
-void carry_cached(const Drawable& kind, Scene& old, Scene& fresh) {
-  std::vector<DrawableItem> left = kind.items(old.entities);
-  for (const auto& [e, where] : kind.items(fresh.entities)) {
+void carry_cached(const Drawable& kind, Scene& old, Scene& reloaded) {
+  std::vector<DrawableItem> unmatched = kind.items(old.entities);
+  for (const auto& [e, where] : kind.items(reloaded.entities)) {
     const auto same = [&, node = where](const DrawableItem& before) { return before.first && json::is_equal_value(*before.second, *node); };
-    const auto it = names_a_file(*where) ? left.end() : std::find_if(left.begin(), left.end(), same);
-    if (it == left.end()) continue;
-    fresh.cache.move_missing_from(e, old.cache, it->first);
+    const auto it = names_a_file(*where) ? unmatched.end() : std::find_if(unmatched.begin(), unmatched.end(), same);
+    if (it == unmatched.end()) continue;
+    reloaded.cache.move_missing_from(e, old.cache, it->first);
     it->first = Entity{};
   }
 }
@@ -159,14 +160,14 @@ bool same_place(const json::Node& a, const json::Node& b) {
   return true;
 }
 
-void carry_widgets(const Scene& old, Scene& fresh) {
-  fresh.entities.each<Widget>([&](Entity e, Widget& widget) {
+void carry_widgets(const Scene& old, Scene& reloaded) {
+  reloaded.entities.each<Widget>([&](Entity e, Widget& widget) {
     old.entities.each<Widget>([&](Entity f, const Widget& before) {
-      if (before.spec.kind != widget.spec.kind || old.entities.get<Name>(f).value != fresh.entities.get<Name>(e).value) return;
+      if (before.spec.kind != widget.spec.kind || old.entities.get<Name>(f).value != reloaded.entities.get<Name>(e).value) return;
       if (same_place(before.where, widget.where)) {
         widget.spec.pose = before.spec.pose;
       } else if (!(widget.spec.pose == before.report.pose)) {
-        // the scene file now places it elsewhere than the user moved it
+        // the pose in the scene file differs from the pose to which the user moved the widget
         widget.spec.revision = before.spec.revision + 1;
         widget.report = {};
         widget.report.pose = widget.spec.pose;
@@ -180,58 +181,58 @@ void carry_widgets(const Scene& old, Scene& fresh) {
 }
 
 /// Transfers the known steps of sources with the same pattern or file: steps found since the first load are kept, none are added.
-void carry_steps(const Scene& old, Scene& fresh) {
-  fresh.entities.each<FieldSource>([&](Entity, FieldSource& source) {
+void carry_steps(const Scene& old, Scene& reloaded) {
+  reloaded.entities.each<FieldSource>([&](Entity, FieldSource& source) {
     old.entities.each<FieldSource>([&](Entity, const FieldSource& before) {
       if (before.pattern != source.pattern || before.has_own_step || source.has_own_step || !before.file || !source.file) return;
       if (source.pattern.empty() && before.file->path != source.file->path) return;
       source.series = before.series;
       source.follows = before.follows;
       source.known_times = before.known_times;
-      assign_step(source, fresh.time.step);
+      assign_step(source, reloaded.time.step);
     });
   });
   const auto carry = [&](auto& shape, const auto& before) {
     if (before.steps.pattern != shape.steps.pattern || before.steps.pattern.empty()) return;
     shape.steps.series = before.steps.series;
     shape.steps.follows = before.steps.follows;
-    assign_step(shape, fresh.time.step);
+    assign_step(shape, reloaded.time.step);
   };
-  fresh.entities.each<MeshSource>(
+  reloaded.entities.each<MeshSource>(
       [&](Entity, MeshSource& shape) { old.entities.each<MeshSource>([&](Entity, const MeshSource& before) { carry(shape, before); }); });
-  fresh.entities.each<CurvesSource>([&](Entity, CurvesSource& shape) {
+  reloaded.entities.each<CurvesSource>([&](Entity, CurvesSource& shape) {
     old.entities.each<CurvesSource>([&](Entity, const CurvesSource& before) { carry(shape, before); });
   });
-  fresh.entities.each<PointsSource>([&](Entity, PointsSource& shape) {
+  reloaded.entities.each<PointsSource>([&](Entity, PointsSource& shape) {
     old.entities.each<PointsSource>([&](Entity, const PointsSource& before) { carry(shape, before); });
   });
 }
 
 }  // namespace
 
-void transfer_state(Scene& old, Scene& fresh) {
-  carry_steps(old, fresh);
-  set_step(fresh, old.time.step);
-  carry_fields(old, fresh);
-  carry_shapes<MeshSource>(old, fresh, same_mesh);
-  carry_shapes<CurvesSource>(old, fresh, same_curves);
-  carry_shapes<PointsSource>(old, fresh, same_table<PointsSource>);
-  carry_transfers(old, fresh);
-  // before the line sets, which refer to these curves
+void transfer_state(Scene& old, Scene& reloaded) {
+  carry_steps(old, reloaded);
+  set_step(reloaded, old.time.step);
+  carry_fields(old, reloaded);
+  carry_shapes<MeshSource>(old, reloaded, same_mesh);
+  carry_shapes<CurvesSource>(old, reloaded, same_curves);
+  carry_shapes<PointsSource>(old, reloaded, same_table<PointsSource>);
+  carry_transfers(old, reloaded);
+  // the curves come before the line sets, which refer to them
   for (auto& [key, curve] : old.traced_curves)
-    if (curve.use_count() > 1) fresh.traced_curves.emplace(key, curve);
-  if (same_sources(old, fresh))
-    for (const Drawable& kind : drawables()) carry_cached(kind, old, fresh);
-  transfer_lines(old, fresh);
-  carry_widgets(old, fresh);
-  fresh.animation_phase = old.animation_phase;
-  Cursor& cursor = fresh.entities.get<Cursor>(fresh.cursor);
-  const Cursor said = cursor;
+    if (curve.use_count() > 1) reloaded.traced_curves.emplace(key, curve);
+  if (same_sources(old, reloaded))
+    for (const Drawable& kind : drawables()) carry_cached(kind, old, reloaded);
+  transfer_lines(old, reloaded);
+  carry_widgets(old, reloaded);
+  reloaded.animation_phase = old.animation_phase;
+  Cursor& cursor = reloaded.entities.get<Cursor>(reloaded.cursor);
+  const Cursor new_cursor = cursor;
   cursor = std::move(old.entities.get<Cursor>(old.cursor));
-  cursor.size = said.size;
-  cursor.show_occluded = said.show_occluded;
-  cursor.drop_line = said.drop_line;
-  cursor.crosshair = said.crosshair;
+  cursor.size = new_cursor.size;
+  cursor.show_occluded = new_cursor.show_occluded;
+  cursor.drop_line = new_cursor.drop_line;
+  cursor.crosshair = new_cursor.crosshair;
 }
 
 }  // namespace catena::scene

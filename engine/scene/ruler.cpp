@@ -33,7 +33,7 @@ struct MadeRuler {
   RulerMeasure measure;
 };
 
-/// The widget that a link's key names instead of a value; a null entity if it names none.
+/// Returns the widget that a link's key names instead of a value; a null entity if it names none.
 Entity named_widget(const Scene& scene, const json::Node* value) {
   const json::Node* name = value == nullptr ? nullptr : value->find("widget");
   return name == nullptr || name->kind != json::Kind::string ? Entity{} : find_widget(scene, name->string);
@@ -78,7 +78,7 @@ Result<Track> level_track(Scene& scene, const Link& link) {
   return track;
 }
 
-/// The link with this name, or the link whose ready-made mode generates it (NAME_...).
+/// Returns the link with this name, or the preset that generates a link of this name (NAME_...).
 Link link_of(const Scene& scene, const std::string& name) {
   Link found;
   scene.entities.each<Link>([&](Entity, const Link& link) {
@@ -101,22 +101,23 @@ Result<Track> track_of(Scene& scene, const Widget& ruler) {
     return track;
   }
   Track none;
-  if (!links.empty()) none.note = "no link that it goes along has a seed, a level or a mesh to measure along";
+  if (!links.empty())
+    none.note = "measured along the straight line, because none of the ruler's links has a seed, a level or a mesh to measure along";
   return none;
 }
 
-RulerMeasure straight(const Vec3& from, const Vec3& to, std::string note) {
+RulerMeasure straight_measure(const Vec3& from, const Vec3& to, std::string note) {
   return {How::straight, {from, to}, norm(to - from), std::move(note)};
 }
 
 RulerMeasure measure(const Track& track, const Vec3& from, const Vec3& to) {
   if (track.curve) return measure_along(track.curve, from, to);
-  if (!track.surface && !track.mesh) return straight(from, to, track.note);
+  if (!track.surface && !track.mesh) return straight_measure(from, to, track.note);
   RulerMeasure out;
   out.path_kind = track.mesh ? How::mesh : How::isosurface;
   out.points =
       track.mesh ? geodesics::path_on_mesh(*track.mesh, from, to) : geodesics::path_on_level(*track.surface, track.level, from, to);
-  if (out.points.empty()) return straight(from, to, "no way along the surface joins the ends");
+  if (out.points.empty()) return straight_measure(from, to, "no path along the surface connects the two ends");
   out.length = geodesics::path_length(out.points);
   return out;
 }
@@ -126,32 +127,32 @@ RulerMeasure measure(const Track& track, const Vec3& from, const Vec3& to) {
 RulerMeasure measure_along(const flow::CurvePtr& curve, const Vec3& from, const Vec3& to) {
   const flow::NearestOnCurve nearest(curve);
   double a = nearest.find(from).s, b = nearest.find(to).s;
-  const bool turned = a > b;
-  if (turned) std::swap(a, b);
-  // along the other way of a closed curve, past its first knot
-  const double whole = curve->period();
-  const bool wrapped = curve->is_closed() && b - a > 0.5 * whole;
+  const bool reversed = a > b;
+  if (reversed) std::swap(a, b);
+  // the other part of a closed curve, which contains the first knot
+  const double period = curve->period();
+  const bool wrapped = curve->is_closed() && b - a > 0.5 * period;
   if (wrapped) {
-    a += whole;
+    a += period;
     std::swap(a, b);
   }
   RulerMeasure out;
   out.path_kind = How::streamline;
   out.length = b - a;
-  std::vector<double> places{a};
+  std::vector<double> positions{a};
   const std::vector<flow::Knot>& knots = curve->knots();
-  for (const double lap : {0.0, whole}) {
-    if (lap > 0 && !curve->is_closed()) break;
-    const auto by_s = [&](double s, const flow::Knot& knot) { return s < knot.s + lap; };
-    for (auto k = std::upper_bound(knots.begin(), knots.end(), places.back(), by_s); k != knots.end() && k->s + lap < b; ++k)
-      places.push_back(k->s + lap);
+  for (const double shift : {0.0, period}) {
+    if (shift > 0 && !curve->is_closed()) break;
+    const auto by_s = [&](double s, const flow::Knot& knot) { return s < knot.s + shift; };
+    for (auto k = std::upper_bound(knots.begin(), knots.end(), positions.back(), by_s); k != knots.end() && k->s + shift < b; ++k)
+      positions.push_back(k->s + shift);
   }
-  places.push_back(b);
-  const std::size_t stride = 1 + places.size() / kMaxPoints;
-  for (std::size_t i = 0; i + 1 < places.size(); i += stride) out.points.push_back(curve->position(places[i]));
+  positions.push_back(b);
+  const std::size_t stride = 1 + positions.size() / kMaxPoints;
+  for (std::size_t i = 0; i + 1 < positions.size(); i += stride) out.points.push_back(curve->position(positions[i]));
   out.points.push_back(curve->position(b));
-  // from the first end to the second
-  if (turned != wrapped) std::reverse(out.points.begin(), out.points.end());
+  // the points go from the first end to the second
+  if (reversed != wrapped) std::reverse(out.points.begin(), out.points.end());
   return out;
 }
 

@@ -18,7 +18,7 @@ struct RulerMeasure {
   enum class PathKind { straight, streamline, isosurface, mesh } path_kind = PathKind::straight;
   std::vector<Vec3> points;  ///< The measured path, at least two points, for rendering
   double length = 0;         ///< World units
-  std::string note;          ///< Why the path is straight although "along" names links; empty: no such case
+  std::string note;          ///< Reason for a straight path although "along" names links, not an error; empty: no such case
 };
 
 /// Measures at the widget's current pose. Cached: measured only if an end, or the object it is measured along, has changed.

@@ -33,7 +33,7 @@ struct Scene {
   /// Derived data, with the same entities as `entities`: traced lines, sorted values, ruler results, polylines for rendering. Can be
   /// dropped at any time and is computed again on use.
   EntityStore cache;
-  Coupling coupling;                        ///< How the links make a force
+  Coupling coupling;                        ///< Parameters of the force of the links
   Workspace workspace;                      ///< Mapping from the device's workspace to the world
   std::optional<json::Node> device;         ///< Item "device"; its keys are read when the device is opened
   Camera camera;                            ///< The camera
@@ -58,7 +58,7 @@ struct Scene {
   struct CurveKey {
     std::uint64_t field_version;  ///< Field::version()
     bool is_line_field;           ///< Line field: v and -v are equivalent
-    double min_speed, length;     ///< As in flow::Flow; world units, 0: 10 L
+    double min_speed, length;     ///< Minimum speed of flow::Flow; maximum length, world units, 0: 10 L
     std::array<double, 3> seed;   ///< World
     auto operator<=>(const CurveKey&) const = default;
   };
@@ -78,7 +78,7 @@ CATENA_EXPORT TuningTargets image_targets(std::string_view quality);
 /// Reads and checks a whole scene file. Fields are not loaded, but every file that the scene names must exist. Error: file, line and what
 /// was expected.
 CATENA_EXPORT Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides = {});
-/// Same for a text; relative file names start at the folder of `path`, which also names the text in messages.
+/// Parses and checks the text of a scene file; relative file names start at the folder of `path`, which also names the text in messages.
 CATENA_EXPORT Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides = {});
 /// Creates the scene of a data file. Scalar grids are shown by the kind of data (default_visualization.h), vector grids as streamlines,
 /// triangle meshes as they are, curves in the colors of their directions, points as balls; the camera is fitted. `grid`: the grid to show;
@@ -87,7 +87,7 @@ CATENA_EXPORT Result<Scene> parse_scene(std::string_view text, const std::string
 CATENA_EXPORT Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {}, const NamedColors& colors = {},
                                            int step = 0);
 
-/// Same for a grid of the calling program, which becomes the field "field". Error: it is no grid, or has no finite value.
+/// Creates the scene of a grid of the calling program, which becomes the field "field". Error: it is no grid, or has no finite value.
 CATENA_EXPORT Result<Scene> scene_for_field(const field::AnyField& grid, const NamedColors& colors = {});
 
 /// Description of a data file at a time step.
@@ -98,8 +98,8 @@ struct FileSummary {
 /// Returns the description; empty for a file that cannot be shown.
 CATENA_EXPORT FileSummary summarize_file(const std::string& path, const std::string& grid = {}, int step = 0);
 
-/// How a data file is shown. If the file name extension allows several, the content decides: fields before surfaces, lines and points.
-/// For a pattern its first file counts.
+/// Kind of object as which a data file is shown. If the extension of the file name allows several, the content decides: fields before
+/// surfaces, lines and points. For a pattern its first file counts.
 enum class FileKind { field, mesh, curves, points };
 /// Returns the kind of a file. Opens the file only if its extension allows several kinds.
 CATENA_EXPORT FileKind detect_file_kind(const std::string& path);
@@ -126,7 +126,7 @@ inline Entity find_widget(const Scene& scene, std::string_view name) { return fi
 
 /// Returns the field, loading it on first use. `where`: node that names the field, for messages. Error: it cannot be loaded.
 CATENA_EXPORT Result<field::AnyField> resolve_field(Scene& scene, Entity field, const json::Node& where);
-/// Same by name; an Error lists the known names.
+/// Returns the field of that name, loading it on first use; an Error lists the known names.
 CATENA_EXPORT Result<field::AnyField> resolve_field(Scene& scene, const std::string& name, const json::Node& where);
 /// Returns the field as a grid for images; an analytic field is sampled once. Completes the colors and opacities of volumes over the field
 /// from its histogram (auto_transfer.h). Error: it cannot be loaded or sampled, or is too far from the origin.
@@ -141,11 +141,11 @@ inline const field::AnyField& rendered_field(const Scene& scene, Entity field) {
 CATENA_EXPORT Result<mesh::MeshPtr> resolve_mesh(Scene& scene, const std::string& name, const json::Node& where);
 /// Returns curves from a file, loading them on first use, or the vortex core curves of a field.
 CATENA_EXPORT Result<curves::CurveSetPtr> resolve_curves(Scene& scene, Entity curves);
-/// Same by name.
+/// Returns the curves of that name, loading them on first use; an Error lists the known names.
 CATENA_EXPORT Result<curves::CurveSetPtr> resolve_curves(Scene& scene, const std::string& name, const json::Node& where);
 /// Returns points from a table, loading them on first use.
 CATENA_EXPORT Result<curves::PointSetPtr> resolve_points(Scene& scene, Entity points);
-/// Same by name.
+/// Returns the points of that name, loading them on first use; an Error lists the known names.
 CATENA_EXPORT Result<curves::PointSetPtr> resolve_points(Scene& scene, const std::string& name, const json::Node& where);
 /// Returns the streamline through a seed; `length`: maximum arc length in each direction, world units, 0: 10 L. While it is in use, all
 /// callers get the same object. Error, at `where`: the seed starts no line.

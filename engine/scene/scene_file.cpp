@@ -53,7 +53,7 @@ static Outcome check_sizes(const json::Node& node) {
   const double size = std::abs(node.number);
   if (node.kind == json::Kind::number && size != 0 && !(size >= kMinSize && size <= kMaxSize))
     return json::error_at(node, to_text(node.number) + " is too " + (size < kMinSize ? "small" : "large") +
-                                    "; 0 or a number from 1e-30 to 1e30 in size was expected");
+                                    "; 0 or a number of magnitude 1e-30 to 1e30 was expected");
   for (const json::Node& item : node.items) CATENA_CHECK(check_sizes(item));
   for (const auto& [key, value] : node.members) CATENA_CHECK(check_sizes(value));
   return Done{};

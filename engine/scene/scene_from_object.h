@@ -10,8 +10,8 @@
 
 namespace catena::scene {
 
-/// parse_scene() for the JSON text of the object; `name` stands for its path. Since the text has no lines that a user could look up, errors
-/// give the position by a JSON pointer: "NAME: /volumes/0/opacity: ...".
+/// parse_scene() for the JSON text of the object; `name` is used in place of its path. Since the text has no lines that a user could look
+/// up, errors give the position by a JSON pointer: "NAME: /volumes/0/opacity: ...".
 CATENA_EXPORT Result<Scene> parse_scene_object(std::string_view text, const std::string& name,
                                                const std::vector<FieldOverride>& overrides = {});
 

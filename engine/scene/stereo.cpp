@@ -40,7 +40,7 @@ namespace {
 const Table<Stereo>& stereo_table() {
   static const auto table = [] {
     Table<Stereo> t;
-    const Key mode = schema::choice("mode", {kStereoWords.begin(), kStereoWords.end()}, "How the eyes' pictures are put together.");
+    const Key mode = schema::choice("mode", {kStereoWords.begin(), kStereoWords.end()}, "Composition of the eyes' images.");
     t.custom(mode.with_default("\"mono\""), [](Scene&, const json::Node& node, Stereo& stereo) -> Outcome {
       CATENA_TRY(const std::string word, json::get_string(node, "mode", std::string(to_string(stereo.mode))));
       const auto named = parse_stereo_mode(word);
@@ -48,16 +48,18 @@ const Table<Stereo>& stereo_table() {
       stereo.mode = *named;
       return Done{};
     });
-    t.bind(schema::number("separation", "world", "Of neighbouring eyes.")
+    t.bind(schema::number("separation", "world", "Distance between neighbouring eyes.")
                .within(0, kMaxStereoSeparation)
-               .with_default("a 30th of `zero_parallax`"),
+               .with_default("1/30 of `zero_parallax`"),
            &Stereo::separation);
-    t.bind(schema::number("zero_parallax", "world", "Distance from the eyes to where both see the same.")
+    t.bind(schema::number("zero_parallax", "world", "Distance from the eyes at which their images coincide.")
                .positive()
-               .with_default("the target's"),
+               .with_default("the distance of the camera's target"),
            &Stereo::zero_parallax);
-    t.bind(schema::integer("views", "", "For the modes that take any number of eyes.", 2, kMaxStereoViews), &Stereo::view_count);
-    t.bind(schema::boolean("swap_eyes", "The right eye's picture in the place of the left eye's."), &Stereo::swap_eyes);
+    t.bind(schema::integer("views", "", "Number of views; a number other than 2 only for modes that accept any number of views.", 2,
+                           kMaxStereoViews),
+           &Stereo::view_count);
+    t.bind(schema::boolean("swap_eyes", "Exchange of the images of the left and the right eye."), &Stereo::swap_eyes);
     t.check([](Scene&, const json::Node& node, Stereo& stereo) -> Outcome {
       if (stereo.view_count == 2 || !needs_two_views(stereo.mode)) return Done{};
       return json::error_at(*node.find("views"), "\"views\" is " + std::to_string(stereo.view_count) + " with mode \"" +
@@ -71,7 +73,7 @@ const Table<Stereo>& stereo_table() {
 }  // namespace
 
 Part stereo_part() {
-  return {{"stereo", "Two eyes, or more.", schema::Section::Layout::object, stereo_table().keys()},
+  return {{"stereo", "Stereo: images for two or more eyes.", schema::Section::Layout::object, stereo_table().keys()},
           [](Scene& scene, const json::Node& node) -> Outcome {
             CATENA_CHECK(json::expect_object(node, "stereo"));
             return stereo_table().read(scene, node, scene.stereo);

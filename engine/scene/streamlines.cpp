@@ -35,10 +35,10 @@ struct MadeLines {
   Bounds bounds;  ///< of all knots
 };
 
-/// Curves through the seeds; curves that are not yet in scene.traced_curves are traced on all cores.
+/// Returns the curves through the seeds; curves that are not yet in scene.traced_curves are traced on all cores.
 Result<Curves> exact_lines(Scene& scene, const Seeds& seeds, const LineRequest& request, const json::Node& where) {
   const std::vector<Vec3>& points = seeds.points;
-  const auto place = [&](std::size_t i) -> const json::Node& { return i < where.items.size() ? where.items[i] : where; };
+  const auto node_of = [&](std::size_t i) -> const json::Node& { return i < where.items.size() ? where.items[i] : where; };
   const auto key = [&](const Vec3& p) {
     return Scene::CurveKey{
         request.flow.field->version(), request.flow.is_line_field, request.flow.min_speed, request.length, {p.x, p.y, p.z}};
@@ -57,7 +57,7 @@ Result<Curves> exact_lines(Scene& scene, const Seeds& seeds, const LineRequest& 
     if (traced[n])
       scene.traced_curves.emplace(key(missing[n]), *traced[n]);
     else if (!seeds.widget)
-      return with_cause(json::error_at(place(at[n]), traced[n].error().message), traced[n].error());
+      return with_cause(json::error_at(node_of(at[n]), traced[n].error().message), traced[n].error());
   }
   Curves curves;
   curves.reserve(points.size());
@@ -106,15 +106,15 @@ Result<std::vector<Vec3>> places_of(Scene& scene, const SeedPattern& pattern) {
         in_quotes(scene.entities.get<Name>(pattern.field).value) + " is a vector field; a scalar field was expected for an isosurface");
   CATENA_CHECK(check_surface(scene, pattern.field, json::member_or_parent(pattern.where, "field")));
   CATENA_CHECK(check_level(*any.scalar, pattern.level, json::member_or_parent(pattern.where, "level")));
-  std::vector<Vec3> places = flow::seeds_on_isosurface(*any.scalar, pattern.level, pattern.count);
-  if (places.empty())
+  std::vector<Vec3> positions = flow::seeds_on_isosurface(*any.scalar, pattern.level, pattern.count);
+  if (positions.empty())
     return json::error_at(json::member_or_parent(pattern.where, "level"),
-                          "no place of this level was found; a level that the field's domain holds was expected");
-  return places;
+                          "no point with this level was found; a level that occurs in the field's domain was expected");
+  return positions;
 }
 
-/// Default start points of an evenly spaced set: the center of the domain and a sampling grid about it; if none of these is in the flow, as
-/// in a hollow domain, the fastest points.
+/// Returns the default start points of an evenly spaced set: the center of the domain and a sampling grid about it; if none of these is in
+/// the flow, as in a hollow domain, the fastest points.
 std::vector<Vec3> default_start(const flow::Flow& flow) {
   const field::Mapping& mapping = flow.field->mapping();
   const field::Box& box = flow.field->index_box();
@@ -151,31 +151,31 @@ constexpr std::size_t kFirstBlock = 64, kLargestBlock = 8192;
 constexpr std::size_t kBlockKnots = 400'000;         ///< of lines that are not cached
 constexpr std::size_t kMaxVisited = 10'000'000'000;  ///< knots of lines that are only visited, not cached: hours of work
 
-/// Number of seeds whose lines fit into the remaining knots if they are as long as the lines so far.
-std::size_t next_block(std::size_t seeds, std::size_t knots, std::size_t most) {
-  const std::size_t left = most - std::min(most, knots), each = std::max<std::size_t>(1, knots / seeds);
-  return std::clamp(left / each, kFirstBlock, kLargestBlock);
+/// Returns the number of seeds whose lines fit into the remaining knots if they are as long as the lines so far.
+std::size_t next_block(std::size_t seeds, std::size_t knots, std::size_t max_knots) {
+  const std::size_t remaining = max_knots - std::min(max_knots, knots), knots_per_seed = std::max<std::size_t>(1, knots / seeds);
+  return std::clamp(remaining / knots_per_seed, kFirstBlock, kLargestBlock);
 }
 
 }  // namespace
 
 std::size_t knot_limit() { return static_cast<std::size_t>(std::min(kMaxKnots, available_memory() / sizeof(flow::Knot))); }
 
-std::string too_many_knots_message(std::size_t seeds, std::size_t done, std::size_t most) {
-  return "the lines of " + std::to_string(done) + " of the " + std::to_string(seeds) + " seeds have more than " + std::to_string(most) +
-         " knots together (" + to_text(std::round(1e-6 * static_cast<double>(most * sizeof(flow::Knot)))) +
+std::string too_many_knots_message(std::size_t seeds, std::size_t done, std::size_t max_knots) {
+  return "the lines of the first " + std::to_string(done) + " of the " + std::to_string(seeds) + " seeds have more than " +
+         std::to_string(max_knots) + " knots in total (" + to_text(std::round(1e-6 * static_cast<double>(max_knots * sizeof(flow::Knot)))) +
          " MB of memory); fewer seeds, a shorter length or a greater tolerance was expected";
 }
 
 namespace {
 
-/// Whether lines in an analytic field end at its render box, because such a field has no boundary: evenly spaced lines always do, other
-/// lines if at least one seed is within the box and no length is given. Seeds of a pattern outside of the box then start no lines.
-bool ends_at_box(const Seeds& seeds, std::span<const Vec3> places, const LineRequest& request) {
+/// Returns whether lines in an analytic field end at its render box, because such a field has no boundary: evenly spaced lines always do,
+/// other lines if at least one seed is within the box and no length is given. Seeds of a pattern outside of the box then start no lines.
+bool ends_at_box(const Seeds& seeds, std::span<const Vec3> positions, const LineRequest& request) {
   if (request.flow.field->is_grid()) return false;
   if (seeds.pattern && seeds.pattern->kind == SeedPattern::Kind::evenly_spaced) return true;
   const auto within = [&](const Vec3& p) { return formula_box(request).contains(p); };
-  return request.box && !(request.length > 0) && std::any_of(places.begin(), places.end(), within);
+  return request.box && !(request.length > 0) && std::any_of(positions.begin(), positions.end(), within);
 }
 
 /// Passes all curves to `visit` at once, if the request visits its lines in blocks.
@@ -185,20 +185,20 @@ Result<Curves> all_at_once(Curves curves, const LineRequest& request) {
 }
 
 /// Traces the lines of many seeds in blocks; the remaining knots determine the size of a block.
-Result<Curves> lines_in_blocks(const Seeds& seeds, std::span<const Vec3> places, const LineRequest& request,
+Result<Curves> lines_in_blocks(const Seeds& seeds, std::span<const Vec3> positions, const LineRequest& request,
                                const flow::BatchOptions& batch, const json::Node& where) {
-  const json::Node& place = seeds.pattern ? seeds.pattern->where : where;
+  const json::Node& node = seeds.pattern ? seeds.pattern->where : where;
   flow::TraceOptions exact;
   exact.length = request.length;
   const flow::BatchTracer tracer(request.flow, batch);
   Curves curves;
   std::string first_error;
-  const std::size_t most = request.visit ? kMaxVisited : request.max_knots;
+  const std::size_t max_knots = request.visit ? kMaxVisited : request.max_knots;
   std::size_t knots = 0, lines = 0, block = kFirstBlock;
-  bool kept = true;
-  for (std::size_t begin = 0; begin < places.size(); begin += block) {
-    if (begin > 0) block = next_block(begin, knots, request.visit ? knots + kBlockKnots : most);
-    const std::span<const Vec3> some = places.subspan(begin, std::min(block, places.size() - begin));
+  bool cache_lines = true;
+  for (std::size_t begin = 0; begin < positions.size(); begin += block) {
+    if (begin > 0) block = next_block(begin, knots, request.visit ? knots + kBlockKnots : max_knots);
+    const std::span<const Vec3> some = positions.subspan(begin, std::min(block, positions.size() - begin));
     auto traced = batch.tolerance <= kExact ? flow::trace_all(request.flow, some, exact) : tracer.trace(some);
     const std::size_t first = curves.size();
     for (std::size_t i = 0; i < traced.size(); ++i) {
@@ -213,78 +213,81 @@ Result<Curves> lines_in_blocks(const Seeds& seeds, std::span<const Vec3> places,
                           traced[i].error());
       if (first_error.empty()) first_error = traced[i].error().message;
     }
-    if (knots > most) return json::error_at(place, too_many_knots_message(places.size(), begin + some.size(), most));
+    if (knots > max_knots) return json::error_at(node, too_many_knots_message(positions.size(), begin + some.size(), max_knots));
     if (request.visit) {
-      CATENA_CHECK(request.visit({std::span(curves).subspan(first), begin + some.size(), places.size()}));
+      CATENA_CHECK(request.visit({std::span(curves).subspan(first), begin + some.size(), positions.size()}));
       // cached only as long as the expected total fits
-      const double expected = static_cast<double>(knots) * static_cast<double>(places.size()) / static_cast<double>(begin + some.size());
-      kept = kept && expected <= static_cast<double>(request.max_cached_knots);
-      if (!kept) curves.clear();
+      const double expected = static_cast<double>(knots) * static_cast<double>(positions.size()) / static_cast<double>(begin + some.size());
+      cache_lines = cache_lines && expected <= static_cast<double>(request.max_cached_knots);
+      if (!cache_lines) curves.clear();
     }
-    if (request.progress) request.progress(begin + some.size(), places.size());
+    if (request.progress) request.progress(begin + some.size(), positions.size());
   }
   if (lines == 0 && !seeds.widget)
-    return json::error_at(place, "none of the " + std::to_string(places.size()) + " seeds starts a line; the first: " + first_error);
+    return json::error_at(node,
+                          "none of the " + std::to_string(positions.size()) + " seeds starts a line; the first error: " + first_error);
   return curves;
 }
 
 }  // namespace
 
-Result<Curves> trace_lines(Scene& scene, const Seeds& seeds, const LineRequest& asked, const json::Node& where) {
-  std::vector<Vec3> places = seeds.points;
+Result<Curves> trace_lines(Scene& scene, const Seeds& seeds, const LineRequest& original, const json::Node& where) {
+  std::vector<Vec3> positions = seeds.points;
   if (seeds.pattern) {
-    CATENA_TRY(places, places_of(scene, *seeds.pattern));
+    CATENA_TRY(positions, places_of(scene, *seeds.pattern));
   }
-  LineRequest request = asked;
+  LineRequest request = original;
   std::optional<field::ClippedVectorField> bounded;
-  if (ends_at_box(seeds, places, request)) {
-    bounded.emplace(*asked.flow.field, formula_box(request));
+  if (ends_at_box(seeds, positions, request)) {
+    bounded.emplace(*original.flow.field, formula_box(request));
     request.flow.field = &*bounded;
   }
-  const bool many = seeds.pattern || (seeds.widget && scene.entities.get<Widget>(seeds.widget).spec.kind == widget::Kind::rake);
-  const double tolerance = request.tolerance > 0 ? request.tolerance : many ? kPatternTolerance : 0;
-  if (!many && tolerance <= kExact) {
-    CATENA_TRY(Curves curves, exact_lines(scene, seeds, asked, where));
+  const bool is_batch = seeds.pattern || (seeds.widget && scene.entities.get<Widget>(seeds.widget).spec.kind == widget::Kind::rake);
+  const double tolerance = request.tolerance > 0 ? request.tolerance : is_batch ? kPatternTolerance : 0;
+  if (!is_batch && tolerance <= kExact) {
+    CATENA_TRY(Curves curves, exact_lines(scene, seeds, original, where));
     if (bounded) end_at_box(curves, request.flow);
-    return all_at_once(std::move(curves), asked);
+    return all_at_once(std::move(curves), original);
   }
   flow::BatchOptions batch;
   batch.length = request.length;
   batch.tolerance = std::max(tolerance, kExact);
   batch.max_step = request.max_step;
-  const json::Node& place = seeds.pattern ? seeds.pattern->where : where;
+  const json::Node& node = seeds.pattern ? seeds.pattern->where : where;
   if (seeds.pattern && seeds.pattern->kind == SeedPattern::Kind::evenly_spaced) {
     flow::EvenSpacingOptions spacing{seeds.pattern->distance, seeds.pattern->termination_ratio, seeds.pattern->start_points,
                                      static_cast<std::size_t>(seeds.pattern->count)};
     if (spacing.distance < 1e-3 * request.flow.field->domain_length())
-      return json::error_at(json::member_or_parent(place, "distance"),
-                            "\"distance\" is " + to_text(spacing.distance) + "; at least a thousandth of the domain's length, " +
+      return json::error_at(json::member_or_parent(node, "distance"),
+                            "\"distance\" is " + to_text(spacing.distance) + "; at least 1/1000 of the domain's length, " +
                                 to_text(1e-3 * request.flow.field->domain_length()) + ", was expected");
     if (spacing.start_points.empty()) spacing.start_points = default_start(request.flow);
     Curves curves = flow::trace_evenly_spaced(request.flow, spacing, batch);
     if (curves.empty())
-      return json::error_at(place, "no line as long as the distance starts at any of the " + std::to_string(spacing.start_points.size()) +
-                                       " places; a \"start\" within the flow was expected");
-    return all_at_once(std::move(curves), asked);
+      return json::error_at(node, "none of the lines from the " + std::to_string(spacing.start_points.size()) +
+                                      " start points is as long as \"distance\"; a \"start\" inside the flow was expected");
+    return all_at_once(std::move(curves), original);
   }
-  return lines_in_blocks(seeds, places, request, batch, where);
+  return lines_in_blocks(seeds, positions, request, batch, where);
 }
 
 namespace {
 TraceProgress while_tracing;
 }
-void set_trace_progress(TraceProgress called) { while_tracing = std::move(called); }
+void set_trace_progress(TraceProgress callback) { while_tracing = std::move(callback); }
 
 namespace {
 
-/// The cached lines of a set, traced if a widget or another step has changed them. With `visit` new lines are passed to it in blocks, and
-/// are cached only if they have at most `most_kept` knots.
-Result<MadeLines*> made_lines(Scene& scene, Entity entity, const std::function<Outcome(const LineBlock&)>& visit, std::size_t most_kept) {
+/// Returns the cached lines of a set, traced if a widget or another step has changed them. With `visit` new lines are passed to it in
+/// blocks, and are cached only if they have at most `max_cached_knots` knots.
+Result<MadeLines*> made_lines(Scene& scene, Entity entity, const std::function<Outcome(const LineBlock&)>& visit,
+                              std::size_t max_cached_knots) {
   const StreamlineSet& set = scene.entities.get<StreamlineSet>(entity);
   CATENA_TRY(const field::AnyField any, resolve_field(scene, set.field, set.where));
   if (!any.vector)
-    return json::error_at(json::member_or_parent(set.where, "field"), in_quotes(scene.entities.get<Name>(set.field).value) +
-                                                                          " is a scalar field; expected a vector field for streamlines");
+    return json::error_at(
+        json::member_or_parent(set.where, "field"),
+        in_quotes(scene.entities.get<Name>(set.field).value) + " is a scalar field; a vector field was expected for streamlines");
   if (!scene.cache.has<MadeLines>(entity)) scene.cache.emplace<MadeLines>(entity);
   MadeLines& made = scene.cache.get<MadeLines>(entity);
   if (!made.released && made.field_version == any.vector->version() && made.points == set.seeds.points) {
@@ -295,7 +298,7 @@ Result<MadeLines*> made_lines(Scene& scene, Entity entity, const std::function<O
   request.box = scene.entities.get<FieldSource>(set.field).box;
   const std::string& name = scene.entities.get<Name>(set.field).value;
   if (while_tracing) request.progress = [&](std::size_t seeds, std::size_t of) { while_tracing(name, seeds, of); };
-  MadeLines fresh{any.vector->version(), set.seeds.points, {}, 0, false, {}};
+  MadeLines new_lines{any.vector->version(), set.seeds.points, {}, 0, false, {}};
   std::size_t knots = 0;
   const auto count = [&](std::span<const flow::CurvePtr> curves) {
     for (const flow::CurvePtr& curve : curves) {
@@ -305,8 +308,8 @@ Result<MadeLines*> made_lines(Scene& scene, Entity entity, const std::function<O
         lo = glm::min(lo, knot.p);
         hi = glm::max(hi, knot.p);
       }
-      fresh.bounds.extend(lo);
-      fresh.bounds.extend(hi);
+      new_lines.bounds.extend(lo);
+      new_lines.bounds.extend(hi);
     }
   };
   if (visit) {
@@ -314,16 +317,16 @@ Result<MadeLines*> made_lines(Scene& scene, Entity entity, const std::function<O
       count(block.curves);
       return visit(block);
     };
-    request.max_cached_knots = most_kept;
+    request.max_cached_knots = max_cached_knots;
   }
   auto lines = trace_lines(scene, set.seeds, request, json::member_or_parent(set.where, "seeds"));
   if (while_tracing) while_tracing(name, 0, 0);
-  CATENA_TRY(fresh.curves, std::move(lines));
-  if (!visit) count(fresh.curves);
-  fresh.released = knots > 0 && fresh.curves.empty();
+  CATENA_TRY(new_lines.curves, std::move(lines));
+  if (!visit) count(new_lines.curves);
+  new_lines.released = knots > 0 && new_lines.curves.empty();
   static std::atomic<std::uint64_t> versions{0};
-  fresh.version = ++versions;
-  made = std::move(fresh);
+  new_lines.version = ++versions;
+  made = std::move(new_lines);
   if (set.seeds.widget) drop_unused_curves(scene);
   return &made;
 }
@@ -335,8 +338,8 @@ Result<Curves> resolve_lines(Scene& scene, Entity set) {
   return made->curves;
 }
 
-Outcome visit_lines(Scene& scene, Entity set, const std::function<Outcome(const LineBlock&)>& visit, std::size_t most_kept) {
-  CATENA_CHECK(made_lines(scene, set, visit, most_kept));
+Outcome visit_lines(Scene& scene, Entity set, const std::function<Outcome(const LineBlock&)>& visit, std::size_t max_cached_knots) {
+  CATENA_CHECK(made_lines(scene, set, visit, max_cached_knots));
   return Done{};
 }
 
@@ -380,20 +383,20 @@ bool same_lines(const Scene& a_scene, const StreamlineSet& a, const Scene& b_sce
 
 }  // namespace
 
-void transfer_lines(Scene& old, Scene& fresh) {
+void transfer_lines(Scene& old, Scene& reloaded) {
   std::vector<Entity> sets;
-  fresh.entities.each<StreamlineSet>([&](Entity e, const StreamlineSet&) {
-    if (!fresh.cache.has<MadeLines>(e)) sets.push_back(e);
+  reloaded.entities.each<StreamlineSet>([&](Entity e, const StreamlineSet&) {
+    if (!reloaded.cache.has<MadeLines>(e)) sets.push_back(e);
   });
   for (const Entity e : sets) {
     Entity found;
     old.cache.each<MadeLines>([&](Entity before, const MadeLines& made) {
       const StreamlineSet& set = old.entities.get<StreamlineSet>(before);
-      if (made.field_version == loaded_version(fresh, fresh.entities.get<StreamlineSet>(e).field) &&
-          same_lines(old, set, fresh, fresh.entities.get<StreamlineSet>(e)))
+      if (made.field_version == loaded_version(reloaded, reloaded.entities.get<StreamlineSet>(e).field) &&
+          same_lines(old, set, reloaded, reloaded.entities.get<StreamlineSet>(e)))
         found = before;
     });
-    if (found) fresh.cache.emplace<MadeLines>(e, old.cache.get<MadeLines>(found));
+    if (found) reloaded.cache.emplace<MadeLines>(e, old.cache.get<MadeLines>(found));
   }
 }
 

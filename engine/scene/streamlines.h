@@ -30,7 +30,7 @@ struct LineBlock {
   std::size_t seeds_done = 0, seeds_total = 0;  ///< Number of seeds processed with this block; number of all seeds
 };
 
-/// What to trace, and how.
+/// Field of the lines to trace, and the parameters of tracing.
 struct LineRequest {
   flow::Flow flow;                       ///< Vector field, line field or not, minimum speed
   double length = 0;                     ///< Maximum arc length in each direction, world units; 0: 10 L, of a formula at most to `box`
@@ -44,14 +44,14 @@ struct LineRequest {
   std::size_t max_cached_knots = knot_limit();       ///< With `visit`: a set of more knots is not returned
 };
 
-/// Returns the error message for lines of `seeds` seeds that have more than `most` knots together after `done` seeds.
-std::string too_many_knots_message(std::size_t seeds, std::size_t done, std::size_t most);
+/// Returns the error message for lines of `seeds` seeds that have more than `max_knots` knots together after `done` seeds.
+std::string too_many_knots_message(std::size_t seeds, std::size_t done, std::size_t max_knots);
 
 /// Progress callback: called repeatedly while the lines of a pattern are traced in the named field, and at the end with seeds = of = 0.
 /// Called on any thread that builds frames.
 using TraceProgress = std::function<void(const std::string& field, std::size_t seeds, std::size_t of)>;
 /// Sets the callback. Call before any set is traced.
-void set_trace_progress(TraceProgress called);
+void set_trace_progress(TraceProgress callback);
 
 /// Traces all lines of the seeds. Error, at the seed's position in the file: a listed point that starts no line, or a pattern of which no
 /// point starts one. Seeds of a widget, which the user can move anywhere, are left out instead.
@@ -68,14 +68,14 @@ Bounds lines_bounds(const Scene& scene, Entity set);
 /// Maximum number of knots of a set that are cached for further use: 72 MB.
 inline constexpr std::size_t kMaxCachedKnots = 1'000'000;
 /// Passes the lines of a set to `visit` block by block, each line once, for callers that need them only once: 1e5 lines are gigabytes. If
-/// the first blocks predict more than `most_kept` knots, the lines are not cached, and resolve_lines would trace them again; lines_version
-/// and lines_bounds return the same as after resolve_lines.
+/// the first blocks predict more than `max_cached_knots` knots, the lines are not cached, and resolve_lines would trace them again;
+/// lines_version and lines_bounds return the same as after resolve_lines.
 Outcome visit_lines(Scene& scene, Entity set, const std::function<Outcome(const LineBlock&)>& visit,
-                    std::size_t most_kept = kMaxCachedKnots);
+                    std::size_t max_cached_knots = kMaxCachedKnots);
 
 /// Drops the cached curves that have no other owner (no rendered line, no link of a program).
 void drop_unused_curves(Scene& scene);
-/// Hands over the lines of sets in `old` to the sets in `fresh` with the same field, seeds and tracing (transfer_state, document.h).
-void transfer_lines(Scene& old, Scene& fresh);
+/// Hands over the lines of sets in `old` to the sets in `reloaded` with the same field, seeds and tracing (transfer_state, document.h).
+void transfer_lines(Scene& old, Scene& reloaded);
 
 }  // namespace catena::scene

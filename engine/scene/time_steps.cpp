@@ -24,20 +24,21 @@ int steps_of(const FieldSource& source) {
   return std::max(1, static_cast<int>(step_times(source).size()));
 }
 
-/// The time stated in each file; for files that would take long to read only in the first and the last one; empty if a file states none.
+/// Returns the time stated in each file; for files that would take long to read only in the first and the last one; empty if a file states
+/// none.
 std::vector<double> times_of_files(const std::vector<std::string>& files) {
-  constexpr std::uint64_t kMostBytes = 64 << 20, kBytesOfStart = 1 << 20;  // starting a reader costs as much as a megabyte
+  constexpr std::uint64_t kMaxBytes = 64 << 20, kBytesOfStart = 1 << 20;  // starting a reader takes as long as reading a megabyte
   std::uint64_t bytes = 0;
   for (const std::string& file : files) {
     std::error_code code;
     const std::uintmax_t size = std::filesystem::file_size(file, code);
     bytes += kBytesOfStart + (code ? 0 : size);
   }
-  const std::vector<std::string> asked = bytes <= kMostBytes ? files : std::vector<std::string>{files.front(), files.back()};
+  const std::vector<std::string> files_to_read = bytes <= kMaxBytes ? files : std::vector<std::string>{files.front(), files.back()};
   std::vector<double> times;
-  for (const std::string& file : asked)
-    if (const std::vector<double> stated = field::read_times(file); !stated.empty()) times.push_back(stated.front());
-  return times.size() == asked.size() ? times : std::vector<double>();
+  for (const std::string& file : files_to_read)
+    if (const std::vector<double> file_times = field::read_times(file); !file_times.empty()) times.push_back(file_times.front());
+  return times.size() == files_to_read.size() ? times : std::vector<double>();
 }
 
 }  // namespace
@@ -71,19 +72,19 @@ field::LoadRequest request_at(const std::string& path, int step) {
 }
 
 int step_count(const Scene& scene) {
-  int most = 1;
-  scene.entities.each<FieldSource>([&](Entity, const FieldSource& source) { most = std::max(most, steps_of(source)); });
+  int max_steps = 1;
+  scene.entities.each<FieldSource>([&](Entity, const FieldSource& source) { max_steps = std::max(max_steps, steps_of(source)); });
   each_shape(scene, [&](const auto& shape) {
-    most = std::max(most, static_cast<int>(std::max(shape.steps.series.size(), shape.steps.times.size())));
+    max_steps = std::max(max_steps, static_cast<int>(std::max(shape.steps.series.size(), shape.steps.times.size())));
   });
-  return most;
+  return max_steps;
 }
 
 std::optional<StepTime> current_step_time(const Scene& scene) {
   std::optional<StepTime> time;
   const auto step = static_cast<std::size_t>(scene.time.step);
   scene.entities.each<FieldSource>([&](Entity, const FieldSource& source) {
-    // each file of a pattern states its own time
+    // each file of a pattern has its own time
     const std::span<const double> times = source.series.empty() ? step_times(source) : source.loaded.times;
     const std::size_t at = source.series.empty() ? step : 0;
     if (!time && !source.has_own_step && at < times.size() && step < static_cast<std::size_t>(steps_of(source)))
@@ -123,11 +124,11 @@ std::string format_time(const Scene& scene) {
 }
 
 std::string substitute_time(std::string title, const Scene& scene) {
-  const auto replace = [&](std::string_view mark, const auto& text) {
-    for (std::size_t at = title.find(mark); at != std::string::npos; at = title.find(mark, at)) {
-      const std::string shown = text();
-      title.replace(at, mark.size(), shown);
-      at += shown.size();
+  const auto replace = [&](std::string_view placeholder, const auto& text) {
+    for (std::size_t at = title.find(placeholder); at != std::string::npos; at = title.find(placeholder, at)) {
+      const std::string value = text();
+      title.replace(at, placeholder.size(), value);
+      at += value.size();
     }
   };
   replace("{time}", [&] { return format_time(scene); });
@@ -164,9 +165,9 @@ std::vector<field::LoadRequest> prefetch_requests(const Scene& scene, int step) 
   std::vector<field::LoadRequest> requests;
   scene.entities.each<FieldSource>([&](Entity, const FieldSource& source) {
     if (source.loaded.get() == nullptr || steps_of(source) < 2) return;
-    FieldSource ahead = source;
-    assign_step(ahead, step);
-    requests.push_back(*ahead.file);
+    FieldSource future = source;
+    assign_step(future, step);
+    requests.push_back(*future.file);
   });
   return requests;
 }

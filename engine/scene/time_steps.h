@@ -20,7 +20,7 @@ TimeSteps list_time_steps(const std::string& path, const field::AnyField& loaded
 
 /// Returns the request for one step of a file or pattern; beyond the last file of a pattern, the last file.
 field::LoadRequest request_at(field::LoadRequest request, int step);
-/// Same by the path alone.
+/// Returns the request for one step of a file or pattern that is given by its path alone.
 field::LoadRequest request_at(const std::string& path, int step);
 
 /// Returns the number of steps of the source with the most; 1: nothing changes. The steps within a file are known after it is loaded.
@@ -37,7 +37,7 @@ std::string format_time(const Scene& scene);
 /// Returns the title with `{time}` replaced by format_time() and `{step}` by the number of the current step.
 std::string substitute_time(std::string title, const Scene& scene);
 
-/// Sets the current step: changes the source of what follows it, and drops loaded data and the scene's cache accordingly. Loads nothing.
+/// Sets the current step: changes the sources that follow it, and drops loaded data and the scene's cache accordingly. Loads nothing.
 /// Returns false if no source has changed.
 bool set_step(Scene& scene, int step);
 /// Returns the requests that the loaded fields will need at a step, so that it can be loaded ahead (engine/io/field_cache.h).

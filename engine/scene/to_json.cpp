@@ -7,7 +7,7 @@
 namespace catena::scene {
 namespace {
 
-/// A JSON array of the rows' texts: [a, b, ...].
+/// Returns a JSON array of the rows' texts: [a, b, ...].
 template <class Rows, class Text>
 std::string table_of(const Rows& rows, Text&& text) {
   std::string out = "[";

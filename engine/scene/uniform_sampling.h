@@ -23,19 +23,19 @@ struct Domain {
 
 /// Result of the sampling.
 struct UniformSamples {
-  std::vector<Vec3> positions;  ///< World; empty also if there are more than `most`
+  std::vector<Vec3> positions;  ///< World; empty also if there are more than `max_count`
   /// Approximate number of points; if it exceeds the maximum allowed, `positions` is empty.
   double expected_count = 0;
 };
 
-/// Points on the part of a plane, or in the volume, of a domain. `spacing`: world units; `most`: maximum number of points.
-UniformSamples sample_plane(const Domain& domain, const Vec3& point, const Vec3& normal, double spacing, std::size_t most);
-UniformSamples sample_box(const Domain& domain, double spacing, std::size_t most);
+/// Points on the part of a plane, or in the volume, of a domain. `spacing`: world units; `max_count`: maximum number of points.
+UniformSamples sample_plane(const Domain& domain, const Vec3& point, const Vec3& normal, double spacing, std::size_t max_count);
+UniformSamples sample_box(const Domain& domain, double spacing, std::size_t max_count);
 
 /// Points on a level set in the field's domain. The level is searched on a grid of the field's voxels, at most 128 cells per axis: in
 /// larger grids a sheet or bubble thinner than a 128th of the domain may be missed. Only points with valid values.
-UniformSamples sample_isosurface(const field::ScalarField& field, double level, double spacing, std::size_t most);
+UniformSamples sample_isosurface(const field::ScalarField& field, double level, double spacing, std::size_t max_count);
 /// Points on the triangles of a mesh.
-UniformSamples sample_mesh(const mesh::TriangleMesh& mesh, double spacing, std::size_t most);
+UniformSamples sample_mesh(const mesh::TriangleMesh& mesh, double spacing, std::size_t max_count);
 
 }  // namespace catena::scene

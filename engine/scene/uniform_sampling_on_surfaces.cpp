@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kFineness = 4;       ///< ratio of the spacing to that of the candidates
 constexpr double kFinest = 4;         ///< candidates per step^2 of area, on very small triangles
-constexpr double kMostCells = 128;    ///< along each axis of the grid in which a level is searched
+constexpr double kMaxCells = 128;     ///< along each axis of the grid in which a level is searched
 constexpr double kCellsByArea = 1.5;  ///< cells intersected by a surface with the area of one cell face, averaged over its directions
 constexpr double kPacking = 0.65;     ///< approximate number of samples per spacing^2 of area
 constexpr int kNewtonSteps = 8;
@@ -56,7 +56,7 @@ class Chosen {
   std::unordered_map<std::uint64_t, std::vector<Vec3>> cubes_;
 };
 
-UniformSamples chosen_of(std::vector<Candidate> candidates, double spacing, std::size_t most) {
+UniformSamples chosen_of(std::vector<Candidate> candidates, double spacing, std::size_t max_count) {
   UniformSamples even;
   if (candidates.empty()) return even;
   std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.order < b.order; });
@@ -69,7 +69,7 @@ UniformSamples chosen_of(std::vector<Candidate> candidates, double spacing, std:
     even.positions.push_back(candidate.p);
   }
   even.expected_count = static_cast<double>(even.positions.size());
-  if (even.positions.size() > most) even.positions.clear();
+  if (even.positions.size() > max_count) even.positions.clear();
   return even;
 }
 
@@ -80,7 +80,7 @@ class LevelCells {
     const field::Box& box = field.index_box();
     for (int a = 0; a < 3; ++a) {
       const double extent = box.hi[a] - box.lo[a];
-      count_[a] = std::max(1, static_cast<int>(std::min(kMostCells, field.is_grid() ? std::ceil(extent) : kMostCells)));
+      count_[a] = std::max(1, static_cast<int>(std::min(kMaxCells, field.is_grid() ? std::ceil(extent) : kMaxCells)));
       step_[a] = extent / count_[a];
     }
     values_.resize(nodes(0) * nodes(1) * nodes(2));
@@ -93,7 +93,7 @@ class LevelCells {
     });
   }
 
-  /// The cells that contain the level.
+  /// Returns the cells that contain the level.
   std::vector<std::array<int, 3>> holders() const {
     std::vector<std::array<int, 3>> cells;
     for (int k = 0; k < count_[2]; ++k)
@@ -103,7 +103,7 @@ class LevelCells {
     return cells;
   }
 
-  /// Approximate area of the level in this number of cells.
+  /// Returns the approximate area of the level in this number of cells.
   double area(std::size_t cells) const {
     const Vec3 x = edge(0, 1), y = edge(1, 1), z = edge(2, 1);
     const double flat = std::max({norm(cross(x, y)), norm(cross(y, z)), norm(cross(z, x))});
@@ -146,14 +146,14 @@ class LevelCells {
   void refine(const Vec3& centre, const Vec3& size, std::uint64_t order, std::vector<Candidate>& candidates) {
     const double lengths[3] = {norm(edge(0, size.x)), norm(edge(1, size.y)), norm(edge(2, size.z))};
     const int longest = static_cast<int>(std::max_element(lengths, lengths + 3) - lengths);
-    const double reach = 0.5 * (lengths[0] + lengths[1] + lengths[2]);
+    const double radius = 0.5 * (lengths[0] + lengths[1] + lengths[2]);
     Vec3 middle = world(centre);
     if (lengths[longest] <= spacing_ / kFineness) {
-      if (moves_to_level(middle, reach)) candidates.push_back({order, middle});
+      if (moves_to_level(middle, radius)) candidates.push_back({order, middle});
       return;
     }
     const field::ScalarSample sample = field_.sample(middle, cursor_);
-    if (size != Vec3(1.0) && std::fabs(sample.value - level_) > 2 * reach * norm(sample.gradient)) return;
+    if (size != Vec3(1.0) && std::fabs(sample.value - level_) > 2 * radius * norm(sample.gradient)) return;
     Vec3 half = size, aside(0.0);
     half[longest] *= 0.5;
     aside[longest] = 0.5 * half[longest];
@@ -161,18 +161,18 @@ class LevelCells {
     refine(centre + aside, half, mix_bits(order + 1), candidates);
   }
 
-  /// Moves p to the level by Newton steps along the gradient; false if it does not converge within the distance `reach`.
-  bool moves_to_level(Vec3& p, double reach) {
+  /// Moves p to the level by Newton steps along the gradient; false if it does not converge within the distance `radius`.
+  bool moves_to_level(Vec3& p, double radius) {
     const Vec3 from = p;
     for (int i = 0; i <= kNewtonSteps; ++i) {
       const field::ScalarSample sample = field_.sample(p, cursor_);
-      const double slope2 = dot(sample.gradient, sample.gradient), away = level_ - sample.value;
-      if (!(slope2 > 0) || !std::isfinite(slope2) || !std::isfinite(away)) return false;
-      if (std::fabs(away) <= kRoot * reach * std::sqrt(slope2)) return sample.inside;
-      Vec3 step = away / slope2 * sample.gradient;
-      if (const double length = norm(step); length > reach) step *= reach / length;
+      const double slope2 = dot(sample.gradient, sample.gradient), difference = level_ - sample.value;
+      if (!(slope2 > 0) || !std::isfinite(slope2) || !std::isfinite(difference)) return false;
+      if (std::fabs(difference) <= kRoot * radius * std::sqrt(slope2)) return sample.inside;
+      Vec3 step = difference / slope2 * sample.gradient;
+      if (const double length = norm(step); length > radius) step *= radius / length;
       p += step;
-      if (norm(p - from) > reach) return false;
+      if (norm(p - from) > radius) return false;
     }
     return false;
   }
@@ -185,9 +185,9 @@ class LevelCells {
   field::Cursor cursor_;
 };
 
-/// Calls place(p) for points of a triangle in rows along its longest edge, closer together than `step`.
+/// Calls visit(p) for points of a triangle in rows along its longest edge, closer together than `step`.
 template <class Place>
-void each_place(const std::array<Vec3, 3>& corner, double step, Place&& place) {
+void each_position(const std::array<Vec3, 3>& corner, double step, Place&& visit) {
   std::size_t longest = 0;
   for (std::size_t k = 1; k < 3; ++k)
     if (norm(corner[(k + 1) % 3] - corner[k]) > norm(corner[(longest + 1) % 3] - corner[longest])) longest = k;
@@ -196,49 +196,49 @@ void each_place(const std::array<Vec3, 3>& corner, double step, Place&& place) {
   const double rows = std::max(1.0, std::ceil(height / step));
   for (double j = 0; j < rows; ++j) {
     const double t = (j + 0.5) / rows, columns = std::max(1.0, std::ceil((1 - t) * length / step));
-    for (double i = 0; i < columns; ++i) place(a + t * side + ((1 - t) * (i + 0.5) / columns) * base);
+    for (double i = 0; i < columns; ++i) visit(a + t * side + ((1 - t) * (i + 0.5) / columns) * base);
   }
 }
 
 }  // namespace
 
-UniformSamples sample_isosurface(const field::ScalarField& field, double level, double spacing, std::size_t most) {
+UniformSamples sample_isosurface(const field::ScalarField& field, double level, double spacing, std::size_t max_count) {
   LevelCells cells(field, level, spacing);
   const auto holders = cells.holders();
-  const double wanted = kPacking * cells.area(holders.size()) / (spacing * spacing);
+  const double expected = kPacking * cells.area(holders.size()) / (spacing * spacing);
   // factor 2, because the area is an estimate
-  if (!(wanted <= 2 * static_cast<double>(most) + 1000)) return {{}, wanted};
+  if (!(expected <= 2 * static_cast<double>(max_count) + 1000)) return {{}, expected};
   std::vector<Candidate> candidates;
   candidates.reserve(holders.size());
   for (const auto& cell : holders) cells.add_places(cell, candidates);
-  return chosen_of(std::move(candidates), spacing, most);
+  return chosen_of(std::move(candidates), spacing, max_count);
 }
 
-UniformSamples sample_mesh(const mesh::TriangleMesh& mesh, double spacing, std::size_t most) {
+UniformSamples sample_mesh(const mesh::TriangleMesh& mesh, double spacing, std::size_t max_count) {
   const double step = spacing / kFineness;
   const auto corners = [&](std::size_t f) {
     const mesh::Triangle& t = mesh.triangles()[f];
     return std::array<Vec3, 3>{mesh.vertices()[t[0]], mesh.vertices()[t[1]], mesh.vertices()[t[2]]};
   };
   // number of candidates: by area and, for slivers, by length
-  double wanted = 0;
+  double expected = 0;
   for (std::size_t f = 0; f < mesh.triangles().size(); ++f) {
     const auto c = corners(f);
     const double longest = std::max({norm(c[1] - c[0]), norm(c[2] - c[1]), norm(c[0] - c[2])});
     const double area = 0.5 * norm(cross(c[1] - c[0], c[2] - c[0])) / (spacing * spacing);
-    wanted += kPacking * std::max(area, longest > spacing ? longest / spacing / kFineness : 0);
+    expected += kPacking * std::max(area, longest > spacing ? longest / spacing / kFineness : 0);
   }
-  if (!(wanted <= 4 * static_cast<double>(most) + 1000)) return {{}, wanted};
+  if (!(expected <= 4 * static_cast<double>(max_count) + 1000)) return {{}, expected};
   std::vector<Candidate> candidates;
   for (std::size_t f = 0; f < mesh.triangles().size(); ++f) {
     const auto c = corners(f);
     // very small triangles contribute candidates in proportion to their area, so that their number does not grow with the mesh
-    const double share = kFinest * 0.5 * norm(cross(c[1] - c[0], c[2] - c[0])) / (step * step);
-    if (share < 1 && static_cast<double>(mix_bits(f)) > share * 0x1p64) continue;
+    const double probability = kFinest * 0.5 * norm(cross(c[1] - c[0], c[2] - c[0])) / (step * step);
+    if (probability < 1 && static_cast<double>(mix_bits(f)) > probability * 0x1p64) continue;
     std::uint64_t number = 0;
-    each_place(c, step, [&](const Vec3& p) { candidates.push_back({mix_bits(mix_bits(f + 1) + number++), p}); });
+    each_position(c, step, [&](const Vec3& p) { candidates.push_back({mix_bits(mix_bits(f + 1) + number++), p}); });
   }
-  return chosen_of(std::move(candidates), spacing, most);
+  return chosen_of(std::move(candidates), spacing, max_count);
 }
 
 }  // namespace catena::scene

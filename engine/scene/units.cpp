@@ -11,7 +11,7 @@ namespace {
 
 Result<std::string> checked(const json::Node& node) {
   if (node.kind != json::Kind::string || !field::is_unit_name(node.string))
-    return json::error_at(node, "\"" + node.label + "\" is no unit; a word of at most 24 bytes like \"m/s\" was expected");
+    return json::error_at(node, "\"" + node.label + "\" is not a unit; a word of at most 24 bytes like \"m/s\" was expected");
   return node.string;
 }
 
@@ -48,10 +48,10 @@ Outcome read_unit(Scene& scene, Entity field, const json::Node& node) {
 }
 
 Part unit_length_part() {
-  const Key key = schema::text("unit_length", "The word shown after lengths, such as `\"mm\"`; it changes no number.")
+  const Key key = schema::text("unit_length", "Unit shown after lengths, such as `\"mm\"`. Lengths are not converted.")
                       .with_size(0, 24)
-                      .with_default("the file's");
-  return {{"unit_length", "The word shown after lengths.", schema::Section::Layout::value, {key}},
+                      .with_default("the unit in the file");
+  return {{"unit_length", "Unit shown after lengths.", schema::Section::Layout::value, {key}},
           [](Scene& scene, const json::Node& node) -> Outcome {
             CATENA_TRY(std::string word, checked(node));
             scene.entities.emplace<LengthUnit>(scene.entities.create(), {std::move(word)});

@@ -8,7 +8,7 @@
 
 namespace catena::scene {
 
-/// Component beside FieldSource: unit of the field's values, as stated in the scene.
+/// Component of an entity with a FieldSource: unit of the field's values, as stated in the scene.
 struct Unit {
   std::string symbol;  ///< At most 24 bytes
 };

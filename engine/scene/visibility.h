@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// "visible": false for drawables (drawable.h): the object is part of the scene but
-/// not rendered. Its index in lists, objects bound to it, and haptics are unaffected. Frame thread.
+/// "visible": false for drawables (drawable.h): the object is part of the scene but not rendered. Its index in lists, objects bound to it,
+/// and haptics are unaffected. Frame thread.
 #pragma once
 #include <vector>
 

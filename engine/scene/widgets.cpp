@@ -25,7 +25,7 @@ Result<double> length_of(Scene& scene, const Widget& widget) {
       longest = std::max(longest, length);
     }
   if (longest > 0) return longest;
-  // nothing is drawn: use the haptic objects
+  // without rendered objects the haptic objects are used
   std::vector<std::pair<Entity, json::Node>> fields;
   scene.entities.each<Link>([&](Entity, const Link& link) {
     if (const json::Node* field = link.node.find("field"); field != nullptr && field->kind == json::Kind::string)
@@ -50,7 +50,7 @@ void complete_sizes(widget::Spec& spec) {
   fit(spec.grab_distance, (plane ? kPlaneNear : kHandleNear) * length);
   fit(spec.step, kStep * length);
   if (!plane) return;
-  // if one of the two is given, the other keeps the default ratio to it
+  // if only one of the two is given, the other follows from the default ratio
   const double snap = spec.snap, release = spec.release;
   fit(spec.snap, release > 0 ? kSnap / kRelease * release : kSnap * length);
   fit(spec.release, snap > 0 ? kRelease / kSnap * snap : kRelease * length);
@@ -65,11 +65,11 @@ Outcome load_isolevel(Scene& scene, Entity entity) {
                                                                       " is a vector field; a scalar field was expected for an isolevel");
   Widget& widget = scene.entities.get<Widget>(entity);
   field::Cursor cursor;
-  const field::ScalarSample stated = any.scalar->sample(widget.spec.pose.points[0], cursor);
-  if (widget.spec.revision == 0 && (!stated.inside || !std::isfinite(stated.value)))
-    return json::error_at(json::member_or_parent(where, "position"), "the isolevel's place lies outside the domain of field " +
+  const field::ScalarSample initial = any.scalar->sample(widget.spec.pose.points[0], cursor);
+  if (widget.spec.revision == 0 && (!initial.inside || !std::isfinite(initial.value)))
+    return json::error_at(json::member_or_parent(where, "position"), "the isolevel's position is outside the domain of field " +
                                                                          in_quotes(scene.entities.get<Name>(field).value) +
-                                                                         ", or has no value there; a place within it was expected");
+                                                                         ", or in a hole; a position with a value was expected");
   const field::ScalarSample now = any.scalar->sample(widget.report.pose.points[0], cursor);
   if (std::isfinite(now.value)) widget.report.value = now.value;
   widget.spec.field = any.scalar;
@@ -122,10 +122,10 @@ Outcome set_widget_pose(Scene& scene, Entity entity, const widget::Pose& pose) {
   widget::Spec& spec = widget.spec;
   const bool two = spec.kind == Kind::rake || spec.kind == Kind::box || spec.kind == Kind::ruler, plane = spec.kind == Kind::cutting_plane;
   if (!is_finite(pose.points[0]) || (two && !is_finite(pose.points[1])) || (plane && !is_finite(pose.orientation)))
-    return Error{"a place or orientation is not finite; finite numbers were expected"};
+    return Error{"a position or orientation is not finite; finite numbers were expected"};
   for (int i = 0; i < 3; ++i)
     if (spec.kind == Kind::box && !(pose.points[0][i] < pose.points[1][i]))
-      return Error{"the box has no inside; its high corner above the low one on every axis was expected"};
+      return Error{"the box is empty; \"max\" above \"min\" on every axis was expected"};
   widget::Pose to = spec.pose;
   to.points[0] = pose.points[0];
   if (two) to.points[1] = pose.points[1];

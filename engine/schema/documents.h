@@ -27,15 +27,16 @@ std::string json_schema(const std::vector<Section>& components, const std::strin
 std::string describe_type(const Key& key);
 /// Returns an example of a key's value as JSON text, of its type and within its limits. Names are placeholders.
 std::string example_value(const Key& key);
-/// Returns a table | key | type | unit | range | default | example | meaning | with one row per key. The keys of nested objects are not included.
+/// Returns a table | key | type | unit | range | default | example | meaning | with one row per key. The keys of nested objects are not
+/// included.
 std::string markdown_table(const Keys& keys);
 
 /// Returns all tables of a section with their names: "volumes", "fields/raw" (a variant), "slices.contours" (a nested object).
 std::vector<std::pair<std::string, std::string>> markdown_tables(const Section& component);
 
 /// Returns the output of the `keys` subcommand of `command`: help and tables of the section `name`, or of all sections when it is empty,
-/// with `behind` appended to each table. Error: "COMMAND: "x" is no part of WHOLE; one of ... was expected".
+/// with `behind` appended to each table. Error: "COMMAND: "x" is not a part of DOCUMENT; one of ... was expected".
 Result<std::string> format_keys(const std::vector<Section>& parts, const std::string& name, const std::string& command,
-                                const std::string& whole, const char* behind = "");
+                                const std::string& document_name, const char* behind = "");
 
 }  // namespace catena::schema

@@ -60,8 +60,8 @@ std::string example_value(const Key& key) {
     case ValueType::number: {
       // the default, or the number with which its description begins
       const std::string first = text.substr(0, text.find_first_of(" ;,:"));
-      const auto stated = parse_double(first);
-      return stated && *stated != 0 && key.limits.contains(*stated) ? first : to_text(example_number(key, 0.5));
+      const auto value = parse_double(first);
+      return value && *value != 0 && key.limits.contains(*value) ? first : to_text(example_number(key, 0.5));
     }
     case ValueType::integer:
       return to_text(example_number(key, 1));
@@ -91,8 +91,8 @@ std::string example_value(const Key& key) {
     case ValueType::points:
       return "[[0, 0, 0], [1, 0, 0]]";
     case ValueType::table: {
-      const std::string rest = repeated("0.5", key.count - 1);
-      const std::string columns = key.count > 1 ? ", " + rest.substr(1) : "]";
+      const std::string others = repeated("0.5", key.count - 1);
+      const std::string columns = key.count > 1 ? ", " + others.substr(1) : "]";
       return "[[0" + columns + ", [1" + columns + "]";
     }
     case ValueType::rotation:

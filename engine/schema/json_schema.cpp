@@ -39,9 +39,9 @@ std::string list_schema(const std::string& item, const Key& key) {
 
 /// Schema of a value mapped from a field (haptics/constraints/common/link_schema.h).
 const char* const kFieldMap =
-    R"({"type": "object", "required": ["field", "map"], "properties": {"field": {"type": "string", "description": "The field that is asked, at the proxy."}, "map": {"type": "array", "minItems": 1, "description": "Pairs [value, output], values rising, linear between them.", "items": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}}, "quantity": {"enum": ["value", "gradient", "magnitude"]}, "normalise": {"type": "boolean", "description": "The values of the map run from 0 to 1 over the range of the field."}, "outside": {"type": "number", "description": "The output where the field says nothing; by default the first one."}}, "additionalProperties": false})";
+    R"({"type": "object", "required": ["field", "map"], "properties": {"field": {"type": "string", "description": "Field that is evaluated at the proxy."}, "map": {"type": "array", "minItems": 1, "description": "Pairs [value, output] with increasing values; linear interpolation between them.", "items": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}}, "quantity": {"enum": ["value", "gradient", "magnitude"]}, "normalise": {"type": "boolean", "description": "Whether the values of `map` are fractions of the range of the field, from 0 to 1."}, "outside": {"type": "number", "description": "Output where the field has no value. Default: the first output of `map`."}}, "additionalProperties": false})";
 const char* const kWidget =
-    R"({"type": "object", "required": ["widget"], "properties": {"widget": {"type": "string", "description": "The widget that it follows."}}, "additionalProperties": false})";
+    R"({"type": "object", "required": ["widget"], "properties": {"widget": {"type": "string", "description": "Name of the widget that sets the value."}}, "additionalProperties": false})";
 const char* const kRotation =
     R"("oneOf": [{"type": "array", "items": {"type": "number"}, "minItems": 9, "maxItems": 9}, {"type": "array", "items": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}, "minItems": 3, "maxItems": 3}, {"type": "object", "required": ["axis", "angle_deg"], "properties": {"axis": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}, "angle_deg": {"type": "number"}}, "additionalProperties": false}])";
 
@@ -78,10 +78,10 @@ std::string body(const Key& key) {
     case ValueType::null:
       return R"("type": "null")";
     case ValueType::object: {
-      // an object without declared keys: another module reads it
+      // an object without declared keys is read by another module
       if (key.members->empty()) return R"("type": "object")";
-      const std::string whole = object_schema(*key.members);
-      return whole.substr(1, whole.size() - 2);
+      const std::string object_text = object_schema(*key.members);
+      return object_text.substr(1, object_text.size() - 2);
     }
     case ValueType::any_of: {
       if (key.alternatives.empty()) return R"("type": ["array", "object"])";

@@ -9,7 +9,7 @@ namespace catena::schema {
 
 namespace {
 
-Key made(const std::string& name, ValueType form, const std::string& unit, const std::string& help) {
+Key make_key(const std::string& name, ValueType form, const std::string& unit, const std::string& help) {
   Key key;
   key.name = name;
   key.value_type = form;
@@ -27,7 +27,7 @@ bool Limits::contains(double x) const {
 namespace {
 
 /// Formats a number without the plus sign of an exponent: 100000, 1e15 instead of 1e+05, 1e+15.
-std::string plain(double x) {
+std::string number_text(double x) {
   if (x == std::floor(x) && std::fabs(x) < 1e7) return std::to_string(static_cast<long long>(x));
   std::string text = to_text(x);
   std::erase(text, '+');
@@ -37,80 +37,86 @@ std::string plain(double x) {
 }  // namespace
 
 std::string Limits::to_string() const {
-  if (lo && hi && !lo_open) return plain(*lo) + " to " + (hi_open ? "below " : "") + plain(*hi);
-  if (lo && hi) return "> " + plain(*lo) + (hi_open ? ", below " : ", at most ") + plain(*hi);
-  if (lo) return (lo_open ? "> " : ">= ") + plain(*lo);
-  if (hi) return (hi_open ? "below " : "at most ") + plain(*hi);
+  if (lo && hi && !lo_open) return number_text(*lo) + " to " + (hi_open ? "below " : "") + number_text(*hi);
+  if (lo && hi) return "> " + number_text(*lo) + (hi_open ? ", below " : ", at most ") + number_text(*hi);
+  if (lo) return (lo_open ? "> " : ">= ") + number_text(*lo);
+  if (hi) return (hi_open ? "below " : "at most ") + number_text(*hi);
   return {};
 }
 
-Key number(const std::string& name, const std::string& unit, const std::string& help) { return made(name, ValueType::number, unit, help); }
-Key integer(const std::string& name, const std::string& unit, const std::string& help, int least, int most) {
-  return made(name, ValueType::integer, unit, help).within(least, most);
+Key number(const std::string& name, const std::string& unit, const std::string& help) {
+  return make_key(name, ValueType::number, unit, help);
 }
-Key boolean(const std::string& name, const std::string& help) { return made(name, ValueType::boolean, {}, help); }
-Key text(const std::string& name, const std::string& help) { return made(name, ValueType::text, {}, help); }
+Key integer(const std::string& name, const std::string& unit, const std::string& help, int minimum, int maximum) {
+  return make_key(name, ValueType::integer, unit, help).within(minimum, maximum);
+}
+Key boolean(const std::string& name, const std::string& help) { return make_key(name, ValueType::boolean, {}, help); }
+Key text(const std::string& name, const std::string& help) { return make_key(name, ValueType::text, {}, help); }
 Key identifier(const std::string& name, const std::string& help) {
   Key key = text(name, help);
   key.is_identifier = true;
   return key;
 }
 Key choice(const std::string& name, std::vector<std::string> words, const std::string& help) {
-  Key key = made(name, ValueType::choice, {}, help);
+  Key key = make_key(name, ValueType::choice, {}, help);
   key.options = std::move(words);
   return key;
 }
 Key vector(const std::string& name, int count, const std::string& unit, const std::string& help) {
-  Key key = made(name, ValueType::vector, unit, help);
+  Key key = make_key(name, ValueType::vector, unit, help);
   key.count = count;
   return key;
 }
 Key vec3(const std::string& name, const std::string& unit, const std::string& help) { return vector(name, 3, unit, help); }
 Key direction(const std::string& name, const std::string& help) { return vec3(name, {}, help).with_range_text("not 0"); }
-Key color(const std::string& name, const std::string& help) { return made(name, ValueType::color, {}, help).within(0, 1); }
+Key color(const std::string& name, const std::string& help) { return make_key(name, ValueType::color, {}, help).within(0, 1); }
 Key numbers(const std::string& name, const std::string& unit, const std::string& help) {
-  return made(name, ValueType::numbers, unit, help);
+  return make_key(name, ValueType::numbers, unit, help);
 }
-Key texts(const std::string& name, const std::string& help) { return made(name, ValueType::texts, {}, help); }
+Key texts(const std::string& name, const std::string& help) { return make_key(name, ValueType::texts, {}, help); }
 Key points(const std::string& name, const std::string& unit, const std::string& help) {
-  return made(name, ValueType::points, unit, help).with_size(1, 0);
+  return make_key(name, ValueType::points, unit, help).with_size(1, 0);
 }
 Key table(const std::string& name, int width, const std::string& unit, const std::string& help) {
-  Key key = made(name, ValueType::table, unit, help).with_size(1, 0);
+  Key key = make_key(name, ValueType::table, unit, help).with_size(1, 0);
   key.count = width;
   return key;
 }
-Key rotation(const std::string& name, const std::string& help) { return made(name, ValueType::rotation, {}, help); }
-Key null() { return made({}, ValueType::null, {}, {}); }
+Key rotation(const std::string& name, const std::string& help) { return make_key(name, ValueType::rotation, {}, help); }
+Key null() { return make_key({}, ValueType::null, {}, {}); }
 Key object(const std::string& name, Keys inner, const std::string& help) {
-  Key key = made(name, ValueType::object, {}, help);
+  Key key = make_key(name, ValueType::object, {}, help);
   key.members = std::make_shared<const Keys>(std::move(inner));
   return key;
 }
 Key any_of(const std::string& name, Keys choices, const std::string& help) {
-  Key key = made(name, ValueType::any_of, choices.front().unit, help);
+  Key key = make_key(name, ValueType::any_of, choices.front().unit, help);
   key.alternatives = std::move(choices);
   return key;
 }
 Key reference(const std::string& name, Role role, const std::string& help) { return text(name, help).with_role(role); }
 Key file(const std::string& name, const std::string& help) { return text(name, help).with_role(Role::file); }
 Key core_criterion_key() {
-  return choice("criterion", {"sujudi-haimes", "parallel-vectors", "vorticity"}, "By what a core is told.")
+  return choice("criterion", {"sujudi-haimes", "parallel-vectors", "vorticity"}, "Criterion that defines a vortex core line.")
       .with_default("\"sujudi-haimes\"");
 }
 
 Key core_length_key() {
-  return number("min_length", "world", "Shorter core lines are left out.").positive().with_default("6 voxels; of a formula 0.02 L");
+  return number("min_length", "world", "Minimum length of a core line; shorter lines are discarded.")
+      .positive()
+      .with_default("6 voxels; formulas 0.02 L");
 }
 
 Key core_swirl_key() {
-  return number("min_swirl", "", "So are weaker ones: the mean swirl of a line, by that of the strongest.")
+  return number("min_swirl", "",
+                "Minimum mean swirl of a core line, as a fraction of that of the strongest line; weaker lines are discarded.")
       .within(0, 1)
       .with_default("0.05");
 }
 
 Key line_kind_key() {
-  return choice("kind", {"vector", "line"}, "`line`: v and -v are the same, as for fibres.").with_default("\"vector\"");
+  return choice("kind", {"vector", "line"}, "Kind of the vector field; `line`: v and -v are equivalent, as for fibre directions.")
+      .with_default("\"vector\"");
 }
 
 const Key* find(const Keys& keys, std::string_view name) {

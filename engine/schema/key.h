@@ -4,8 +4,8 @@
 /// of docs/reference/scene.md (documents.h), the list of files that a scene names, and the controls of the window are all generated from
 /// it.
 ///
-///   schema::number("radius", "world", "Its radius.").positive().required()
-///   schema::choice("shading", {"flat", "smooth"}, "How it is lit.")
+///   schema::number("radius", "world", "Radius of the sphere.").positive().required()
+///   schema::choice("shading", {"flat", "smooth"}, "Shading of the surface.")
 ///
 /// Keys are made at program start and read from any thread.
 #pragma once
@@ -57,7 +57,7 @@ struct Key {
   ValueType value_type = ValueType::number;  ///< type of the value
   std::string unit;                          ///< "world" (world units), "value" (unit of the field), "N/m" ...
   std::string help;                          ///< one sentence
-  std::string range_text = {};               ///< range in words, where the limits do not express it: "rising", "not 0"
+  std::string range_text = {};               ///< range in words, where the limits do not express it: "increasing", "not 0"
   std::string default_text = {};             ///< default in words, or JSON text when it is a value
   Limits limits = {};                        ///< limits of a number, or of each of several
   int count = 0;                             ///< number of numbers in a vector, or in a row of a table
@@ -143,8 +143,8 @@ using Keys = std::vector<Key>;
 
 /// Makes a key for a number; `unit` "" means none.
 CATENA_EXPORT Key number(const std::string& name, const std::string& unit, const std::string& help);
-/// Makes a key for an integer from `least` to `most`.
-CATENA_EXPORT Key integer(const std::string& name, const std::string& unit, const std::string& help, int least, int most);
+/// Makes a key for an integer from `minimum` to `maximum`.
+CATENA_EXPORT Key integer(const std::string& name, const std::string& unit, const std::string& help, int minimum, int maximum);
 /// Makes a key for true or false.
 CATENA_EXPORT Key boolean(const std::string& name, const std::string& help);
 /// Makes a key for any text.
@@ -161,7 +161,7 @@ CATENA_EXPORT Key direction(const std::string& name, const std::string& help);
 CATENA_EXPORT Key vector(const std::string& name, int count, const std::string& unit, const std::string& help);
 /// Makes a key for a color [r, g, b], 0 to 1.
 CATENA_EXPORT Key color(const std::string& name, const std::string& help);
-/// Makes a key for a list of numbers of any length.
+/// Makes a key for a list of any number of numbers.
 CATENA_EXPORT Key numbers(const std::string& name, const std::string& unit, const std::string& help);
 /// Makes a key for a list of strings.
 CATENA_EXPORT Key texts(const std::string& name, const std::string& help);

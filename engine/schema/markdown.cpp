@@ -31,7 +31,7 @@ std::string form_words(const Key& key) {
     case ValueType::texts:
       return "names";
     case ValueType::points:
-      return "places";
+      return "positions";
     case ValueType::table:
       return "table";
     case ValueType::rotation:
@@ -50,8 +50,8 @@ std::string form_words(const Key& key) {
   return all;
 }
 
-/// Returns the default: JSON values as code, descriptions as plain text.
-std::string fallback_words(const Key& key) {
+/// Returns the default column: JSON values as code, descriptions as plain text.
+std::string default_column(const Key& key) {
   if (key.is_required) return "required";
   const std::string& text = key.default_text;
   const bool value = !text.empty() && (text[0] == '[' || text[0] == '"' || parse_double(text));
@@ -60,7 +60,7 @@ std::string fallback_words(const Key& key) {
 }
 
 /// Returns the range column: the limits of a number, or the options of a choice.
-std::string range_words(const Key& key) {
+std::string range_column(const Key& key) {
   if (!key.range_text.empty()) return key.range_text;
   if (key.value_type == ValueType::choice) {
     std::string all;
@@ -80,7 +80,7 @@ std::string describe_type(const Key& key) {
 std::string markdown_table(const Keys& keys) {
   std::string out = "| key | type | unit | range | default | example | meaning |\n|---|---|---|---|---|---|---|\n";
   for (const Key& key : keys)
-    out += "| " + code(key.name) + " | " + describe_type(key) + " | " + key.unit + " | " + range_words(key) + " | " + fallback_words(key) +
+    out += "| " + code(key.name) + " | " + describe_type(key) + " | " + key.unit + " | " + range_column(key) + " | " + default_column(key) +
            " | " + code(example_value(key)) + " | " + key.help + " |\n";
   return out;
 }
@@ -108,7 +108,7 @@ Tables markdown_tables(const Section& component) {
 }
 
 Result<std::string> format_keys(const std::vector<Section>& parts, const std::string& name, const std::string& command,
-                                const std::string& whole, const char* behind) {
+                                const std::string& document_name, const char* behind) {
   std::vector<std::string_view> names;
   std::string text;
   for (const Section& part : parts) {
@@ -118,8 +118,8 @@ Result<std::string> format_keys(const std::vector<Section>& parts, const std::st
     for (const auto& [title, table] : markdown_tables(part)) text.append("\n").append(title).append("\n").append(table).append(behind);
   }
   if (!text.empty()) return text;
-  return Error{command + ": " + in_quotes(name) + " is no part of " + whole + "; one of " + catena::join_words(names) + " was expected" +
-               suggestion(name, names)};
+  return Error{command + ": " + in_quotes(name) + " is not a part of " + document_name + "; one of " + catena::join_words(names) +
+               " was expected" + suggestion(name, names)};
 }
 
 }  // namespace catena::schema

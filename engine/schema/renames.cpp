@@ -10,12 +10,12 @@
 namespace catena::schema {
 namespace {
 
-/// How a row of the table changes a file. distributed: the members become keys of other objects (distribute_plan). nested: a word with keys
-/// beside it becomes an object (nest_color_by); other values of the key are not old.
+/// Kind of change to a file by a row of the table. distributed: the members become keys of other objects (distribute_plan). nested: a word
+/// with keys beside it becomes an object (nest_color_by); other values of the key are unchanged.
 enum class Change { renamed, distributed, nested };
 
-/// A key in 0.2 and 0.3. `path`: the keys from the root with the old name last; "*" stands for any key or index. `values`: old and new
-/// words, where the value is one of several words; an empty `key` keeps the key.
+/// A key of version 0.2 and its name in 0.3. `path`: the keys from the root with the old name last; "*" stands for any key or index.
+/// `values`: old and new words, where the value is one of several words; an empty `key` keeps the key.
 struct Rename {
   std::string_view path, key;
   std::vector<std::pair<std::string_view, std::string_view>> values = {};
@@ -89,7 +89,7 @@ const std::vector<Rename>& study_renames() {
   return table;
 }
 
-/// Options, old and new.
+/// Old and new names of command line options.
 constexpr std::pair<std::string_view, std::string_view> kOptions[] = {
     {"--until-stdin-ends", "--exit-with-stdin"},
     {"--framed-by", "--frame-ancestor"},
@@ -112,18 +112,18 @@ bool is_match(std::string_view pattern, std::string_view path) {
   return pattern.empty() && path.empty();
 }
 
-/// Returns the word of a value as it stands in `values`; empty for other values.
+/// Returns the value as a word, as listed in `values`; empty for values that are neither a string nor a boolean.
 std::string_view word_of(const json::Node& value) {
   if (value.kind == json::Kind::boolean) return value.boolean ? "true" : "false";
   return value.kind == json::Kind::string ? std::string_view(value.string) : std::string_view();
 }
 
-/// An old name in a file.
+/// Old name in a file.
 struct Match {
   const json::Node* object;                                    ///< object that has the key
   std::size_t member;                                          ///< index of the key in the object
   const Rename* rename;                                        ///< row of the table
-  const std::pair<std::string_view, std::string_view>* value;  ///< old and new word of the value; null: it stays
+  const std::pair<std::string_view, std::string_view>* value;  ///< old and new word of the value; null: the value is kept
 };
 
 /// Finds the old names in the order of the text.
@@ -168,7 +168,7 @@ std::vector<Match> find_old_names(const json::Node& root, FileKind kind) {
   return std::move(finder.found);
 }
 
-/// Replaces "plan" of a scene by "quality" (unless that is stated: it had precedence) and keys of "coupling".
+/// Replaces "plan" of a scene by "quality", unless the scene has "quality", which takes precedence, and by keys of "coupling".
 Outcome distribute_plan(std::string& text, const std::string& file) {
   CATENA_TRY(const json::Node scene, json::parse(text, file));
   const json::Node* plan = scene.find("plan");
@@ -230,7 +230,7 @@ Outcome nest_color_words(std::string& text, const std::string& file) {
   return Done{};
 }
 
-/// Changes the structure of a scene where 0.3 has another one.
+/// Changes the structure of a scene of 0.2 to that of 0.3 where they differ.
 Result<std::string> restructure(std::string scene, const std::string& file) {
   CATENA_CHECK(distribute_plan(scene, file));
   CATENA_CHECK(nest_color_words(scene, file));
@@ -261,7 +261,7 @@ Result<UpgradedText> upgrade_names(std::string_view text, const std::string& fil
     if (match.rename->change != Change::renamed) continue;
     if (!key.empty() && match.object->find(key) != nullptr)
       return json::error_at(value, in_quotes(match.object->members[match.member].first) + " is now " + in_quotes(key) +
-                                       ", which is there too; one of them was expected");
+                                       ", which is also present; one of them was expected");
     if (!key.empty()) edits.push_back(json::rename_key(text, *match.object, match.member, key));
     if (match.value != nullptr) edits.push_back({value.begin, value.end, json::serialize_string(match.value->second)});
   }

@@ -6,7 +6,7 @@
 ///
 ///   StructSchema<Light, Scene>()
 ///       .bind(direction("direction", "Towards the light.").required(), &Light::direction)
-///       .bind(number("intensity", "", "Its strength.").non_negative(), &Light::intensity)
+///       .bind(number("intensity", "", "Factor on the color of the light.").non_negative(), &Light::intensity)
 #pragma once
 #include <functional>
 #include <string>
@@ -35,14 +35,15 @@ class StructSchema {
   /// default is the value in a default-constructed T.
   template <class Access>
   StructSchema& bind(Key key, Access access) {
-    const T made{};
-    const auto& value = std::invoke(access, made);
-    const std::string usual = to_json_text(key, value);
-    if (key.default_text.empty() && key.has_default && !key.is_required && key.value_type != ValueType::text) key.default_text = usual;
+    const T defaults{};
+    const auto& value = std::invoke(access, defaults);
+    const std::string default_text = to_json_text(key, value);
+    if (key.default_text.empty() && key.has_default && !key.is_required && key.value_type != ValueType::text)
+      key.default_text = default_text;
     rows_.push_back({[key, access](C&, const json::Node& object, T& out) { return read_value(key, object, std::invoke(access, out)); },
-                     [key, access, usual](const C&, const T& in) {
+                     [key, access, default_text](const C&, const T& in) {
                        std::string text = to_json_text(key, std::invoke(access, in));
-                       return key.is_required || text != usual ? text : std::string();
+                       return key.is_required || text != default_text ? text : std::string();
                      }});
     keys_.push_back(std::move(key));
     return *this;

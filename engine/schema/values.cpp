@@ -25,8 +25,9 @@ json::NumberRange range_of(const Key& key) {
   return key.limits.lo_open ? json::NumberRange::positive : json::NumberRange::non_negative;
 }
 
-std::string wrong_list(const Key& key, const std::string& items) {
-  return in_quotes(key.name) + " is no list; " + (key.range_text.empty() ? "" : key.range_text + " ") + items + " were expected";
+std::string list_error(const Key& key, const std::string& items) {
+  return in_quotes(key.name) + " is not a list or is empty; " + (key.range_text.empty() ? "" : key.range_text + " ") + items +
+         " were expected";
 }
 
 template <class Items>
@@ -97,7 +98,7 @@ Outcome read_value(const Key& key, const json::Node& object, std::array<std::str
   CATENA_CHECK(check_present(key, object, "a list of three names"));
   const json::Node& node = *object.find(key.name);
   if (node.kind != json::Kind::array || node.items.size() != 3)
-    return json::error_at(node, in_quotes(key.name) + " is no list of three; three names, of x, y and z, were expected");
+    return json::error_at(node, in_quotes(key.name) + " is not a list of three names; names of the x, y and z axes were expected");
   for (std::size_t i = 0; i < 3; ++i) {
     CATENA_TRY(out[i], json::as_string(node.items[i], key.name));
   }
@@ -108,7 +109,7 @@ Outcome read_value(const Key& key, const json::Node& object, std::vector<double>
   if (is_absent(key, object)) return Done{};
   CATENA_CHECK(check_present(key, object, "a list of numbers"));
   const json::Node& node = *object.find(key.name);
-  if (node.kind != json::Kind::array || node.items.empty()) return json::error_at(node, wrong_list(key, "numbers [a, b, ...]"));
+  if (node.kind != json::Kind::array || node.items.empty()) return json::error_at(node, list_error(key, "numbers [a, b, ...]"));
   out.clear();
   for (const json::Node& item : node.items) {
     CATENA_TRY(const double value, json::as_number(item, key.name));
@@ -119,7 +120,7 @@ Outcome read_value(const Key& key, const json::Node& object, std::vector<double>
 
 Outcome read_points(const json::Node& node, std::string_view what, std::vector<Vec3>& out) {
   if (node.kind != json::Kind::array || node.items.empty())
-    return json::error_at(node, in_quotes(what) + " is no list of places or empty; at least one [x, y, z] was expected");
+    return json::error_at(node, in_quotes(what) + " is not a list of positions or is empty; at least one [x, y, z] was expected");
   out.clear();
   out.reserve(node.items.size());
   for (const json::Node& item : node.items) {

@@ -24,9 +24,9 @@ enum class TestKind { difference, intervals, tasks, correlation, weaker_correlat
 /// Alternative hypothesis of a test. from_test: the test's default, or none where the test has no choice.
 enum class Alternative { from_test, lower, higher, apart, overlap, negative, positive };
 /// The key of the study file: "difference", "intervals", ...
-const char* to_string(TestKind asks);
+const char* to_string(TestKind test_kind);
 /// The value in the study file: "lower", "higher", ...; "by_test" for from_test.
-const char* to_string(Alternative expect);
+const char* to_string(Alternative alternative);
 
 /// One claim of a paper with its test.
 struct Finding {

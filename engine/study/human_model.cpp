@@ -55,7 +55,7 @@ HumanModel::HumanModel(const Study& study, const Task& task, const Stimulus& sti
   for (NoiseProcess& process : motor_noise_) process.begin(period_s, model_.motor_noise_s, random_);
   for (auto& axis : tremor_)
     for (Sine& sine : axis) sine = {kTwoPi * random_.between(model_.tremor_lo_hz, model_.tremor_hi_hz), random_.between(0, kTwoPi)};
-  seen_cursors_.assign(static_cast<std::size_t>(std::lround(model_.delay_s / period_s)) + 1, stimulus.start);
+  delayed_cursors_.assign(static_cast<std::size_t>(std::lround(model_.delay_s / period_s)) + 1, stimulus.start);
 }
 
 Vec3 HumanModel::tremor() const noexcept {
@@ -67,35 +67,35 @@ Vec3 HumanModel::tremor() const noexcept {
   return sum;
 }
 
-Vec3 HumanModel::velocity_along_path(const Vec3& seen, double speed) noexcept {
+Vec3 HumanModel::velocity_along_path(const Vec3& perceived_probe, double speed) noexcept {
   const std::vector<Vec3>& path = stimulus_.path;
   const std::size_t last = path.size() - 1, from = closest_corner_ > kBehind ? closest_corner_ - kBehind : 0,
                     to = std::min(last, closest_corner_ + kBefore);
-  double least2 = std::numeric_limits<double>::infinity();
+  double min_distance2 = std::numeric_limits<double>::infinity();
   for (std::size_t i = from; i <= to; ++i) {
-    const Vec3 off = path[i] - seen;
-    if (dot(off, off) < least2) least2 = dot(off, off), closest_corner_ = i;
+    const Vec3 offset = path[i] - perceived_probe;
+    if (dot(offset, offset) < min_distance2) min_distance2 = dot(offset, offset), closest_corner_ = i;
   }
   const double piece = stimulus_.length / static_cast<double>(last);
-  const double left = piece * static_cast<double>(last - closest_corner_), gain = model_.correction_per_s;
-  if (left <= speed / gain) {
-    const Vec3 way = path[last] - seen;
-    return direction(way) * std::fmin(speed, gain * norm(way));
+  const double remaining = piece * static_cast<double>(last - closest_corner_), gain = model_.correction_per_s;
+  if (remaining <= speed / gain) {
+    const Vec3 to_end = path[last] - perceived_probe;
+    return direction(to_end) * std::fmin(speed, gain * norm(to_end));
   }
-  const std::size_t ahead = std::min(last - 1, closest_corner_ + static_cast<std::size_t>(speed * model_.delay_s / piece));
-  return speed * direction(path[ahead + 1] - path[ahead]) + gain * (path[closest_corner_] - seen);
+  const std::size_t target_index = std::min(last - 1, closest_corner_ + static_cast<std::size_t>(speed * model_.delay_s / piece));
+  return speed * direction(path[target_index + 1] - path[target_index]) + gain * (path[closest_corner_] - perceived_probe);
 }
 
-Vec3 HumanModel::velocity_along_flow(const Vec3& seen, const Vec3& error, double speed) noexcept {
+Vec3 HumanModel::velocity_along_flow(const Vec3& perceived_probe, const Vec3& error, double speed) noexcept {
   const double tip = task_.world_from_mm(task_.indicator_mm);
-  const Vec3 here = direction(field_.sample(seen, cursor_).value);
-  const Vec3 way = tip * direction(field_.sample(seen + 0.5 * tip * here, cursor_).value);
-  return speed * direction(way + error);
+  const Vec3 flow = direction(field_.sample(perceived_probe, cursor_).value);
+  const Vec3 indicator = tip * direction(field_.sample(perceived_probe + 0.5 * tip * flow, cursor_).value);
+  return speed * direction(indicator + error);
 }
 
 Vec3 HumanModel::next_target(const Vec3& cursor) noexcept {
-  const std::size_t newest = ticks_ % seen_cursors_.size(), oldest = (ticks_ + 1) % seen_cursors_.size();
-  seen_cursors_[newest] = cursor;
+  const std::size_t newest = ticks_ % delayed_cursors_.size(), oldest = (ticks_ + 1) % delayed_cursors_.size();
+  delayed_cursors_[newest] = cursor;
   ++ticks_;
   const double lateral = task_.world_from_mm(model_.lateral_noise_mm),
                depth = task_.dimensions == 3 ? task_.world_from_mm(model_.depth_noise_mm) : 0;
@@ -104,14 +104,14 @@ Vec3 HumanModel::next_target(const Vec3& cursor) noexcept {
   const Vec3 jerk(motor_noise_[0].next(random_), motor_noise_[1].next(random_), motor_noise_[2].next(random_));
   const double speed = speed_ * std::fmin(1.0, std::fmax(0.0, (static_cast<double>(ticks_) * period_s_ - kPauseS) / kGetsGoingS));
   if (speed > 0) {
-    const Vec3 velocity = task_.kind == TaskKind::tracing ? velocity_along_path(seen_cursors_[oldest] + error, speed)
-                                                          : velocity_along_flow(seen_cursors_[oldest], error, speed);
+    const Vec3 velocity = task_.kind == TaskKind::tracing ? velocity_along_path(delayed_cursors_[oldest] + error, speed)
+                                                          : velocity_along_flow(delayed_cursors_[oldest], error, speed);
     target_ += period_s_ * (velocity + norm(velocity) * model_.motor_noise * jerk);
   }
-  // yields to a force above yield_n: limits the distance of the target from the cursor
-  const double most = task_.world_from_mm(model_.yield_n / model_.stiffness_n_per_mm);
+  // a force above yield_n moves the target: this limits the distance of the target from the cursor
+  const double max_distance = task_.world_from_mm(model_.yield_n / model_.stiffness_n_per_mm);
   const Vec3 pull = target_ - cursor;
-  if (const double length = norm(pull); length > most) target_ = cursor + pull * (most / length);
+  if (const double length = norm(pull); length > max_distance) target_ = cursor + pull * (max_distance / length);
   return target_ + tremor();
 }
 

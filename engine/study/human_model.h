@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// A model of a subject, for testing a study without people: it computes the hand's target position at every tick from what is visible on
-/// the image. Its results describe the model only and replace no people.
+/// A model of a subject, for testing a study without people: it computes the hand's target position at every tick from the visible
+/// contents of the image. Its results describe the model only and replace no people.
 ///
-///   perception  what is perceived is `delay_s` old. The perceived cursor is displaced by n = (lateral, lateral, depth + bias): in the
-///               image plane and, in 3D tasks, along the view direction; lateral and depth are Ornstein-Uhlenbeck processes with the given
+///   perception  delayed by `delay_s`. The perceived cursor is displaced by n = (lateral, lateral, depth + bias): in the image plane
+///               and, in 3D tasks, along the view direction; lateral and depth are Ornstein-Uhlenbeck processes with the given
 ///               standard deviation and correlation time, the bias is sampled per subject
 ///   tracing     x' = v T + g e:  T the path's tangent at the point that the cursor will have reached after the delay, e the vector from
 ///               the perceived cursor to the closest point of the path, g = `correction_per_s`; within v / g of the end it moves toward the
@@ -52,8 +52,8 @@ class HumanModel {
     void begin(double period_s, double correlation_s, Random& random);
     double next(Random& random) noexcept { return value = decay * value + innovation * random.normal(); }
   };
-  Vec3 velocity_along_path(const Vec3& seen, double speed) noexcept;
-  Vec3 velocity_along_flow(const Vec3& seen, const Vec3& error, double speed) noexcept;
+  Vec3 velocity_along_path(const Vec3& perceived_probe, double speed) noexcept;
+  Vec3 velocity_along_flow(const Vec3& perceived_probe, const Vec3& error, double speed) noexcept;
   Vec3 tremor() const noexcept;
 
   const HumanModelParameters& model_;
@@ -69,8 +69,8 @@ class HumanModel {
     double rate = 0, phase = 0;
   };
   std::array<std::array<Sine, 3>, 3> tremor_;
-  std::vector<Vec3> seen_cursors_;  ///< Ring buffer of the cursors within the delay
-  std::size_t closest_corner_ = 0;  ///< Index of the point of Stimulus::path closest to the perceived cursor
+  std::vector<Vec3> delayed_cursors_;  ///< Ring buffer of the cursors within the delay
+  std::size_t closest_corner_ = 0;     ///< Index of the point of Stimulus::path closest to the perceived cursor
   std::uint64_t ticks_ = 0;
   Vec3 target_{0.0};
 };

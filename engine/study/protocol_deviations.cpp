@@ -11,7 +11,7 @@
 namespace catena::study {
 namespace {
 
-constexpr std::size_t kMostTold = 3;  ///< maximum number of rows listed per subject
+constexpr std::size_t kMaxListed = 3;  ///< maximum number of rows listed per subject
 
 }  // namespace
 
@@ -19,7 +19,7 @@ std::string find_protocol_deviation(const Study& study, const TrialRow& row, con
   const std::string& task = study.tasks[static_cast<std::size_t>(trial.task)].name;
   const std::string& condition = study.conditions[static_cast<std::size_t>(trial.condition)].name;
   const auto differs = [](const char* what, const auto& is, const auto& designed) {
-    return fmt::format("{} is {}, by the design {}", what, is, designed);
+    return fmt::format("{} is {}, but {} by design", what, is, designed);
   };
   if (row.index != trial.index) return differs("index", row.index, trial.index);
   if (row.task != task) return differs("task", row.task, task);
@@ -35,25 +35,26 @@ std::vector<std::string> find_protocol_deviations(const Study& study, const std:
   std::map<int, std::vector<const TrialRow*>> subjects;
   for (const TrialRow& row : rows) subjects[row.subject].push_back(&row);
   std::vector<std::string> lines;
-  for (const auto& [subject, own] : subjects) {
+  for (const auto& [subject, subject_rows] : subjects) {
     if (subject < 1 || subject > kMaxSubject) {
-      lines.push_back(fmt::format("subject {}: no number of a subject; 1 to {} are", subject, kMaxSubject));
+      lines.push_back(fmt::format("subject {}: the subject number is invalid; 1 to {} was expected", subject, kMaxSubject));
       continue;
     }
     const std::vector<Trial> session = make_session(study, subject);
-    const bool trained = std::ranges::any_of(own, [](const TrialRow* row) { return row->training; });
-    const auto counts = [&](const Trial& trial) { return trained || !trial.training; };
+    const bool has_training = std::ranges::any_of(subject_rows, [](const TrialRow* row) { return row->training; });
+    const auto counts = [&](const Trial& trial) { return has_training || !trial.training; };
     const auto designed = static_cast<std::size_t>(std::ranges::count_if(session, counts));
-    if (own.size() != designed) lines.push_back(fmt::format("subject {}: {} of {} trials", subject, own.size(), designed));
+    if (subject_rows.size() != designed)
+      lines.push_back(fmt::format("subject {}: {} of {} trials", subject, subject_rows.size(), designed));
     std::size_t others = 0;
-    for (const TrialRow* row : own) {
-      const bool there = row->index >= 0 && row->index < static_cast<int>(session.size());
-      const std::string what = there ? find_protocol_deviation(study, *row, session[static_cast<std::size_t>(row->index)])
-                                     : fmt::format("there is no such trial in a session of {}", session.size());
-      if (!what.empty() && ++others <= kMostTold)
+    for (const TrialRow* row : subject_rows) {
+      const bool exists = row->index >= 0 && row->index < static_cast<int>(session.size());
+      const std::string what = exists ? find_protocol_deviation(study, *row, session[static_cast<std::size_t>(row->index)])
+                                      : fmt::format("the trial does not exist in a session of {} trials", session.size());
+      if (!what.empty() && ++others <= kMaxListed)
         lines.push_back(one_line(fmt::format("subject {}, trial {}: {}", subject, row->index, what)));
     }
-    if (others > kMostTold) lines.push_back(fmt::format("subject {}: so {} more trials", subject, others - kMostTold));
+    if (others > kMaxListed) lines.push_back(fmt::format("subject {}: {} more trials deviate", subject, others - kMaxListed));
   }
   return lines;
 }

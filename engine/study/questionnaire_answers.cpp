@@ -49,15 +49,15 @@ Result<Answers> read_answers(const std::string& path, const Study& study) {
   const auto end = text.rfind('\n');
   answers.complete_bytes = end == std::string::npos ? 0 : end + 1;
   answers.has_partial_line = answers.complete_bytes != text.size();
-  std::string_view rest = std::string_view(text).substr(0, answers.complete_bytes);
-  if (rest.empty()) return answers;
-  if (!rest.starts_with(answers_header())) return Error{path + ":1: \"question,answer\" was expected"};
-  for (rest.remove_prefix(answers_header().size()); !rest.empty(); rest.remove_prefix(rest.find('\n') + 1)) {
+  std::string_view remaining = std::string_view(text).substr(0, answers.complete_bytes);
+  if (remaining.empty()) return answers;
+  if (!remaining.starts_with(answers_header())) return Error{path + ":1: the header is missing; \"question,answer\" was expected"};
+  for (remaining.remove_prefix(answers_header().size()); !remaining.empty(); remaining.remove_prefix(remaining.find('\n') + 1)) {
     const std::size_t number = answers.texts.size();
     const std::string question = number < study.questions.size() ? quoted_cell(study.questions[number].name) + "," : std::string();
-    if (question.empty() || !rest.starts_with(question))
-      return Error{fmt::format("{}:{}: this is not the answer to question {} of the study", path, number + 2, number + 1)};
-    answers.texts.push_back(words_of_cell(rest.substr(question.size(), rest.find('\n') - question.size())));
+    if (question.empty() || !remaining.starts_with(question))
+      return Error{fmt::format("{}:{}: the row is not an answer to question {} of the study", path, number + 2, number + 1)};
+    answers.texts.push_back(words_of_cell(remaining.substr(question.size(), remaining.find('\n') - question.size())));
   }
   return answers;
 }

@@ -9,18 +9,18 @@
 namespace catena::study {
 namespace {
 
-const std::vector<std::string> kAsks{"difference",         "intervals", "tasks",      "correlation",
-                                     "weaker_correlation", "largest",   "rejections", "untestable"};
-const std::vector<std::string> kExpects{"by_test", "lower", "higher", "apart", "overlap", "negative", "positive"};
+const std::vector<std::string> kTestNames{"difference",         "intervals", "tasks",      "correlation",
+                                          "weaker_correlation", "largest",   "rejections", "untestable"};
+const std::vector<std::string> kAlternativeNames{"by_test", "lower", "higher", "apart", "overlap", "negative", "positive"};
 
 /// Keys that a test accepts beside "claim", "reported" and "test", and the alternatives for "alternative"; the first one is the default.
-struct TestForm {
+struct TestSchema {
   std::vector<std::string_view> keys;
-  std::vector<Alternative> expects;
+  std::vector<Alternative> allowed_alternatives;
 };
 
-const TestForm& form_of(TestKind asks) {
-  static const std::vector<TestForm> forms{
+const TestSchema& schema_of(TestKind test_kind) {
+  static const std::vector<TestSchema> forms{
       {{"measure", "of", "tasks", "conditions", "alternative"}, {Alternative::lower, Alternative::higher}},
       {{"measure", "tasks", "conditions", "alternative"}, {Alternative::apart, Alternative::overlap}},
       {{"measure", "tasks", "conditions", "alternative"}, {Alternative::lower, Alternative::higher}},
@@ -29,7 +29,7 @@ const TestForm& form_of(TestKind asks) {
       {{"measure", "tasks", "conditions"}, {}},
       {{"rejected", "trials"}, {}},
       {{"reason"}, {}}};
-  return forms[static_cast<std::size_t>(asks)];
+  return forms[static_cast<std::size_t>(test_kind)];
 }
 
 template <class Items>
@@ -70,7 +70,7 @@ const schema::StructSchema<Finding, const Study>& finding_table() {
       schema::StructSchema<T, const Study>()
           .bind(schema::text("claim", "Claim of the paper, a sentence.").required(), &T::claim)
           .bind(schema::text("reported", "Numbers of the claim, as the paper prints them.").with_default("none"), &T::reported)
-          .bind(schema::choice("test", kAsks, "Test that can support the claim; study.md describes each.").required(), &T::test)
+          .bind(schema::choice("test", kTestNames, "Test that can support the claim; study.md describes each.").required(), &T::test)
           .bind(schema::choice("measure", {"error", "time"}, "Quantity that is compared."), &T::measure)
           .bind(schema::choice("of", {"mean", "deviation"},
                                "`difference` only: compares the subjects' means over their trials, or their standard deviations."),
@@ -86,7 +86,7 @@ const schema::StructSchema<Finding, const Study>& finding_table() {
                     return Done{};
                   })
           .bind(
-              schema::choice("alternative", kExpects,
+              schema::choice("alternative", kAlternativeNames,
                              "Alternative hypothesis: `lower` or `higher` than the baseline or the second task; intervals that are `apart` "
                              "or `overlap`; a `negative` or `positive` correlation.")
                   .with_default("the first that the test accepts"),
@@ -99,17 +99,18 @@ const schema::StructSchema<Finding, const Study>& finding_table() {
 
 /// Checks that a finding has only keys of its test, and all that the test needs.
 Outcome check_finding(const Study& study, const std::vector<std::array<int, 2>>& pairs, Finding& f) {
-  const TestForm& form = form_of(f.test);
+  const TestSchema& form = schema_of(f.test);
   for (const auto& [key, node] : f.where.members) {
     const bool common = key == "claim" || key == "reported" || key == "test";
     if (!common && std::count(form.keys.begin(), form.keys.end(), key) == 0)
       return json::error_at(node, in_quotes(key) + " means nothing to the test \"" + to_string(f.test) + "\"; " +
                                       (form.keys.empty() ? "nothing" : join_alternatives(form.keys)) + " was expected");
   }
-  if (f.alternative == Alternative::from_test && !form.expects.empty()) f.alternative = form.expects.front();
-  if (f.alternative != Alternative::from_test && std::count(form.expects.begin(), form.expects.end(), f.alternative) == 0) {
+  if (f.alternative == Alternative::from_test && !form.allowed_alternatives.empty()) f.alternative = form.allowed_alternatives.front();
+  if (f.alternative != Alternative::from_test &&
+      std::count(form.allowed_alternatives.begin(), form.allowed_alternatives.end(), f.alternative) == 0) {
     std::vector<std::string_view> words;
-    for (const Alternative e : form.expects) words.push_back(to_string(e));
+    for (const Alternative e : form.allowed_alternatives) words.push_back(to_string(e));
     return json::error_at(*f.where.find("alternative"), "\"alternative\" is \"" + std::string(to_string(f.alternative)) + "\"; " +
                                                             join_alternatives(words) + " was expected");
   }
@@ -146,28 +147,28 @@ schema::Keys pair_keys() {
 
 }  // namespace
 
-const char* to_string(TestKind asks) { return kAsks[static_cast<std::size_t>(asks)].c_str(); }
-const char* to_string(Alternative expect) { return kExpects[static_cast<std::size_t>(expect)].c_str(); }
+const char* to_string(TestKind test_kind) { return kTestNames[static_cast<std::size_t>(test_kind)].c_str(); }
+const char* to_string(Alternative alternative) { return kAlternativeNames[static_cast<std::size_t>(alternative)].c_str(); }
 
 Result<AnalysisPlan> read_analysis_plan(const Study& study) {
-  AnalysisPlan inquiry;
+  AnalysisPlan plan;
   CATENA_TRY(const std::vector<json::Node> pairs, list_at(study.document, "compare", "objects with the names of two tasks"));
   for (const json::Node& item : pairs) {
     CATENA_CHECK(json::expect_object(item, item.label));
     CATENA_CHECK(json::check_known_keys(item, schema::key_names(pair_keys())));
     CATENA_TRY(const std::vector<int> tasks, read_names(item, "tasks", names_in(study.tasks)));
     if (tasks.size() != 2) return json::error_at(json::member_or_parent(item, "tasks"), "\"tasks\" names no two tasks; two were expected");
-    inquiry.pairs.push_back({tasks[0], tasks[1]});
+    plan.pairs.push_back({tasks[0], tasks[1]});
   }
   CATENA_TRY(const std::vector<json::Node> findings, list_at(study.document, "findings", "objects with a sentence and its test"));
   for (const json::Node& item : findings) {
     CATENA_CHECK(json::expect_object(item, item.label));
-    Finding& finding = inquiry.findings.emplace_back();
+    Finding& finding = plan.findings.emplace_back();
     finding.where = item;
     CATENA_CHECK(finding_table().read(study, item, finding));
-    CATENA_CHECK(check_finding(study, inquiry.pairs, finding));
+    CATENA_CHECK(check_finding(study, plan.pairs, finding));
   }
-  return inquiry;
+  return plan;
 }
 
 std::vector<schema::Section> analysis_plan_components() {

@@ -68,22 +68,22 @@ Outcome read_question(const json::Node& node, Question& question) {
 
 /// Checks a name: names appear in tables and in file names of plots.
 Outcome check_name(const json::Node& item, const std::string& name) {
-  constexpr std::size_t kMost = 64;
-  const auto breaks = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == ',' || c == '"'; };
-  if (!name.empty() && name.size() <= kMost && std::ranges::none_of(name, breaks)) return Done{};
+  constexpr std::size_t kMaxNameLength = 64;
+  const auto is_forbidden = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == ',' || c == '"'; };
+  if (!name.empty() && name.size() <= kMaxNameLength && std::ranges::none_of(name, is_forbidden)) return Done{};
   return json::error_at(json::member_or_parent(item, "name"),
-                        "\"name\" is empty, longer than " + std::to_string(kMost) +
+                        "\"name\" is empty, longer than " + std::to_string(kMaxNameLength) +
                             " bytes, or has commas, quotes or line ends; a short name without them was expected");
 }
 
-/// Reads the objects of an array of at least `least` items; each has a unique name.
+/// Reads the objects of an array of at least `min_items` items; each has a unique name.
 template <class T, class Read>
-Outcome read_items(const json::Node& root, const char* key, std::size_t least, std::vector<T>& out, Read&& read) {
+Outcome read_items(const json::Node& root, const char* key, std::size_t min_items, std::vector<T>& out, Read&& read) {
   const json::Node* list = root.find(key);
-  if (list == nullptr && least == 0) return Done{};
-  if (list == nullptr || list->kind != json::Kind::array || list->items.size() < least)
+  if (list == nullptr && min_items == 0) return Done{};
+  if (list == nullptr || list->kind != json::Kind::array || list->items.size() < min_items)
     return json::error_at(json::member_or_parent(root, key),
-                          in_quotes(key) + " has fewer than " + std::to_string(least) + " items; an array of objects was expected");
+                          in_quotes(key) + " has fewer than " + std::to_string(min_items) + " items; an array of objects was expected");
   std::set<std::string> names;
   for (const json::Node& item : list->items) {
     CATENA_CHECK(json::expect_object(item, item.label));

@@ -22,16 +22,16 @@ void shuffle(std::vector<Trial>& trials, Random& random) {
   constexpr int kDraws = 1000;
   for (int draw = 0; draw < kDraws; ++draw) {
     for (std::size_t i = trials.size(); i > 1; --i) std::swap(trials[i - 1], trials[random.below(i)]);
-    bool twice = false;
-    for (std::size_t i = 1; i < trials.size(); ++i) twice = twice || trials[i].stimulus == trials[i - 1].stimulus;
-    if (!twice) return;
+    bool repeated = false;
+    for (std::size_t i = 1; i < trials.size(); ++i) repeated = repeated || trials[i].stimulus == trials[i - 1].stimulus;
+    if (!repeated) return;
   }
 }
 
 }  // namespace
 
 std::vector<int> latin_square_row(int count, int row) {
-  // 0, 1, n-1, 2, n-2, ...: every difference (mod n) of neighbors occurs once
+  // in the order 0, 1, n-1, 2, n-2, ... every difference (mod n) of neighbors occurs once
   std::vector<int> order;
   const bool mirrored = count % 2 == 1 && row >= count;
   for (int j = 0; j < count; ++j) {

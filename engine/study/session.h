@@ -29,7 +29,8 @@ struct Trial {
 
 inline constexpr int kMaxSubject = 9999;  ///< Largest number of a subject
 
-/// The order of `count` tasks (their indices) in row `row` of the Latin square, which has `count` rows, or twice as many if `count` is odd.
+/// The order of `count` tasks (their indices) in row `row` (from 0) of the Latin square, which has `count` rows, or twice as many if
+/// `count` is odd.
 CATENA_EXPORT std::vector<int> latin_square_row(int count, int row);
 /// The trials of a subject's session in their order. `subject`: 1 to kMaxSubject.
 CATENA_EXPORT std::vector<Trial> make_session(const Study& study, int subject);

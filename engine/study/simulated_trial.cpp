@@ -33,25 +33,25 @@ Result<const Stimulus*> TrialSimulator::cached_stimulus(const Trial& trial) {
   if (!stimulus_cache_.empty() && stimulus_cache_.front().task != trial.task) stimulus_cache_.clear();
   const auto found = std::ranges::find(stimulus_cache_, trial.seed, &CachedStimulus::seed);
   if (found != stimulus_cache_.end()) return &found->stimulus;
-  CATENA_TRY(Stimulus made, generator_.generate(trial.task, trial.seed));
-  return &stimulus_cache_.emplace_back(trial.task, trial.seed, std::move(made)).stimulus;
+  CATENA_TRY(Stimulus stimulus, generator_.generate(trial.task, trial.seed));
+  return &stimulus_cache_.emplace_back(trial.task, trial.seed, std::move(stimulus)).stimulus;
 }
 
 Result<TrialSimulator::TrialSetup> TrialSimulator::make_setup(const Trial& trial) {
   const Task& task = study_.tasks[static_cast<std::size_t>(trial.task)];
-  TrialSetup stage;
-  CATENA_TRY(stage.stimulus, cached_stimulus(trial));
-  stage.text = make_trial_scene(study_, trial, *stage.stimulus);
-  CATENA_TRY(scene::Scene scene, scene::parse_scene(stage.text, study_.path));
+  TrialSetup setup;
+  CATENA_TRY(setup.stimulus, cached_stimulus(trial));
+  setup.text = make_trial_scene(study_, trial, *setup.stimulus);
+  CATENA_TRY(scene::Scene scene, scene::parse_scene(setup.text, study_.path));
   if (last_scene_) scene::transfer_state(*last_scene_, scene);
   if (!scene.coupling.ramp_s) scene.coupling.ramp_s = kRampS;
-  CATENA_TRY(stage.field, scene::resolve_field(scene, task.field, task.where));
+  CATENA_TRY(setup.field, scene::resolve_field(scene, task.field, task.where));
   haptics::DeviceSettings settings;
   settings.rate_hz = kSimulatedRateHz;
   const haptics::SimulatedDevice device({{}}, make_hand_parameters(study_.human_model, 1 / kSimulatedRateHz));
-  CATENA_TRY(stage.program, haptics::build_program(scene, haptics::compute_device_limits(device.capabilities(), settings)));
+  CATENA_TRY(setup.program, haptics::build_program(scene, haptics::compute_device_limits(device.capabilities(), settings)));
   last_scene_.emplace(std::move(scene));
-  return stage;
+  return setup;
 }
 
 Outcome TrialSimulator::check() {
@@ -63,24 +63,24 @@ Outcome TrialSimulator::check() {
 
 Result<TrialResult> TrialSimulator::run(const Trial& trial) {
   const Task& task = study_.tasks[static_cast<std::size_t>(trial.task)];
-  CATENA_TRY(const TrialSetup stage, make_setup(trial));
+  CATENA_TRY(const TrialSetup setup, make_setup(trial));
   haptics::TickSink* sink = nullptr;
   if (recorder_) {
-    CATENA_TRY(sink, recorder_(trial, stage.text, *stage.program));
+    CATENA_TRY(sink, recorder_(trial, setup.text, *setup.program));
   }
   const haptics::SimulatedDeviceParameters parameters = make_hand_parameters(study_.human_model, 1 / kSimulatedRateHz);
-  haptics::SimulatedDevice hand({{.position_m = haptics::device_from_world(*stage.program, stage.stimulus->start)}}, parameters);
-  HumanModel subject(study_, task, *stage.stimulus, *stage.field.vector, draw_subject_traits(study_, trial.subject),
+  haptics::SimulatedDevice hand({{.position_m = haptics::device_from_world(*setup.program, setup.stimulus->start)}}, parameters);
+  HumanModel subject(study_, task, *setup.stimulus, *setup.field.vector, draw_subject_traits(study_, trial.subject),
                      operator_seed(study_, trial), parameters.period_s);
-  haptics::ServoStepper stepper(hand, *stage.program, kSimulatedRateHz, sink);
-  TrialScorer judge(task, *stage.stimulus);
+  haptics::ServoStepper stepper(hand, *setup.program, kSimulatedRateHz, sink);
+  TrialScorer scorer(task, *setup.stimulus);
   while (stepper.t_s() < task.limits.timeout_s + kPatienceS) {
     const double t_s = stepper.t_s();
     const HapticState& state = stepper.step();
-    if (judge.tick(t_s, state.probe, norm(state.force_n)) == TrialScorer::Phase::ended) return judge.result();
-    hand.set_target(haptics::device_from_world(*stage.program, subject.next_target(state.probe)));
+    if (scorer.tick(t_s, state.probe, norm(state.force_n)) == TrialScorer::Phase::ended) return scorer.result();
+    hand.set_target(haptics::device_from_world(*setup.program, subject.next_target(state.probe)));
   }
-  return judge.aborted_result();
+  return scorer.aborted_result();
 }
 
 }  // namespace catena::study

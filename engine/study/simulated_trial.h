@@ -37,7 +37,7 @@ class TrialSimulator {
   Outcome check();
 
  private:
-  /// Everything that one simulated trial needs.
+  /// Data of one simulated trial.
   struct TrialSetup {
     const Stimulus* stimulus;
     std::string text;

@@ -16,11 +16,11 @@
 namespace catena::study {
 namespace {
 
-constexpr int kFields = 200;        ///< maximum number of fields that are searched for a start
-constexpr int kStarts = 20000;      ///< maximum number of starts tried in all fields together
-constexpr double kMostBoxes = 100;  ///< maximum length of paths and lines, in diagonals of the field's box
-constexpr int kLineChoices = 6;  ///< a context streamline is seeded at the candidate, of this many, that is farthest from the other lines
-constexpr int kLinePlaces = 60;  ///< maximum number of random points drawn for the candidates: the field may have no value at some
+constexpr int kFields = 200;       ///< maximum number of fields that are searched for a start
+constexpr int kStarts = 20000;     ///< maximum number of starts tried in all fields together
+constexpr double kMaxBoxes = 100;  ///< maximum length of paths and lines, in diagonals of the field's box
+constexpr int kLineChoices = 6;    ///< a context streamline is seeded at the candidate, of this many, that is farthest from the other lines
+constexpr int kLinePlaces = 60;    ///< maximum number of random points drawn for the candidates: the field may have no value at some
 constexpr double kPathTolerance = 1e-9;  ///< of the final path, as a fraction of L
 constexpr double kLineTolerance = 1e-6;  ///< of lines and of trial paths, as a fraction of L
 constexpr double kHidingRadiusMm = 1.5;  ///< a context streamline occludes points of the path within this distance in the image
@@ -33,33 +33,33 @@ int next_seed(int seed) { return static_cast<int>(mix_bits(static_cast<std::uint
 double sine(double degrees) { return std::sin(degrees * std::numbers::pi / 180); }
 
 double distance_to(const std::vector<std::vector<Vec3>>& lines, const Vec3& p) {
-  double least2 = std::numeric_limits<double>::infinity();
+  double min_distance2 = std::numeric_limits<double>::infinity();
   for (const auto& line : lines)
     for (std::size_t i = 1; i < line.size(); ++i) {
-      const Vec3 way = line[i] - line[i - 1];
-      const double length2 = dot(way, way), u = length2 > 0 ? std::clamp(dot(p - line[i - 1], way) / length2, 0.0, 1.0) : 0;
-      const Vec3 off = p - line[i - 1] - u * way;
-      least2 = std::min(least2, dot(off, off));
+      const Vec3 segment = line[i] - line[i - 1];
+      const double length2 = dot(segment, segment), u = length2 > 0 ? std::clamp(dot(p - line[i - 1], segment) / length2, 0.0, 1.0) : 0;
+      const Vec3 offset = p - line[i - 1] - u * segment;
+      min_distance2 = std::min(min_distance2, dot(offset, offset));
     }
-  return std::sqrt(least2);
+  return std::sqrt(min_distance2);
 }
 
 /// Reasons why a start is rejected, in the order of the tests.
 enum class Fault { leaves, turn, bend, flat, parallel, crossing, line };
 constexpr int kFaults = 7;
-constexpr const char* kFaultWords[kFaults] = {"have no path of that length within the field",
+constexpr const char* kFaultWords[kFaults] = {"have no path of this length within the field",
                                               "turn too little",
                                               "bend too sharply",
-                                              "leave the picture plane",
-                                              "run too much along the view",
-                                              "meet their target too flatly, or before their end",
-                                              "lie too near a global line"};
+                                              "leave the image plane",
+                                              "are too parallel to the viewing direction",
+                                              "meet the target at too small an angle, or too early",
+                                              "are too close to a global line"};
 using Faults = std::array<int, kFaults>;
 
-std::string words_of(const Faults& faults) {
+std::string describe_faults(const Faults& fault_counts) {
   std::string text;
   for (int i = 0; i < kFaults; ++i)
-    if (const int n = faults[static_cast<std::size_t>(i)]; n > 0)
+    if (const int n = fault_counts[static_cast<std::size_t>(i)]; n > 0)
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, kFaultWords[i]);
   return text;
 }
@@ -79,16 +79,16 @@ class Draw {
     stimulus_.context_length = task.world_from_mm(rules_.context_length_mm);
   }
 
-  /// Returns the candidate with the least occlusion, or nullopt; `faults` counts the reasons for rejection.
-  std::optional<Stimulus> stimulus(Faults& faults) {
+  /// Returns the candidate with the least occlusion, or nullopt; `fault_counts` counts the reasons for rejection.
+  std::optional<Stimulus> stimulus(Faults& fault_counts) {
     std::optional<Stimulus> best;
     for (int k = 0; k < rules_.candidates; ++k) {
       const Vec3 start = place(rules_.region, random_);
       if (const auto fault = fault_of(start)) {
-        ++faults[static_cast<std::size_t>(*fault)];
+        ++fault_counts[static_cast<std::size_t>(*fault)];
         continue;
       }
-      stimulus_.occluded_share = task_.dimensions == 3 ? hidden() : 0;
+      stimulus_.occluded_share = task_.dimensions == 3 ? occluded_share() : 0;
       if (!best || stimulus_.occluded_share < best->occluded_share) best = stimulus_;
       if (best->occluded_share == 0) break;
     }
@@ -116,12 +116,12 @@ class Draw {
   }
 
   std::optional<Fault> fault_of(const Vec3& start) {
-    if (!take_path(start, kLineTolerance)) return Fault::leaves;
+    if (!trace_path(start, kLineTolerance)) return Fault::leaves;
     if (const auto fault = fault_of_path()) return fault;
     if (stimulus_.context_points.empty()) draw_lines();
     if (distance_to(lines_, start) < task_.world_from_mm(rules_.clearance_mm)) return Fault::line;
     // the selected path is traced with the final tolerance
-    if (!take_path(start, kPathTolerance)) return Fault::leaves;
+    if (!trace_path(start, kPathTolerance)) return Fault::leaves;
     return fault_of_path();
   }
 
@@ -134,13 +134,13 @@ class Draw {
     const double step = task_.world_from_mm(2);
     for (int k = 0; k < rules_.context_streamlines; ++k) {
       std::optional<Vec3> seed;
-      double farthest = -1;
-      for (int choice = 0, drawn = 0; choice < kLineChoices && drawn < kLinePlaces; ++drawn) {
+      double max_distance = -1;
+      for (int choice = 0, attempts = 0; choice < kLineChoices && attempts < kLinePlaces; ++attempts) {
         const Vec3 p = place(1, line_random_);
         if (!has_flow(p)) continue;
         ++choice;
         const double distance = distance_to(lines_, p);
-        if (distance > farthest) farthest = distance, seed = p;
+        if (distance > max_distance) max_distance = distance, seed = p;
       }
       const flow::CurvePtr curve = seed ? traced(*seed, stimulus_.context_length, kLineTolerance) : nullptr;
       if (!curve) continue;
@@ -153,7 +153,7 @@ class Draw {
   }
 
   /// Traces the path downstream from the start; returns false if it is too short, closed or outside of the box.
-  bool take_path(const Vec3& start, double tolerance) {
+  bool trace_path(const Vec3& start, double tolerance) {
     const double length = stimulus_.length;
     const flow::CurvePtr curve = traced(start, 1.001 * length, tolerance);
     if (!curve || curve->is_closed() || curve->knots().back().s < length) return false;
@@ -179,32 +179,33 @@ class Draw {
   std::optional<Fault> fault_of_path() const {
     const std::vector<Vec3>& path = stimulus_.path;
     const std::size_t last = path.size() - 1;
-    const double turn = std::cos(rules_.turn_deg * std::numbers::pi / 180);
-    if (rules_.turn_deg > 0 && std::min(dot(tangent(0), tangent(last)), dot(tangent(0), tangent(last / 2))) > turn) return Fault::turn;
+    const double min_cosine = std::cos(rules_.turn_deg * std::numbers::pi / 180);
+    if (rules_.turn_deg > 0 && std::min(dot(tangent(0), tangent(last)), dot(tangent(0), tangent(last / 2))) > min_cosine)
+      return Fault::turn;
     for (std::size_t i = 1; i < last; ++i) {
       // a corner of angle a between segments of length h has the curvature a / h
-      const Vec3 before = path[i] - path[i - 1], after = path[i + 1] - path[i];
-      if (norm(direction(after) - direction(before)) * task_.world_from_mm(rules_.min_curvature_radius_mm) > norm(before))
+      const Vec3 incoming = path[i] - path[i - 1], outgoing = path[i + 1] - path[i];
+      if (norm(direction(outgoing) - direction(incoming)) * task_.world_from_mm(rules_.min_curvature_radius_mm) > norm(incoming))
         return Fault::bend;
     }
     if (task_.dimensions == 2) {
       for (const Vec3& p : path)
         if (std::fabs(dot(p - task_.image_plane_point, task_.view_direction)) > kFlat * stimulus_.length) return Fault::flat;
     } else {
-      double seen = 0;
+      double projected_length = 0;
       for (std::size_t i = 1; i < path.size(); ++i) {
-        const Vec3 way = path[i] - path[i - 1];
-        seen += norm(way - task_.view_direction * dot(way, task_.view_direction));
+        const Vec3 segment = path[i] - path[i - 1];
+        projected_length += norm(segment - task_.view_direction * dot(segment, task_.view_direction));
       }
-      if (seen < rules_.parallel * stimulus_.length) return Fault::parallel;
+      if (projected_length < rules_.parallel * stimulus_.length) return Fault::parallel;
     }
-    bool crosses = true;
+    bool meets_target = true;
     if (task_.target == Target::circle)
-      crosses = first_crosses([&](const Vec3& p) { return norm(p - stimulus_.start); }, stimulus_.radius) &&
-                dot(tangent(last), direction(stimulus_.end - stimulus_.start)) >= sine(rules_.crossing_deg);
+      meets_target = first_crosses([&](const Vec3& p) { return norm(p - stimulus_.start); }, stimulus_.radius) &&
+                     dot(tangent(last), direction(stimulus_.end - stimulus_.start)) >= sine(rules_.crossing_deg);
     if (task_.target == Target::plane)
-      crosses = first_crosses([&](const Vec3& p) { return -p.z; }, -stimulus_.end.z) && -tangent(last).z >= sine(rules_.crossing_deg);
-    return crosses ? std::nullopt : std::optional(Fault::crossing);
+      meets_target = first_crosses([&](const Vec3& p) { return -p.z; }, -stimulus_.end.z) && -tangent(last).z >= sine(rules_.crossing_deg);
+    return meets_target ? std::nullopt : std::optional(Fault::crossing);
   }
 
   template <class Measure>
@@ -214,23 +215,23 @@ class Draw {
     return true;
   }
 
-  double hidden() const {
+  double occluded_share() const {
     const double radius = task_.world_from_mm(kHidingRadiusMm);
-    int behind = 0, looked_at = 0;
+    int occluded = 0, tested = 0;
     for (std::size_t i = 0; i < stimulus_.path.size(); i += kStride) {
       const Vec3& p = stimulus_.path[i];
       const Vec3 ray = task_.orthographic ? task_.view_direction : direction(p - task_.camera_position);
       const double depth = dot(p - task_.camera_position, ray) - 2 * radius;
-      ++looked_at;
-      behind += std::ranges::any_of(lines_, [&](const std::vector<Vec3>& line) {
+      ++tested;
+      occluded += std::ranges::any_of(lines_, [&](const std::vector<Vec3>& line) {
         return std::ranges::any_of(line, [&](const Vec3& q) {
-          const Vec3 off = q - p;
-          const double along = dot(off, ray);
-          return dot(q - task_.camera_position, ray) < depth && dot(off, off) - along * along < radius * radius;
+          const Vec3 offset = q - p;
+          const double along = dot(offset, ray);
+          return dot(q - task_.camera_position, ray) < depth && dot(offset, offset) - along * along < radius * radius;
         });
       });
     }
-    return static_cast<double>(behind) / looked_at;
+    return static_cast<double>(occluded) / tested;
   }
 
   const Task& task_;
@@ -247,12 +248,12 @@ class Draw {
 Outcome check_lengths(const Task& task, const Bounds& box) {
   const double diagonal = norm(box.hi - box.lo);
   for (const auto& [key, mm] : {std::pair{"path_mm", task.rules.path_mm}, {"line_mm", task.rules.context_length_mm}})
-    if (const double length = task.world_from_mm(mm); !(length <= kMostBoxes * diagonal))
+    if (const double length = task.world_from_mm(mm); !(length <= kMaxBoxes * diagonal))
       return json::error_at(
           json::member_or_parent(task.where, "stimulus"),
-          fmt::format("task {}: \"{}\" is {:.3g} world units, {:.3g} times as long as the field's box; at most {:g} times "
+          fmt::format("task {}: \"{}\" is {:.3g} world units, {:.3g} times the diagonal of the field's box; at most {:g} times "
                       "was expected (metres_per_unit is {:g})",
-                      in_quotes(task.name), key, length, length / diagonal, kMostBoxes, task.meters_per_unit));
+                      in_quotes(task.name), key, length, length / diagonal, kMaxBoxes, task.meters_per_unit));
   return Done{};
 }
 
@@ -261,31 +262,30 @@ Outcome check_lengths(const Task& task, const Bounds& box) {
 Result<field::AnyField> StimulusGenerator::load_field(int task, int seed) {
   const Task& of = study_.tasks[static_cast<std::size_t>(task)];
   std::string text = make_field_scene(study_, of, seed);
-  CachedField& kept = field_cache_[static_cast<std::size_t>(task)];
-  if (kept.text != text) {
+  CachedField& cached = field_cache_[static_cast<std::size_t>(task)];
+  if (cached.text != text) {
     CATENA_TRY(scene::Scene scene, scene::parse_scene(text, study_.path));
-    CATENA_TRY(kept.field, scene::resolve_field(scene, of.field, of.where));
-    kept.text = std::move(text);
+    CATENA_TRY(cached.field, scene::resolve_field(scene, of.field, of.where));
+    cached.text = std::move(text);
   }
-  if (!kept.field.vector)
+  if (!cached.field.vector)
     return json::error_at(json::member_or_parent(of.where, "field"),
-                          "field " + in_quotes(of.field) + " is scalar; a vector field was expected");
-  return kept.field;
+                          "field " + in_quotes(of.field) + " is a scalar field; a vector field was expected");
+  return cached.field;
 }
 
 Result<Stimulus> StimulusGenerator::generate(int task, int seed) {
   const Task& of = study_.tasks[static_cast<std::size_t>(task)];
   const int fields = std::clamp(kStarts / of.rules.candidates, 2, kFields);
-  Faults faults{};
+  Faults fault_counts{};
   for (int k = 0, at = seed; k < fields; ++k, at = next_seed(at)) {
     CATENA_TRY(const field::AnyField field, load_field(task, at));
     CATENA_CHECK(check_lengths(of, field.vector->world_bounds()));
-    if (auto found = Draw(of, *field.vector, at).stimulus(faults)) return *found;
+    if (auto found = Draw(of, *field.vector, at).stimulus(fault_counts)) return *found;
   }
-  return json::error_at(
-      json::member_or_parent(of.where, "stimulus"),
-      fmt::format("task {}: no start under these rules was found: of {} that were drawn {}; rules that more meet were expected",
-                  in_quotes(of.name), fields * of.rules.candidates, words_of(faults)));
+  return json::error_at(json::member_or_parent(of.where, "stimulus"),
+                        fmt::format("task {}: no start meets the rules: of {} random starts {}; less strict rules were expected",
+                                    in_quotes(of.name), fields * of.rules.candidates, describe_faults(fault_counts)));
 }
 
 }  // namespace catena::study

@@ -27,7 +27,7 @@ namespace catena::study {
 /// The geometry of one trial. Positions and lengths in world units.
 struct Stimulus {
   int seed = 0;  ///< Seed of the field: the trial's, or the first seed derived from it whose field has a valid start
-  Vec3 start{0.0}, middle{0.0}, end{0.0};  ///< Of the path: its first point, its point at half the length, and its last point
+  Vec3 start{0.0}, middle{0.0}, end{0.0};  ///< First point of the path, point at half of its length, last point
   std::vector<Vec3> path;                  ///< kPathPoints points evenly spaced by arc length, from start to end
   double length = 0;                       ///< Length of the path
   double radius = 0;                       ///< Radius of the circle target: distance from start to end

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// A study: the experiment of the paper's section 7, described by one JSON file (docs/reference/study.md), so that another experiment needs
-/// no code. Every task is done in every condition on the same stimuli. Tasks differ in what is visible and what the subject has to do,
-/// conditions in the haptic links.
+/// no code. Every task is done in every condition on the same stimuli. Tasks differ in the visible objects and in the subject's
+/// task, conditions in the haptic links.
 ///
 /// Lengths whose names end in _mm are millimeters of the device; scenes have world units: mm = 1000 * meters_per_unit * world units. Errors
 /// are one line, "FILE:LINE: what; what was expected". A Study is immutable after it is read and can be used on any thread.
@@ -24,8 +24,8 @@ enum class TaskKind { advection, tracing };
 /// "advection" or "tracing".
 CATENA_EXPORT const char* to_string(TaskKind kind);
 
-/// What ends a trial: crossing the circle about the start through the path's end, crossing the horizontal plane through the path's end, or
-/// reaching the path's end.
+/// Event that ends a trial: crossing the circle about the start through the path's end, crossing the horizontal plane through the path's
+/// end, or reaching the path's end.
 enum class Target { circle, plane, end };
 
 /// Rules by which a trial's start and path are found in its field; stimulus.h describes them.
@@ -52,10 +52,10 @@ struct Limits {
 /// One task of the experiment.
 struct Task {
   std::string name;                   ///< Name in the tables
-  TaskKind kind = TaskKind::tracing;  ///< What the subject has to do
+  TaskKind kind = TaskKind::tracing;  ///< Task of the subject
   int dimensions = 2;                 ///< 2: everything is measured in the image plane; or 3
-  Target target = Target::end;        ///< What ends a trial
-  StimulusRules rules;                ///< How start and path are found
+  Target target = Target::end;        ///< Event that ends a trial
+  StimulusRules rules;                ///< Rules for start and path
   Limits limits;                      ///< Time limits and rejection
   double start_radius_mm = 4;         ///< The clock starts when the cursor leaves this ball (2D: circle) about the start
   double target_radius_mm = 4;        ///< Tracing: distance from the path's end at which it counts as reached

@@ -29,13 +29,13 @@ Values values_of(const Task& task, const Stimulus& s) {
           {"$indicator", to_json(task.world_from_mm(task.indicator_mm))}};
 }
 
-bool stands_for_a_value(const json::Node& node) { return node.kind == json::Kind::string && node.string.starts_with("$"); }
+bool is_placeholder(const json::Node& node) { return node.kind == json::Kind::string && node.string.starts_with("$"); }
 
 /// Returns true for an object that renders nothing: one of its placeholders stands for an empty list.
-bool draws_nothing(const json::Node& item, const Values& values) {
+bool renders_nothing(const json::Node& item, const Values& values) {
   return std::ranges::any_of(item.members, [&](const auto& member) {
     const auto found = std::ranges::find(values, member.second.string, &Values::value_type::first);
-    return stands_for_a_value(member.second) && found != values.end() && found->second == "[]";
+    return is_placeholder(member.second) && found != values.end() && found->second == "[]";
   });
 }
 
@@ -43,15 +43,15 @@ std::string with_values(const std::string& text, const json::Node& node, const V
 
 /// Appends the node's text from the study file from offset `at` on, with its placeholders replaced by values.
 void append_with_values(std::string& out, const std::string& text, const json::Node& node, const Values& values, std::size_t& at) {
-  if (std::ranges::any_of(node.items, [&](const json::Node& item) { return draws_nothing(item, values); })) {
-    std::string kept;
+  if (std::ranges::any_of(node.items, [&](const json::Node& item) { return renders_nothing(item, values); })) {
+    std::string rendered;
     for (const json::Node& item : node.items)
-      if (!draws_nothing(item, values)) kept += (kept.empty() ? "" : ", ") + with_values(text, item, values);
-    out.append(text, at, node.begin - at).append("[" + kept + "]");
+      if (!renders_nothing(item, values)) rendered += (rendered.empty() ? "" : ", ") + with_values(text, item, values);
+    out.append(text, at, node.begin - at).append("[" + rendered + "]");
     at = node.end;
     return;
   }
-  if (stands_for_a_value(node)) {
+  if (is_placeholder(node)) {
     const auto found = std::ranges::find(values, node.string, &Values::value_type::first);
     if (found != values.end()) {
       out.append(text, at, node.begin - at).append(found->second);
@@ -69,21 +69,21 @@ std::string with_values(const std::string& text, const json::Node& node, const V
   return out.append(text, at, node.end - at);
 }
 
-/// Appends line ends so that the next text stands on `line`.
-void go_to_line(std::string& out, int line) {
-  const auto now = 1 + std::count(out.begin(), out.end(), '\n');
-  if (now < line) out.append(static_cast<std::size_t>(line - now), '\n');
+/// Appends line ends so that the next text is on line `line`.
+void append_line_ends(std::string& out, int line) {
+  const auto current_line = 1 + std::count(out.begin(), out.end(), '\n');
+  if (current_line < line) out.append(static_cast<std::size_t>(line - current_line), '\n');
 }
 
 }  // namespace
 
 Outcome check_placeholders(const json::Node& node) {
-  if (stands_for_a_value(node)) {
+  if (is_placeholder(node)) {
     std::vector<std::string_view> names;
     static const Values known = values_of({}, {});
     for (const auto& [name, value] : known) names.push_back(name);
     if (std::ranges::count(names, node.string) == 0)
-      return json::error_at(node, in_quotes(node.string) + " stands for nothing; one of " + join_words(names) + " was expected" +
+      return json::error_at(node, in_quotes(node.string) + " is not a known placeholder; one of " + join_words(names) + " was expected" +
                                       suggestion(node.string, names));
   }
   for (const json::Node& item : node.items) CATENA_CHECK(check_placeholders(item));
@@ -97,23 +97,23 @@ std::string make_trial_scene(const Study& study, const Trial& trial, const Stimu
   const json::Node& chain = study.conditions[condition].chains[task_index];
   const Values values = values_of(task, stimulus);
   const std::string links = with_values(study.text, chain, values);
-  // the template without its braces; template and chain keep their line numbers of the study file, the earlier one comes first
+  // the template without its braces; template and chain keep the order and the line numbers of the study file
   std::string parts = with_values(study.text, task.scene_template, values);
   parts = parts.substr(1, parts.size() - 2);
   const char* between = task.scene_template.members.empty() ? "" : ",";
   std::string out = "{";
   if (chain.begin < task.scene_template.begin) {
-    go_to_line(out, chain.line);
+    append_line_ends(out, chain.line);
     out += "\"chain\": " + links + between;
-    go_to_line(out, task.scene_template.line);
+    append_line_ends(out, task.scene_template.line);
     return out + parts + "}";
   }
-  go_to_line(out, task.scene_template.line);
+  append_line_ends(out, task.scene_template.line);
   out += parts;
-  // a line comment at the end of the template must not swallow the text that follows
+  // the text that follows must not become part of a line comment at the end of the template
   if (parts.find("//") != std::string::npos) out += '\n';
   out += between;
-  go_to_line(out, chain.line);
+  append_line_ends(out, chain.line);
   return out + " \"chain\": " + links + "}";
 }
 
@@ -122,7 +122,7 @@ std::string make_field_scene(const Study& study, const Task& task, int seed) {
   stimulus.seed = seed;
   const json::Node& fields = *task.scene_template.find("fields");
   std::string out = "{";
-  go_to_line(out, fields.line);
+  append_line_ends(out, fields.line);
   return out + "\"fields\": " + with_values(study.text, fields, values_of(task, stimulus)) + "}";
 }
 

@@ -44,10 +44,11 @@ Error fault_at(const std::string& file, int line, const std::string& what) {
 
 Result<TrialRow> parse_row(std::string_view line, const std::string& file, int number) {
   const std::vector<std::string_view> cells = cells_of(line);
-  if (cells.size() != kColumns) return fault_at(file, number, fmt::format("{} cells; {} were expected", cells.size(), kColumns));
+  if (cells.size() != kColumns)
+    return fault_at(file, number, fmt::format("the row has {} cells; {} were expected", cells.size(), kColumns));
   TrialRow row;
   std::optional<std::size_t> bad;
-  const auto whole = [&](std::size_t column, int& out) {
+  const auto non_negative = [&](std::size_t column, int& out) {
     const auto value = parse_integer(cells[column]);
     if (!value || *value < 0 || *value > std::numeric_limits<int>::max()) return void(bad = bad.value_or(column));
     out = static_cast<int>(*value);
@@ -66,36 +67,38 @@ Result<TrialRow> parse_row(std::string_view line, const std::string& file, int n
     out = std::string(cells[column]);
   };
   bool tracing = false;
-  whole(0, row.subject), whole(1, row.index), whole(2, row.block);
+  non_negative(0, row.subject), non_negative(1, row.index), non_negative(2, row.block);
   word(3, row.task);
   either(4, "advection", "tracing", tracing);
   row.kind = to_string(tracing ? TaskKind::tracing : TaskKind::advection);
-  whole(5, row.dimensions);
+  non_negative(5, row.dimensions);
   word(6, row.condition);
-  whole(7, row.stimulus), whole(8, row.seed);
+  non_negative(7, row.stimulus), non_negative(8, row.seed);
   either(9, "0", "1", row.training);
   either(10, "limit", "target", row.reached_target);
   real(11, row.time_s), real(12, row.error_mm), real(13, row.traveled_mm), real(14, row.peak_force_n);
   for (int axis = 0; axis < 3; ++axis) real(static_cast<std::size_t>(15 + axis), row.end_mm[axis]);
   if (bad)
-    return fault_at(file, number,
-                    in_quotes(cells[*bad]) + " is no " + std::string(cells_of(kHeader)[*bad]) + "; a value of that column was expected");
+    return fault_at(
+        file, number,
+        in_quotes(cells[*bad]) + " is not valid for the column " + std::string(cells_of(kHeader)[*bad]) + "; a valid value was expected");
   return row;
 }
 
 std::string table_of(const std::string& folder) { return (fs::path(folder) / "trials.csv").string(); }
 
-/// Reads a subject's rows. `size` is the size of the file in bytes, `whole` the bytes of its complete rows.
-Result<std::vector<TrialRow>> read_subject(const std::string& folder, int subject, std::size_t& whole, std::size_t& size) {
+/// Reads a subject's rows. `size` is the size of the file in bytes, `non_negative` the bytes of its complete rows.
+Result<std::vector<TrialRow>> read_subject(const std::string& folder, int subject, std::size_t& complete_bytes, std::size_t& size) {
   const std::string path = subject_file(folder, subject);
   std::error_code code;
   if (fs::symlink_status(path, code).type() == fs::file_type::not_found) return std::vector<TrialRow>{};
   CATENA_TRY(const std::string text, read_text_file(path, "a table of trials"));
   size = text.size();
-  CATENA_TRY(std::vector<TrialRow> rows, parse_rows(text, path, true, &whole));
+  CATENA_TRY(std::vector<TrialRow> rows, parse_rows(text, path, true, &complete_bytes));
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (rows[i].subject != subject)
-      return fault_at(path, static_cast<int>(i) + 2, fmt::format("is a trial of subject {}; of {} was expected", rows[i].subject, subject));
+      return fault_at(path, static_cast<int>(i) + 2,
+                      fmt::format("the trial belongs to subject {}; subject {} was expected", rows[i].subject, subject));
   return rows;
 }
 
@@ -105,7 +108,7 @@ Result<std::vector<TrialRow>> rows_of_subjects(const std::string& folder, std::v
   std::vector<TrialRow> all;
   for (const int subject : numbers) {
     CATENA_TRY(const std::vector<TrialRow> some, read_rows(folder, subject, notes));
-    if (some.empty() && notes != nullptr) notes->push_back(subject_file(folder, subject) + ": has no finished trial");
+    if (some.empty() && notes != nullptr) notes->push_back(subject_file(folder, subject) + ": the file has no completed trial");
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;
@@ -119,7 +122,7 @@ void sync_folder(const std::string& folder) {
   ::close(descriptor);
 }
 
-std::string mark_of(const std::string& folder) { return (fs::path(folder) / "simulated.json").string(); }
+std::string simulated_marker(const std::string& folder) { return (fs::path(folder) / "simulated.json").string(); }
 
 }  // namespace
 
@@ -161,29 +164,30 @@ std::string format_row(const TrialRow& row) {
   return text + "\n";
 }
 
-Result<std::vector<TrialRow>> parse_rows(std::string_view text, const std::string& file, bool torn_end, std::size_t* whole) {
+Result<std::vector<TrialRow>> parse_rows(std::string_view text, const std::string& file, bool allow_partial_line,
+                                         std::size_t* complete_bytes) {
   std::vector<TrialRow> rows;
   const auto lines = static_cast<double>(std::count(text.begin(), text.end(), '\n'));
   CATENA_CHECK(check_text_memory_available(one_line(fmt::format("{}: a table of {} rows", file, lines)), lines * 2 * sizeof(TrialRow)));
   std::size_t at = 0;
   int number = 0;
-  if (whole != nullptr) *whole = 0;
+  if (complete_bytes != nullptr) *complete_bytes = 0;
   while (at < text.size()) {
     const std::size_t end = text.find('\n', at);
-    if (end == std::string_view::npos && torn_end) break;
+    if (end == std::string_view::npos && allow_partial_line) break;
     std::string_view line = text.substr(at, end == std::string_view::npos ? end : end - at);
     if (line.ends_with('\r')) line.remove_suffix(1);
     ++number;
     if (number == 1) {
-      if (cells_of(line) != cells_of(kHeader)) return fault_at(file, 1, "the header is another; " + std::string(kHeader) + " was expected");
+      if (cells_of(line) != cells_of(kHeader)) return fault_at(file, 1, "the header is wrong; " + std::string(kHeader) + " was expected");
     } else if (!trim(line).empty()) {
       CATENA_TRY(TrialRow row, parse_row(line, file, number));
       rows.push_back(std::move(row));
     }
     at = end == std::string_view::npos ? text.size() : end + 1;
-    if (whole != nullptr) *whole = at;
+    if (complete_bytes != nullptr) *complete_bytes = at;
   }
-  if (number == 0 && !torn_end) return fault_at(file, 1, "the file is empty; a header was expected");
+  if (number == 0 && !allow_partial_line) return fault_at(file, 1, "the file is empty; a header was expected");
   return rows;
 }
 
@@ -196,7 +200,7 @@ std::string recordings_folder(const std::string& folder) { return (fs::path(fold
 Outcome make_folder(const std::string& path) {
   std::error_code code;
   fs::create_directories(path, code);
-  if (code) return system_error(path + ": cannot make the folder", code.value());
+  if (code) return system_error(path + ": cannot create the folder", code.value());
   return Done{};
 }
 
@@ -214,7 +218,7 @@ Result<std::vector<int>> list_subjects(const std::string& folder, std::vector<st
     if (is_one)
       numbers.push_back(static_cast<int>(*number));
     else if (notes != nullptr && entry.path().string().find(".csv.part") == std::string::npos)
-      notes->push_back(one_line(entry.path().string()) + ": is no subject's file, and is not read");
+      notes->push_back(one_line(entry.path().string()) + ": this is not the file of a subject and was left out");
   }
   if (code && code != std::errc::no_such_file_or_directory) return system_error(folder + ": cannot read the folder", code.value());
   std::sort(numbers.begin(), numbers.end());
@@ -222,28 +226,29 @@ Result<std::vector<int>> list_subjects(const std::string& folder, std::vector<st
 }
 
 Result<std::vector<TrialRow>> read_rows(const std::string& folder, int subject, std::vector<std::string>* notes) {
-  std::size_t whole = 0, size = 0;
-  CATENA_TRY(std::vector<TrialRow> rows, read_subject(folder, subject, whole, size));
-  if (whole < size && notes != nullptr) notes->push_back(subject_file(folder, subject) + ": its last line is torn, and is not read");
+  std::size_t complete_bytes = 0, size = 0;
+  CATENA_TRY(std::vector<TrialRow> rows, read_subject(folder, subject, complete_bytes, size));
+  if (complete_bytes < size && notes != nullptr)
+    notes->push_back(subject_file(folder, subject) + ": the last line is incomplete and was left out");
   return rows;
 }
 
-Result<DataFolder> DataFolder::open(const std::string& path, const Study& study, ParticipantKind who) {
+Result<DataFolder> DataFolder::open(const std::string& path, const Study& study, ParticipantKind participant_kind) {
   const std::string copy = (fs::path(path) / "study.json").string();
   std::error_code code;
   const bool is_new = !fs::exists(copy, code);
   if (!is_new) {
     CATENA_TRY(const std::string old, read_text_file(copy, "the study of this data folder", kMaxJsonBytes));
     if (old != study.text)
-      return Error{
-          fmt::format("{}: holds data of another study ({} differs from {}); another folder was expected", path, copy, study.path)};
+      return Error{fmt::format("{}: the folder contains data of another study ({} differs from {}); another folder was expected", path,
+                               copy, study.path)};
   }
-  CATENA_TRY(const std::vector<int> there, list_subjects(path));
+  CATENA_TRY(const std::vector<int> subjects, list_subjects(path));
   const bool simulated = is_simulated(path);
-  if (who == ParticipantKind::people && simulated)
-    return Error{path + ": holds trials that a model did; another folder was expected for people's"};
-  if (who == ParticipantKind::model && !simulated && !there.empty())
-    return Error{path + ": holds trials that people did; another folder was expected for a model's"};
+  if (participant_kind == ParticipantKind::people && simulated)
+    return Error{path + ": the folder contains trials of a model; another folder was expected for trials of people"};
+  if (participant_kind == ParticipantKind::model && !simulated && !subjects.empty())
+    return Error{path + ": the folder contains trials of people; another folder was expected for trials of a model"};
   CATENA_CHECK(make_folder((fs::path(path) / "subjects").string()));
   CATENA_TRY(FolderLock lock, FolderLock::acquire(path));
   const auto write = [](const std::string& file, const std::string& text) -> Outcome {
@@ -253,17 +258,17 @@ Result<DataFolder> DataFolder::open(const std::string& path, const Study& study,
     return out.commit();
   };
   if (is_new) CATENA_CHECK(write(copy, study.text));
-  if (who == ParticipantKind::model && !simulated)
-    CATENA_CHECK(write(mark_of(path), "{\"simulated\": true, \"by\": \"the operator model of study.json; it stands in for nobody\"}\n"));
+  if (participant_kind == ParticipantKind::model && !simulated)
+    CATENA_CHECK(write(simulated_marker(path), "{\"simulated\": true, \"by\": \"the operator model of study.json, not a person\"}\n"));
   return DataFolder(path, std::move(lock));
 }
 
 Result<std::vector<TrialRow>> DataFolder::rows(int subject) const {
-  std::size_t whole = 0, size = 0;
-  CATENA_TRY(std::vector<TrialRow> rows, read_subject(path_, subject, whole, size));
+  std::size_t complete_bytes = 0, size = 0;
+  CATENA_TRY(std::vector<TrialRow> rows, read_subject(path_, subject, complete_bytes, size));
   const std::string path = subject_file(path_, subject);
-  if (whole < size && ::truncate(path.c_str(), static_cast<off_t>(whole)) != 0)
-    return system_error(path + ": cannot cut off its torn last line", errno);
+  if (complete_bytes < size && ::truncate(path.c_str(), static_cast<off_t>(complete_bytes)) != 0)
+    return system_error(path + ": cannot remove the incomplete last line", errno);
   return rows;
 }
 
@@ -279,14 +284,14 @@ Outcome DataFolder::write_subject(int subject, const std::vector<TrialRow>& rows
 }
 
 std::string DataFolder::partial_recording_path(const Trial& trial) const {
-  const std::string place = recording_file(path_, trial);
-  remove_stale_temporaries(place);
-  return temporary_name(place);
+  const std::string recording = recording_file(path_, trial);
+  remove_stale_temporaries(recording);
+  return temporary_name(recording);
 }
 
 Outcome DataFolder::commit_recording(const Trial& trial, const std::string& unfinished) const {
-  const std::string place = recording_file(path_, trial);
-  if (std::rename(unfinished.c_str(), place.c_str()) != 0) return system_error(place + ": cannot write", errno);
+  const std::string recording = recording_file(path_, trial);
+  if (std::rename(unfinished.c_str(), recording.c_str()) != 0) return system_error(recording + ": cannot write", errno);
   sync_folder(recordings_folder(path_));
   return Done{};
 }
@@ -311,14 +316,14 @@ Result<TrialTable> read_trial_table(const std::string& folder) {
   if (table.rows.empty()) {
     CATENA_TRY(table.rows, parse_rows(text, path));
   } else if (text != format_table(table.rows)) {
-    table.notes.push_back(path + ": differs from subjects/*.csv, which are what is analysed");
+    table.notes.push_back(path + ": differs from subjects/*.csv, which are analysed");
   }
   return table;
 }
 
 bool is_simulated(const std::string& folder) {
   std::error_code code;
-  return fs::exists(mark_of(folder), code);
+  return fs::exists(simulated_marker(folder), code);
 }
 
 }  // namespace catena::study

@@ -30,10 +30,10 @@ struct TrialRow {
   int stimulus = 0, seed = 0;             ///< As in Trial
   bool training = false;                  ///< Excluded from the analysis
   bool reached_target = true;             ///< False: ended by the timeout
-  double time_s = 0;                      ///< As in TrialResult, like the next three; measured on the cursor, not on a proxy
-  double error_mm = 0;                    ///< See time_s
-  double traveled_mm = 0;                 ///< See time_s
-  double peak_force_n = 0;                ///< See time_s
+  double time_s = 0;                      ///< TrialResult::time_s. This and the next three are measured on the cursor, not on a proxy
+  double error_mm = 0;                    ///< TrialResult::error_mm
+  double traveled_mm = 0;                 ///< TrialResult::traveled_mm
+  double peak_force_n = 0;                ///< TrialResult::peak_force_n
   Vec3 end_mm{0.0};                       ///< End position, world axes, device millimeters
   bool operator==(const TrialRow&) const = default;
 };
@@ -46,11 +46,11 @@ CATENA_EXPORT std::string table_header();
 CATENA_EXPORT std::string format_row(const TrialRow& row);  ///< One row, with its line break
 /// The header, then all rows.
 CATENA_EXPORT std::string format_table(const std::vector<TrialRow>& rows);
-/// Parses a table with its header. `file`: name in error messages. `torn_end`: a partial last line is ignored instead of an error, and an
-/// empty text gives no rows. `whole`: receives the number of bytes of the complete lines. Error, "FILE:LINE: ...": another header, or a bad
-/// value.
-CATENA_EXPORT Result<std::vector<TrialRow>> parse_rows(std::string_view text, const std::string& file, bool torn_end = false,
-                                                       std::size_t* whole = nullptr);
+/// Parses a table with its header. `file`: name in error messages. `allow_partial_line`: a partial last line is ignored instead of an
+/// error, and an empty text gives no rows. `complete_bytes`: receives the number of bytes of the complete lines. Error, "FILE:LINE: ...":
+/// another header, or a bad value.
+CATENA_EXPORT Result<std::vector<TrialRow>> parse_rows(std::string_view text, const std::string& file, bool allow_partial_line = false,
+                                                       std::size_t* complete_bytes = nullptr);
 
 /// Path of a subject's rows: "DIR/subjects/007.csv".
 CATENA_EXPORT std::string subject_file(const std::string& folder, int subject);
@@ -69,19 +69,19 @@ CATENA_EXPORT Result<std::vector<int>> list_subjects(const std::string& folder, 
 /// reported in `notes`, if that is not null. Writes nothing. Error: names file and line.
 CATENA_EXPORT Result<std::vector<TrialRow>> read_rows(const std::string& folder, int subject, std::vector<std::string>* notes = nullptr);
 
-/// Whether people or the human model do the trials of a data folder; a folder never holds both.
+/// Participants of the trials of a data folder: people or the human model. A folder never holds trials of both.
 enum class ParticipantKind { people, model };
 
 /// A data folder opened for writing. It is locked for other programs during the lifetime of this object. One thread.
 class CATENA_EXPORT DataFolder {
  public:
   /// Opens the folder, and creates it if it does not exist. Error: it holds another study, another program writes to it, or it holds trials
-  /// of the human model while `who` is people, or the reverse.
-  static Result<DataFolder> open(const std::string& path, const Study& study, ParticipantKind who);
+  /// of the human model while `participant_kind` is people, or the reverse.
+  static Result<DataFolder> open(const std::string& path, const Study& study, ParticipantKind participant_kind);
 
   /// Path of the folder, as given to open().
   const std::string& path() const { return path_; }
-  /// As read_rows(), but a partial last line is cut off the file, so that rows can be appended.
+  /// Reads a subject's rows as read_rows() does, and removes a partial last line from the file, so that rows can be appended.
   Result<std::vector<TrialRow>> rows(int subject) const;
   /// Appends a row to its subject's file and returns when it is synced to disk.
   Outcome append(const TrialRow& row) const;
@@ -110,7 +110,7 @@ struct TrialTable {
 /// Reads all rows of a data folder. Error: names file and line; or the folder has neither trials.csv nor rows in subjects/.
 CATENA_EXPORT Result<TrialTable> read_trial_table(const std::string& folder);
 
-/// Whether the human model did the trials of this data folder.
+/// Returns whether the human model did the trials of this data folder.
 CATENA_EXPORT bool is_simulated(const std::string& folder);
 
 }  // namespace catena::study

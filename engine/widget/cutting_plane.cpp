@@ -18,19 +18,19 @@ LinkShape plane_through_center(const State& state, const Quat& frame, int axis) 
   return {LinkShape::Kind::plane, center_of(state), frame_axis(frame, axis), 0};
 }
 
-void hold(State& state, int axis) noexcept { state.active_planes = static_cast<std::uint8_t>(state.active_planes | 1u << axis); }
+void activate_plane(State& state, int axis) noexcept { state.active_planes = static_cast<std::uint8_t>(state.active_planes | 1u << axis); }
 
-void turn(State& state, const Vec3& proxy) noexcept {
-  const bool about = state.axis >= 0;
-  const Vec3 e = about ? frame_axis(state.grip.frame, state.axis) : Vec3(0.0);
-  const Vec3 arm = about ? perpendicular_direction(proxy - center_of(state), e) : direction(proxy - center_of(state));
+void update_turn(State& state, const Vec3& proxy) noexcept {
+  const bool has_axis = state.axis >= 0;
+  const Vec3 e = has_axis ? frame_axis(state.grip.frame, state.axis) : Vec3(0.0);
+  const Vec3 arm = has_axis ? perpendicular_direction(proxy - center_of(state), e) : direction(proxy - center_of(state));
   if (!(max_abs(arm) > 0)) return;
   if (state.rebase_arm || !(max_abs(state.arm) > 0)) {
     state.arm = arm;
     state.rebase_arm = false;
     return;
   }
-  if (about) {
+  if (has_axis) {
     state.pose.orientation = normalized(rotation_about(e, state.arm, arm) * state.start_pose.orientation);
   } else {
     state.pose.orientation = normalized(shortest_arc(state.arm, arm) * state.pose.orientation);
@@ -66,7 +66,7 @@ ChainRequest plan_plane_chain(const Spec& spec, State& state, const Vec3& probe)
   const LinkShape sphere{LinkShape::Kind::sphere, center_of(state), Vec3(0.0), spec.radius};
   switch (state.mode) {
     case Mode::explore:
-      hold(state, 2);
+      activate_plane(state, 2);
       out.add_link(2, plane_through_center(state, state.pose.orientation, 2));
       break;
     case Mode::translate:
@@ -76,7 +76,7 @@ ChainRequest plan_plane_chain(const Spec& spec, State& state, const Vec3& probe)
     case Mode::rotate:
       for (int i = 0; i < 3 && spec.rotation != RotationMode::free; ++i) {
         if (height(state, i, probe) > spec.grab_distance) continue;
-        hold(state, i);
+        activate_plane(state, i);
         out.add_link(i, plane_through_center(state, state.pose.orientation, i));
       }
       out.add_link(kSphereLink, sphere);
@@ -89,7 +89,7 @@ ChainRequest plan_plane_chain(const Spec& spec, State& state, const Vec3& probe)
         state.rebase_arm = true;
       }
       if (state.axis >= 0) {
-        hold(state, state.axis);
+        activate_plane(state, state.axis);
         out.add_link(state.axis, plane_through_center(state, state.grip.frame, state.axis));
       }
       out.add_link(kSphereLink, sphere);
@@ -104,7 +104,7 @@ void update_plane_pose(const Spec& spec, State& state, const Vec3& proxy) noexce
   if (state.mode == Mode::translate)
     state.pose.points[0] = translated(state.start_pose.points[0], state.grip.frame, displacement(spec, state, proxy));
   else
-    turn(state, proxy);
+    update_turn(state, proxy);
 }
 
 }  // namespace catena::widget

@@ -40,21 +40,23 @@ namespace {
 constexpr int kFaces = 6, kMiddle = 2;
 
 bool is_pair(Kind kind) noexcept { return kind == Kind::rake || kind == Kind::ruler; }
-bool moves_whole(Kind kind, int handle) noexcept { return (is_pair(kind) && handle == kMiddle) || (kind == Kind::box && handle >= kFaces); }
+bool moves_all_points(Kind kind, int handle) noexcept {
+  return (is_pair(kind) && handle == kMiddle) || (kind == Kind::box && handle >= kFaces);
+}
 
-bool goes_along(const Spec& spec, const State& state) noexcept {
+bool is_on_links(const Spec& spec, const State& state) noexcept {
   return spec.kind == Kind::ruler && !spec.along_links.empty() && state.handle < kMiddle;
 }
 
 // Moves the grabbed face of the box, but not past the opposite face.
-void move_face(const Spec& spec, State& state, double by) noexcept {
+void move_face(const Spec& spec, State& state, double displacement) noexcept {
   const int axis = state.handle / 2;
   const Pose& from = state.start_pose;
-  const double lo = from.points[0][axis], hi = from.points[1][axis], least = std::fmin(spec.step, hi - lo);
+  const double lo = from.points[0][axis], hi = from.points[1][axis], min_size = std::fmin(spec.step, hi - lo);
   if (state.handle % 2 == 0)
-    state.pose.points[0][axis] = std::fmin(lo + by, hi - least);
+    state.pose.points[0][axis] = std::fmin(lo + displacement, hi - min_size);
   else
-    state.pose.points[1][axis] = std::fmax(hi + by, lo + least);
+    state.pose.points[1][axis] = std::fmax(hi + displacement, lo + min_size);
 }
 
 }  // namespace
@@ -89,12 +91,12 @@ Proximity handle_proximity(const Spec& spec, const State& state, const Vec3& pro
   for (int h = 0; h < handle_count(spec.kind); ++h) {
     const double distance = norm(probe - handle_position(spec.kind, state.pose, h));
     if (!(distance <= spec.grab_distance)) continue;
-    const bool has = state.mode != Mode::idle && state.handle == h;
-    if (out.nearest_handle < 0 || has || distance < out.distance) {
+    const bool is_current = state.mode != Mode::idle && state.handle == h;
+    if (out.nearest_handle < 0 || is_current || distance < out.distance) {
       out.nearest_handle = static_cast<std::int8_t>(h);
       out.distance = distance;
     }
-    if (has) break;
+    if (is_current) break;
   }
   return out;
 }
@@ -125,7 +127,7 @@ ChainRequest plan_handle_chain(const Spec& spec, State& state, const Vec3& probe
     out.add_link(kSphereLink, {LinkShape::Kind::point, handle_position(spec.kind, state.pose, state.handle), Vec3(0.0), 0});
   } else if (state.mode == Mode::drag) {
     out.disables_scene_links = true;
-    if (goes_along(spec, state))
+    if (is_on_links(spec, state))
       out.uses_along_links = true;
     else
       add_planes(spec, state, probe, out);
@@ -134,17 +136,17 @@ ChainRequest plan_handle_chain(const Spec& spec, State& state, const Vec3& probe
 }
 
 void update_handle_pose(const Spec& spec, State& state, const Vec3& proxy) noexcept {
-  if (goes_along(spec, state)) {
+  if (is_on_links(spec, state)) {
     state.pose.points[static_cast<std::size_t>(state.handle)] = proxy;
     return;
   }
-  const Vec3 by = displacement(spec, state, proxy);
-  if (spec.kind == Kind::box && state.handle < kFaces) return move_face(spec, state, by[state.handle / 2]);
-  const bool whole = moves_whole(spec.kind, state.handle);
+  const Vec3 offset = displacement(spec, state, proxy);
+  if (spec.kind == Kind::box && state.handle < kFaces) return move_face(spec, state, offset[state.handle / 2]);
+  const bool all_points = moves_all_points(spec.kind, state.handle);
   for (int k = 0; k < 2; ++k) {
     const auto p = static_cast<std::size_t>(k);
-    if (whole || k == (is_pair(spec.kind) ? state.handle : 0))
-      state.pose.points[p] = translated(state.start_pose.points[p], state.grip.frame, by);
+    if (all_points || k == (is_pair(spec.kind) ? state.handle : 0))
+      state.pose.points[p] = translated(state.start_pose.points[p], state.grip.frame, offset);
   }
 }
 

@@ -50,25 +50,26 @@ Near near_of(const Spec& spec, const State& state, const Vec3& probe) noexcept {
   return out;
 }
 
-TransitionInput facts_of(const Spec& spec, const State& state, const Proximity& reach, const TickInput& input) noexcept {
+TransitionInput transition_input(const Spec& spec, const State& state, const Proximity& proximity, const TickInput& input) noexcept {
   const std::uint32_t bit = 1u << ((spec.button - 1) & 31);
   const bool down = (input.buttons & bit) != 0;
-  return {.near_handle = reach.nearest_handle >= 0,
-          .near_sphere = reach.near_sphere,
-          .near_plane = reach.near_plane,
+  return {.near_handle = proximity.nearest_handle >= 0,
+          .near_sphere = proximity.near_sphere,
+          .near_plane = proximity.near_plane,
           .button_pressed = down && (input.last_buttons & bit) == 0 && !input.probe_returned,
           .button_down = down,
           .rotate_on_contact = spec.rotate_on_contact,
           .is_gripped = state.is_gripped};
 }
 
-bool drags_along(const Spec& spec, const State& state) noexcept {
+bool drags_on_links(const Spec& spec, const State& state) noexcept {
   return spec.kind == Kind::ruler && !spec.along_links.empty() && state.mode == Mode::drag && state.handle < 2;
 }
 
-void enter(const Spec& spec, State& state, Mode mode, const TransitionInput& facts, const Proximity& reach, const Vec3& probe) noexcept {
-  state.is_gripped = is_grabbed(mode) && (facts.button_pressed || (state.is_gripped && facts.button_down));
-  if (mode != Mode::drag) state.handle = mode == Mode::hover ? reach.nearest_handle : static_cast<std::int8_t>(-1);
+void enter(const Spec& spec, State& state, Mode mode, const TransitionInput& transition, const Proximity& proximity,
+           const Vec3& probe) noexcept {
+  state.is_gripped = is_grabbed(mode) && (transition.button_pressed || (state.is_gripped && transition.button_down));
+  if (mode != Mode::drag) state.handle = mode == Mode::hover ? proximity.nearest_handle : static_cast<std::int8_t>(-1);
   if (mode == state.mode) return;
   state.mode = mode;
   state.active_planes = 0;
@@ -84,7 +85,7 @@ void enter(const Spec& spec, State& state, Mode mode, const TransitionInput& fac
 }
 
 // After an interval without a probe, a grab continues from the probe's present position.
-void take_anew(State& state, const TickInput& input) noexcept {
+void move_grip(State& state, const TickInput& input) noexcept {
   const Vec3 grab = state.grip.grab_point + (input.probe - input.last_probe);
   state.grip.grab_point = is_finite(grab) ? grab : input.probe;
   state.start_pose.orientation = state.pose.orientation;
@@ -111,33 +112,33 @@ void reset_state(const Spec& spec, State& state) noexcept {
 
 int step_modes(std::span<const Spec> specs, std::span<State> states, const TickInput& input) noexcept {
   const std::size_t count = std::min({specs.size(), states.size(), static_cast<std::size_t>(kMaxWidgets)});
-  std::array<Near, kMaxWidgets> nears{};
-  std::array<TransitionInput, kMaxWidgets> facts{};
-  std::size_t chosen = count;
+  std::array<Near, kMaxWidgets> near{};
+  std::array<TransitionInput, kMaxWidgets> inputs{};
+  std::size_t engaged = count;
   for (std::size_t i = 0; i < count; ++i) {
     if (!states[i].is_initialized) reset_state(specs[i], states[i]);
-    if (input.probe_returned && drags_along(specs[i], states[i])) states[i].mode = Mode::idle;
-    nears[i] = near_of(specs[i], states[i], input.probe);
-    facts[i] = facts_of(specs[i], states[i], nears[i].reach, input);
+    if (input.probe_returned && drags_on_links(specs[i], states[i])) states[i].mode = Mode::idle;
+    near[i] = near_of(specs[i], states[i], input.probe);
+    inputs[i] = transition_input(specs[i], states[i], near[i].reach, input);
     // the widget that is grabbed, or becomes grabbed in this tick
-    if (states[i].mode != Mode::idle && is_grabbed(next_mode(specs[i].kind, states[i].mode, facts[i]))) chosen = i;
+    if (states[i].mode != Mode::idle && is_grabbed(next_mode(specs[i].kind, states[i].mode, inputs[i]))) engaged = i;
   }
-  if (chosen == count) {
-    const auto comes_first = [&](std::size_t a, std::size_t b) {
-      if (nears[a].rank != nears[b].rank) return nears[a].rank > nears[b].rank;
+  if (engaged == count) {
+    const auto precedes = [&](std::size_t a, std::size_t b) {
+      if (near[a].rank != near[b].rank) return near[a].rank > near[b].rank;
       const bool a_is = states[a].mode != Mode::idle, b_is = states[b].mode != Mode::idle;
-      return a_is != b_is ? a_is : nears[a].reach.distance < nears[b].reach.distance;
+      return a_is != b_is ? a_is : near[a].reach.distance < near[b].reach.distance;
     };
     for (std::size_t i = 0; i < count; ++i)
-      if (nears[i].rank > 0 && (chosen == count || comes_first(i, chosen))) chosen = i;
+      if (near[i].rank > 0 && (engaged == count || precedes(i, engaged))) engaged = i;
   }
   for (std::size_t i = 0; i < count; ++i) {
-    const Mode was = states[i].mode;
-    const Mode next = i == chosen ? next_mode(specs[i].kind, was, facts[i]) : Mode::idle;
-    enter(specs[i], states[i], next, facts[i], nears[i].reach, input.probe);
-    if (input.probe_returned && is_grabbed(was) && states[i].mode == was) take_anew(states[i], input);
+    const Mode old_mode = states[i].mode;
+    const Mode next = i == engaged ? next_mode(specs[i].kind, old_mode, inputs[i]) : Mode::idle;
+    enter(specs[i], states[i], next, inputs[i], near[i].reach, input.probe);
+    if (input.probe_returned && is_grabbed(old_mode) && states[i].mode == old_mode) move_grip(states[i], input);
   }
-  return chosen < count ? static_cast<int>(chosen) : -1;
+  return engaged < count ? static_cast<int>(engaged) : -1;
 }
 
 ChainRequest plan_chain(const Spec& spec, State& state, const Vec3& probe) noexcept {
@@ -147,12 +148,12 @@ ChainRequest plan_chain(const Spec& spec, State& state, const Vec3& probe) noexc
 
 void update_pose(const Spec& spec, State& state, const Vec3& proxy) noexcept {
   if (!is_grabbed(state.mode) || !is_finite(proxy)) return;
-  const Pose before = state.pose;
+  const Pose old_pose = state.pose;
   if (spec.kind == Kind::cutting_plane)
     update_plane_pose(spec, state, proxy);
   else
     update_handle_pose(spec, state, proxy);
-  if (!is_finite(state.pose.points[0]) || !is_finite(state.pose.points[1]) || !is_finite(state.pose.orientation)) state.pose = before;
+  if (!is_finite(state.pose.points[0]) || !is_finite(state.pose.points[1]) || !is_finite(state.pose.orientation)) state.pose = old_pose;
   if (spec.kind == Kind::isolevel) update_level(spec, state);
 }
 

@@ -53,7 +53,7 @@ using Report = WidgetReport;
 ///   ruler          from points[0] to points[1]
 enum class Kind : std::uint8_t { cutting_plane, seed, rake, isolevel, box, ruler };
 
-/// How a cutting plane turns. any: about an axis if grabbed near one of the three great circles of the sphere, else freely; free: freely
+/// Rotation of a cutting plane. any: about an axis if grabbed near one of the three great circles of the sphere, else freely; free: freely
 /// only; axis: about the nearest axis only.
 enum class RotationMode : std::uint8_t { any, free, axis };
 
@@ -70,7 +70,7 @@ struct Spec {
   double release = 0;                               ///< Cutting plane: distance beyond which it releases the probe; more than `snap`
   double grab_distance = 0;                         ///< Distance within which the sphere, a great circle or a handle can be grabbed
   double step = 0;                                  ///< Distance of the probe at which a plane that holds an axis releases it
-  RotationMode rotation = RotationMode::any;        ///< How a cutting plane turns
+  RotationMode rotation = RotationMode::any;        ///< Rotation of a cutting plane
   bool rotate_on_contact = false;                   ///< True: the sphere turns on contact, without the button
   int button = 1;                                   ///< Button that grabs, 1..32
   std::shared_ptr<const field::ScalarField> field;  ///< Isolevel: field whose value at the handle is the level; else null

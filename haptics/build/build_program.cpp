@@ -16,8 +16,8 @@ namespace catena::haptics {
 
 namespace {
 
-/// Adds to the spec hash what a link is built from: its text except "enabled" (a link that is switched off and on is still the same), and
-/// the versions of its fields and meshes.
+/// Adds to the spec hash the recipe of a link: its text except "enabled" (switching a link off and on does not change it), and the versions
+/// of its fields and meshes.
 void add_recipe(const json::Node& node, Fnv1a& recipe) {
   recipe.add(static_cast<int>(node.kind));
   recipe.add(node.boolean);
@@ -40,11 +40,11 @@ Result<json::Node> node_for_baseline(const json::Node& from, CouplingMethod meth
     return std::any_of(type->keys.begin(), type->keys.end(), [&](const schema::Key& k) { return k.name == key; });
   };
   if (const json::Node* snap = from.find("snap"))
-    return json::error_at(*snap, "\"snap\" needs a proxy of the link's own; \"method\": \"chain\" was expected in \"coupling\"");
+    return json::error_at(*snap, "\"snap\" needs a separate proxy for the link; \"method\": \"chain\" was expected in \"coupling\"");
   if (const json::Node* release = from.find("release"); release != nullptr) {
     if (release->kind == json::Kind::object)
-      return json::error_at(*release,
-                            "\"release\" follows a field; a number was expected, for \"coupling\" has a \"method\" other than chain");
+      return json::error_at(
+          *release, "\"release\" depends on a field; a number was expected, because the \"method\" of \"coupling\" is not \"chain\"");
     CATENA_TRY(link.release, json::as_number(*release, "release", json::NumberRange::positive));
     std::erase_if(node.members, [](const auto& member) { return member.first == "release"; });
   }
@@ -60,7 +60,7 @@ Result<json::Node> node_for_baseline(const json::Node& from, CouplingMethod meth
   return node;
 }
 
-constexpr double kConservativeTolerance = 1e-10;  // of L; for proxies whose derivative along the path of the probe enters the force
+constexpr double kConservativeTolerance = 1e-10;  // fraction of L; for proxies whose derivative along the probe path enters the force
 
 }  // namespace
 
@@ -107,8 +107,8 @@ Result<Link> build_link(const json::Node& from, const Coupling& coupling, const 
     CATENA_TRY(link.constraint, build_constraint(node, noting));
     if (!link.constraint->has_primitive())
       return json::error_at(*from.find("type"), "a \"" + from.find("type")->string +
-                                                    "\" link has no linear primitive, which the coupling's \"method\" needs; a chain "
-                                                    "(\"method\": \"chain\") was expected");
+                                                    "\" link has no linear primitive, which the \"method\" of \"coupling\" needs; "
+                                                    "\"method\": \"chain\" was expected");
   }
   CATENA_TRY(link.align, read_align(from, coupling, *link.constraint));
   link.spec_hash = recipe.value;
@@ -119,7 +119,7 @@ namespace {
 
 std::atomic<std::uint64_t> newest_epoch{0};
 
-/// For each name, the links it stands for, as indices into the program's links. The links of a mode also have names of their own.
+/// Names and the indices of the program's links that each name stands for. The links of a mode also have names of their own.
 using LinksOf = std::vector<std::pair<std::string, std::vector<int>>>;
 
 /// Adds a note if a mesh that has an outside is oriented the other way in places.
@@ -127,8 +127,8 @@ Outcome note_sides(scene::Scene& scene, const json::Node& name, const std::strin
   CATENA_TRY(const mesh::MeshPtr mesh, scene::resolve_mesh(scene, name.string, name));
   if (mesh->misoriented_edges() == 0) return Done{};
   const std::string note = fmt::format(
-      "link \"{}\": at {} edges of mesh \"{}\" the two faces disagree on which side is free; there the hand may pass, or be held from "
-      "inside",
+      "link \"{}\": at {} edges of mesh \"{}\" the two faces have opposite orientations; at these edges the probe may pass through, or be "
+      "held from inside",
       link, mesh->misoriented_edges(), name.string);
   if (std::find(scene.notes.begin(), scene.notes.end(), note) == scene.notes.end()) scene.notes.push_back(note);
   return Done{};
@@ -141,14 +141,14 @@ Outcome add_links(scene::Scene& scene, const scene::Link& from, const BuildConte
   std::vector<int> indices;
   for (const json::Node& node : nodes) {
     if (program.links.size() >= static_cast<std::size_t>(kMaxSceneLinks))
-      return json::error_at(from.node, "the chain is too long; at most " + std::to_string(kMaxSceneLinks) + " links were expected");
+      return json::error_at(from.node, "the chain has too many links; at most " + std::to_string(kMaxSceneLinks) + " were expected");
     CATENA_TRY(Link link, build_link(node, program.coupling, context));
     if (const json::Node* mesh = node.find("mesh"); mesh != nullptr && link.one_sided) CATENA_CHECK(note_sides(scene, *mesh, link.name));
     if (const json::Node* field = node.find("field"); field != nullptr && field->kind == json::Kind::string)
       link.feature_name = scene::surface_label_name(scene, field->string);
     for (const Link& other : program.links)
       if (other.name == link.name)
-        return json::error_at(from.node, "duplicate link name \"" + link.name + "\" (a ready-made mode names its links " +
+        return json::error_at(from.node, "duplicate link name \"" + link.name + "\" (the links of a preset mode are named " +
                                              "MODE_...); unique names were expected");
     indices.push_back(static_cast<int>(program.links.size()));
     if (nodes.size() > 1) links_of.push_back({link.name, {indices.back()}});
@@ -174,11 +174,12 @@ Result<Mode> make_mode(const scene::Mode& from, const LinksOf& links_of) {
     for (const auto& [name, links] : links_of)
       if (name == from.links[k]) found = &links;
     if (found == nullptr)
-      return json::error_at(items[k], "mode \"" + from.name + "\" names \"" + from.links[k] + "\", which is no link of the chain; " +
+      return json::error_at(items[k], "mode \"" + from.name + "\" names \"" + from.links[k] + "\", which is not a link of the chain; " +
                                           known_names(links_of) + " was expected");
     for (const int link : *found) {
       if (std::find(mode.links.begin(), mode.links.end(), link) != mode.links.end())
-        return json::error_at(items[k], "mode \"" + from.name + "\" names \"" + from.links[k] + "\" twice; each link once was expected");
+        return json::error_at(items[k],
+                              "mode \"" + from.name + "\" names \"" + from.links[k] + "\" twice; one mention of each link was expected");
       mode.links.push_back(link);
     }
   }
@@ -212,7 +213,7 @@ Result<std::shared_ptr<const HapticProgram>> build_program(scene::Scene& scene, 
   program->workspace_origin = scene.workspace.origin;
   program->workspace_rotation = scene.workspace.rotation;
 
-  // links in the order of the scene, then the modes that order them
+  // the links in the order of the scene, then the modes, which set other orders
   std::vector<scene::Link> links;
   scene.entities.each<scene::Link>([&](scene::Entity, const scene::Link& link) { links.push_back(link); });
   LinksOf links_of;
@@ -221,7 +222,7 @@ Result<std::shared_ptr<const HapticProgram>> build_program(scene::Scene& scene, 
   scene.entities.each<scene::Mode>([&](scene::Entity, const scene::Mode& mode) { modes.push_back(mode); });
   for (const scene::Mode& from : modes) {
     if (program->modes.size() >= static_cast<std::size_t>(kMaxModes))
-      return json::error_at(from.node, "too many modes; at most " + std::to_string(kMaxModes) + " were expected");
+      return json::error_at(from.node, "the scene has too many modes; at most " + std::to_string(kMaxModes) + " were expected");
     CATENA_TRY(Mode mode, make_mode(from, links_of));
     program->modes.push_back(std::move(mode));
   }

@@ -27,7 +27,7 @@ json::Node vector_node(const json::Node& like, const Vec3& value) {
   return node;
 }
 
-Result<scene::Entity> widget_named(scene::Scene& scene, const json::Node& value, widget::Kind kind, std::string_view wanted) {
+Result<scene::Entity> widget_named(scene::Scene& scene, const json::Node& value, widget::Kind kind, std::string_view expected) {
   CATENA_CHECK(json::check_known_keys(value, {"widget"}));
   CATENA_TRY(const std::string name, json::require_string(value, "widget"));
   const json::Node& where = *value.find("widget");
@@ -36,7 +36,7 @@ Result<scene::Entity> widget_named(scene::Scene& scene, const json::Node& value,
   const widget::Kind is = scene.entities.get<scene::Widget>(found).spec.kind;
   if (is != kind)
     return json::error_at(where, "widget " + in_quotes(name) + " is of type " + in_quotes(scene::to_string(is)) + "; " +
-                                     std::string(wanted) + " was expected");
+                                     std::string(expected) + " was expected");
   return found;
 }
 
@@ -48,7 +48,7 @@ Outcome find_along(const scene::Widget& from, const std::function<const std::vec
     const std::vector<int>* links = links_of(from.along_links[k]);
     if (links == nullptr)
       return json::error_at(nodes != nullptr && k < nodes->items.size() ? nodes->items[k] : from.where,
-                            in_quotes(from.along_links[k]) + " is no link of the chain; the name of one was expected");
+                            in_quotes(from.along_links[k]) + " is not a link of the chain; the name of a link was expected");
     spec.along_links.insert(spec.along_links.end(), links->begin(), links->end());
   }
   return Done{};
@@ -79,9 +79,9 @@ Outcome add_widgets(scene::Scene& scene, const std::function<const std::vector<i
   if (entities.empty()) return Done{};
   const json::Node& first = scene.entities.get<scene::Widget>(entities.front()).where;
   if (program.coupling.method != CouplingMethod::chain)
-    return json::error_at(first, "widgets need the proxy chain; \"method\": \"chain\" was expected in \"coupling\"");
+    return json::error_at(first, "widgets need a proxy chain; \"method\": \"chain\" was expected in \"coupling\"");
   if (entities.size() > static_cast<std::size_t>(kMaxWidgets))
-    return json::error_at(first, "too many widgets; at most " + std::to_string(kMaxWidgets) + " were expected");
+    return json::error_at(first, "the scene has too many widgets; at most " + std::to_string(kMaxWidgets) + " were expected");
   for (const scene::Entity e : entities) {
     CATENA_TRY(widget::Spec spec, scene::resolve_widget(scene, e));
     const scene::Widget& from = scene.entities.get<scene::Widget>(e);
@@ -94,8 +94,8 @@ Outcome add_widgets(scene::Scene& scene, const std::function<const std::vector<i
   for (const Link& link : program.links)
     for (const char* name : widget::kSharedLinkNames)
       if (link.name == name)
-        return json::error_at(first, "the chain has a link named \"" + link.name +
-                                         "\", which is a name of the widgets' own; another name was expected there");
+        return json::error_at(first,
+                              "the chain has a link named \"" + link.name + "\", which is reserved for widgets; another name was expected");
   add_widget_links(program);
   return Done{};
 }

@@ -5,17 +5,17 @@ namespace catena::haptics {
 
 namespace {
 
-constexpr double kPastSquare =
-    0.17364817766693033;  // sin(10 degrees): the tool turns to the other end of an unsigned axis this far past the perpendicular
-constexpr double kQuarterTurn = 1.5707963267948966;  // radians; the largest possible angle to an unsigned axis
+constexpr double kPastSquare = 0.17364817766693033;  // sin(10 degrees): beyond this angle past the perpendicular the tool aligns with the
+                                                     // other end of an unsigned axis
+constexpr double kQuarterTurn = 1.5707963267948966;  // radians; maximum angle to an unsigned axis
 
-// Whether the link constrains the proxy: active, not on its free side, not released, and a feature exists.
+// Returns whether the link constrains the proxy: active, not on its free side, not released, and a feature exists.
 bool holds(const LinkState& link) noexcept {
   return link.active() && (link.status == LinkStatus::ok || link.status == LinkStatus::budget || link.status == LinkStatus::critical ||
                            link.status == LinkStatus::boundary);
 }
 
-// Axis of the link's primitive at its proxy; zero if there is none. Out of budget: `last`.
+// Returns the axis of the link's primitive at its proxy; zero if there is none; `last` if the link is out of budget.
 Vec3 axis_of(const Link& spec, LinkState& link, LinkScratch& scratch, const Vec3& last) noexcept {
   if (!holds(link)) return Vec3(0.0);
   if (link.evaluations >= kMaxEvaluations) return last;
@@ -26,8 +26,8 @@ Vec3 axis_of(const Link& spec, LinkState& link, LinkScratch& scratch, const Vec3
   return found && primitive.kind != Primitive::Kind::point ? primitive.axis : Vec3(0.0);
 }
 
-// The one of +n and -n to which the tool is aligned: the nearer one at first, then that of the last tick until the tool is kPastSquare past
-// the perpendicular.
+// Returns the direction, +n or -n, with which the tool is aligned: initially the nearer one, afterwards that of the last tick until the
+// tool is kPastSquare past the perpendicular.
 Vec3 end_of(const Align& align, const Vec3& tool_axis, const Vec3& n, const Vec3& last) noexcept {
   if (align.sign == Align::Sign::same) return n;
   if (!(max_abs(last) > 0)) return dot(tool_axis, n) < 0 ? -n : n;
@@ -51,7 +51,7 @@ Vec3 align_links(const HapticProgram& program, const LinkOrder& order, const Qua
     return Vec3(0.0);
   }
 
-  // each rotational proxy is the orientation that the next link receives
+  // each rotational proxy is the input orientation of the next link
   Quat incoming = tool;
   Vec3 torque(0.0);
   double stiffness = 0;
@@ -80,14 +80,14 @@ Vec3 align_links(const HapticProgram& program, const LinkOrder& order, const Qua
     out.links[i].torque_nm = shares[i];
   }
 
-  // a link that is switched off reports the orientation before it (the tool's, if a mode orders the chain)
+  // a link that is switched off reports the orientation of the previous link (of the tool if a mode orders the chain)
   Quat before = tool;
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     if (!order.contains(i)) out.links[i].orientation = before;
     if (order.mode < 0) before = out.links[i].orientation;
   }
 
-  // steps of the torque are ramped
+  // ramps a step of the torque
   const Quat q0 = normalized(tool);
   const Vec3 turned = step.first_tick ? Vec3(0.0) : rotation_vector(normalized(q0 * glm::conjugate(normalized(state.last_orientation))));
   if (step.first_tick) state.ramp.last_force = torque;
@@ -96,7 +96,7 @@ Vec3 align_links(const HapticProgram& program, const LinkOrder& order, const Qua
   const double fall = step.ramp_step < 1 ? state.total_stiffness * kQuarterTurn * step.ramp_step : std::numeric_limits<double>::infinity();
   torque += step_ramp(state.ramp, torque, stiffness * norm(turned), fall);
 
-  // the coupling's damping
+  // adds the coupling's damping
   if (step.dt_s > 0 && damping > 0) torque -= turned * (damping / step.dt_s);
   state.last_orientation = q0;
   return torque;

@@ -7,7 +7,7 @@ namespace catena::haptics {
 
 namespace {
 
-/// Updates the side on which the probe is of a released surface. Returns true if the probe has crossed the surface since the last call.
+/// Updates the side of a released surface that the probe is on. Returns whether the probe has crossed the surface since the last call.
 bool note_side(SingleProxyTick& tick, std::size_t i) noexcept {
   SingleProxyState::ReleaseState& watch = tick.state.release_states[i];
   Primitive primitive;
@@ -30,7 +30,7 @@ bool takes_hold_again(SingleProxyTick& tick, std::size_t i) noexcept {
   return near && (crossed || norm(tick.probe - tick.links[i].proxy) <= kRearmFraction * spec.release);
 }
 
-/// Starts the links that have just been switched on. Returns false if there is none.
+/// Starts the links that have been switched on since the last tick. Returns false if there is none.
 bool begin_links(SingleProxyTick& tick) noexcept {
   SingleProxyState& single = tick.state;
   const CouplingMethod method = tick.program.coupling.method;
@@ -116,7 +116,7 @@ void advance_single_proxy(SingleProxyTick& tick, bool same_order) noexcept {
   const bool begun = begin_links(tick);
   if (single.settled && same_order && !begun && bitwise_equal(single.probe, tick.probe)) return;
 
-  // released links
+  // re-engages released links
   const bool is_linear = tick.program.coupling.method == CouplingMethod::linear;
   for (int k = 0; k < tick.order.count; ++k) {
     const auto i = static_cast<std::size_t>(tick.order.links[static_cast<std::size_t>(k)]);
@@ -126,7 +126,7 @@ void advance_single_proxy(SingleProxyTick& tick, bool same_order) noexcept {
     if (is_linear) single.proxy = tick.links[i].proxy;
   }
 
-  // the proxy; solved a second time without the links that were released
+  // computes the proxy, and computes it once more without the links that were released
   const Vec3 before = single.proxy;
   Vec3 p = tick.probe;
   for (int round = 0; round <= kMaxLinks; ++round) {
@@ -140,7 +140,7 @@ void advance_single_proxy(SingleProxyTick& tick, bool same_order) noexcept {
   if (count == 0) p = tick.probe;
   if (!is_finite(p)) p = before;
 
-  // link reports
+  // fills the reports of the links
   bool spent = false;
   for (int k = 0; k < tick.order.count; ++k) {
     const auto i = static_cast<std::size_t>(tick.order.links[static_cast<std::size_t>(k)]);
@@ -167,8 +167,8 @@ namespace {
 
 /// Solves a symmetric positive semidefinite 3 x 3 system by L D L'. A direction without stiffness gets 0.
 Vec3 solve(const Mat3& a, const Vec3& b) noexcept {
-  const double least = 1e-14 * std::max(std::max(a[0][0], a[1][1]), a[2][2]);
-  const auto part = [&](double value, double pivot) { return pivot > least ? value / pivot : 0; };
+  const double minimum = 1e-14 * std::max(std::max(a[0][0], a[1][1]), a[2][2]);
+  const auto part = [&](double value, double pivot) { return pivot > minimum ? value / pivot : 0; };
   const double l10 = part(a[0][1], a[0][0]), l20 = part(a[0][2], a[0][0]);
   const double d1 = a[1][1] - l10 * a[0][1];
   const double m = a[1][2] - l10 * a[0][2];
@@ -196,7 +196,7 @@ Vec3 solve_balance(SingleProxyTick& tick) noexcept {
   });
   if (!(largest > 0)) return tick.probe;
 
-  // the balance, in units of the largest stiffness
+  // the balance of forces, in units of the maximum stiffness
   Mat3 a(tick.program.coupling.stiffness_n_per_m / largest);
   Vec3 b(0.0);
   tick.for_each_held_link([&](std::size_t i) {

@@ -92,6 +92,6 @@ class CATENA_EXPORT ConstrainedSubspace {
 };
 
 /// Returns the distance of a point from a primitive, world units.
-CATENA_EXPORT double distance_to(const Primitive& primitive, const Vec3& place) noexcept;
+CATENA_EXPORT double distance_to(const Primitive& primitive, const Vec3& point) noexcept;
 
 }  // namespace catena::haptics

@@ -9,7 +9,7 @@ namespace catena::haptics {
 Vec3 solve_linear(SingleProxyTick& tick) noexcept {
   Vec3 p = tick.state.proxy;
 
-  // the links that take part
+  // links that take part in this tick
   tick.for_each_held_link([&](std::size_t i) {
     LinkState& link = tick.links[i];
     if (!tick.program.links[i].one_sided) {
@@ -21,7 +21,7 @@ Vec3 solve_linear(SingleProxyTick& tick) noexcept {
     if (tick.holding[i] && !tick.state.release_states[i].was_holding) p = link.proxy;
   });
 
-  // their primitives at p
+  // primitives of these links at p
   ConstrainedSubspace span;
   bool any = false;
   tick.for_each_held_link([&](std::size_t i) {
@@ -42,7 +42,7 @@ Vec3 solve_linear(SingleProxyTick& tick) noexcept {
   });
   if (!any) return tick.probe;
 
-  // move only to a point where every primitive still exists
+  // moves only to a point where all primitives exist
   const Vec3 next = p + span.project_free(tick.probe - p);
   if (!is_finite(next)) return p;
   bool stays = false;
@@ -71,13 +71,13 @@ Vec3 solve_linear(SingleProxyTick& tick) noexcept {
 namespace {
 
 constexpr int kPasses = 32, kPassesAgain = 4, kNewton = 12;
-constexpr double kSatisfied = 1e-11, kLongest = 0.25;  // of L
+constexpr double kSatisfied = 1e-11, kLongest = 0.25;  // fractions of L
 
 /// Runs one pass. Returns the largest distance from a link's proxy to the final proxy of the pass.
 double pass(SingleProxyTick& tick, Vec3& p, std::array<bool, kMaxLinks>& holds) noexcept {
   std::array<Vec3, kMaxLinks> left{};
   tick.for_each_held_link([&](std::size_t i) {
-    // a link held by the last pass still holds on the edge of its free side
+    // a link that held in the last pass still holds at the boundary of its free side
     Primitive edge;
     const bool held = holds[i];
     holds[i] = tick.apply(i, p);
@@ -123,7 +123,7 @@ bool meet(SingleProxyTick& tick, const std::array<bool, kMaxLinks>& holds, Vec3&
   return false;
 }
 
-/// Whether none of the links that did not take part constrains p (within round-off).
+/// Returns whether no other link constrains p, within round-off.
 bool others_agree(SingleProxyTick& tick, const std::array<bool, kMaxLinks>& holds, const Vec3& p) noexcept {
   bool agree = true;
   tick.for_each_held_link([&](std::size_t i) {
@@ -138,8 +138,8 @@ Vec3 solve_pipe(SingleProxyTick& tick) noexcept {
   Vec3 p = tick.probe;
   std::array<bool, kMaxLinks> holds{};
   bool satisfied = false;
-  const int most = std::max(kPasses - tick.iterations, kPassesAgain);
-  for (int k = 0; k < most && !satisfied; ++k, ++tick.iterations) {
+  const int maximum = std::max(kPasses - tick.iterations, kPassesAgain);
+  for (int k = 0; k < maximum && !satisfied; ++k, ++tick.iterations) {
     satisfied = pass(tick, p, holds) <= kSatisfied * tick.domain_length;
     if (!satisfied && k > 0) satisfied = meet(tick, holds, p) && others_agree(tick, holds, p);
   }
@@ -159,7 +159,7 @@ namespace {
 
 constexpr double kParallel = 1e-7;  // sine of the smallest angle at which two equations count as independent
 
-/// Orthonormal pair perpendicular to the unit vector n.
+/// Computes an orthonormal pair perpendicular to the unit vector n.
 void across_pair(const Vec3& n, Vec3& a, Vec3& b) noexcept {
   const Vec3 pick = std::fabs(n.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
   a = direction(cross(n, pick));
@@ -169,7 +169,7 @@ void across_pair(const Vec3& n, Vec3& a, Vec3& b) noexcept {
 }  // namespace
 
 void ConstrainedSubspace::add(const Vec3& normal, double distance) noexcept {
-  // the component of the equation that is independent of those before it (two passes, for orthogonality)
+  // the component of the equation that is independent of the previous ones; two passes for orthogonality
   Vec3 n = normal;
   double d = distance;
   for (int turn = 0; turn < 2; ++turn)
@@ -211,8 +211,8 @@ Vec3 ConstrainedSubspace::project_free(Vec3 v) const noexcept {
   return v;
 }
 
-double distance_to(const Primitive& primitive, const Vec3& place) noexcept {
-  const Vec3 e = place - primitive.origin;
+double distance_to(const Primitive& primitive, const Vec3& point) noexcept {
+  const Vec3 e = point - primitive.origin;
   switch (primitive.kind) {
     case Primitive::Kind::plane:
       return std::fabs(dot(primitive.axis, e));
@@ -223,8 +223,7 @@ double distance_to(const Primitive& primitive, const Vec3& place) noexcept {
   }
 }
 
-/// Closest constraint: every constraint projects the probe; the nearest projection is the proxy (the first one if several are equally
-/// near).
+/// Closest constraint: each constraint projects the probe; the nearest projection is the proxy, the first one among equally near ones.
 Vec3 solve_closest(SingleProxyTick& tick) noexcept {
   Vec3 p = tick.probe;
   double best = -1;

@@ -84,8 +84,8 @@ struct LinkState {
   bool active() const { return switched_on && !released; }
   /// Returns the work of this tick so far, work units.
   int work() const { return kFetchWork * evaluations + other_work; }
-  /// Returns how many of `wanted` steps (one work unit each) the budget still allows.
-  int affordable_steps(int wanted) const { return std::max(0, std::min(wanted, max_work - work())); }
+  /// Returns how many of `requested` steps (one work unit each) the budget still allows.
+  int affordable_steps(int requested) const { return std::max(0, std::min(requested, max_work - work())); }
   /// Returns whether at most `reserve` work units are left.
   bool exhausted(int reserve = 0) const { return work() + reserve >= max_work; }
   /// Resets the counters and curve_index, before a tick.

@@ -6,7 +6,7 @@ namespace catena::haptics {
 namespace {
 
 // minimum decrease of the ramp factor per tick while ramping out: the ramp ends even if the clock stands still
-constexpr double kLeastStep = 1e-3;
+constexpr double kMinStep = 1e-3;
 
 void stop(ForceLimiterState& state, ForceState as) noexcept {
   state.force_n = state.torque_nm = Vec3(0.0);
@@ -15,7 +15,7 @@ void stop(ForceLimiterState& state, ForceState as) noexcept {
 }
 
 double step_out(const DeviceLimits& limits, double dt_s) noexcept {
-  return limits.ramp_out_s > 0 ? std::fmax(kLeastStep, dt_s / limits.ramp_out_s) : 1;
+  return limits.ramp_out_s > 0 ? std::fmax(kMinStep, dt_s / limits.ramp_out_s) : 1;
 }
 
 // Limits force and torque to their maximum magnitudes; directions are kept.
@@ -44,12 +44,12 @@ void hold(const DeviceLimits& limits, double dt_s, ForceLimiterState& state) noe
   state.force_state = ForceState::ramping_out;
 }
 
-// Moves from `last` toward `force`, no further than the slew limit allows.
+// Returns `last` moved toward `force`, by at most the slew limit.
 Vec3 slewed(const DeviceLimits& limits, const Vec3& last, const Vec3& force, double dt_s) noexcept {
   if (!(limits.slew_n_per_s < DeviceLimits::kUnlimited)) return force;
   const Vec3 step = force - last;
-  const double most = limits.slew_n_per_s * dt_s;
-  return norm(step) > most ? last + clamp_norm(step, most) : force;
+  const double maximum = limits.slew_n_per_s * dt_s;
+  return norm(step) > maximum ? last + clamp_norm(step, maximum) : force;
 }
 
 void ramp_out(const DeviceLimits& limits, const ForceLimiterInput& input, ForceLimiterState& state) noexcept {
@@ -62,14 +62,14 @@ void ramp_out(const DeviceLimits& limits, const ForceLimiterInput& input, ForceL
   state.torque_nm = clamp_norm(input.torque_nm * state.ramp_factor, last_nm);
   state.force_state = ForceState::ramping_out;
   limit(limits, state);
-  const double most_n = std::fmin(norm(state.force_n), norm(last_n));
-  state.force_n = clamp_norm(slewed(limits, last_n, state.force_n, input.dt_s), most_n);
+  const double max_n = std::fmin(norm(state.force_n), norm(last_n));
+  state.force_n = clamp_norm(slewed(limits, last_n, state.force_n, input.dt_s), max_n);
 }
 
-// Fraction of the input force or torque that was sent in the last tick, at most 1.
+// Returns the fraction of the input force or torque that was sent in the last tick, at most 1.
 double share_of(const Vec3& sent, const Vec3& asked) noexcept {
-  const double most = norm(asked), length = norm(sent);
-  return most > length ? length / most : 1;
+  const double maximum = norm(asked), length = norm(sent);
+  return maximum > length ? length / maximum : 1;
 }
 
 void let_through(const DeviceLimits& limits, const ForceLimiterInput& input, ForceLimiterState& state) noexcept {
@@ -89,16 +89,16 @@ void let_through(const DeviceLimits& limits, const ForceLimiterInput& input, For
 
 }  // namespace
 
-Vec3 clamp_norm(const Vec3& v, double most) noexcept {
+Vec3 clamp_norm(const Vec3& v, double max_norm) noexcept {
   const double length = norm(v);
-  return length > most ? v * (most / length) : v;
+  return length > max_norm ? v * (max_norm / length) : v;
 }
 
 void limit_force(const DeviceLimits& limits, const ForceLimiterInput& input, ForceLimiterState& state) noexcept {
   const bool fault = input.condition == TickCondition::no_device || input.condition == TickCondition::watchdog ||
                      !is_finite(input.force_n) || !is_finite(input.torque_nm);
   const bool late = !fault && input.condition == TickCondition::late;
-  // first tick in time after a hold, or forces switched off during one: resume from the level to which the hold has decayed
+  // the first punctual tick after a hold, or switching forces off during a hold, resumes from the level to which the hold has decayed
   if ((!late || !input.forces_on) && state.late_ticks > 0) {
     if (state.late_ticks > limits.max_late_ticks) state.ramp_factor *= state.hold_factor;
     state.late_ticks = 0;

@@ -41,7 +41,7 @@ struct ForceLimiterInput {
 /// Steps the limiter: sets state.force_n, torque_nm and force_state to the commanded force of this tick.
 CATENA_EXPORT void limit_force(const DeviceLimits& limits, const ForceLimiterInput& input, ForceLimiterState& state) noexcept;
 
-/// Returns `v` shortened to the length `most` with the direction kept, or `v` itself if it is not longer. `v` must be finite.
-CATENA_EXPORT Vec3 clamp_norm(const Vec3& v, double most) noexcept;
+/// Returns `v` shortened to the length `max_norm` with the direction kept, or `v` itself if it is not longer. `v` must be finite.
+CATENA_EXPORT Vec3 clamp_norm(const Vec3& v, double max_norm) noexcept;
 
 }  // namespace catena::haptics

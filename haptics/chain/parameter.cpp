@@ -9,7 +9,7 @@ namespace catena::haptics {
 
 namespace {
 
-/// (x - lo) / (hi - lo) for lo <= x <= hi, lo < hi, without overflow.
+/// Returns (x - lo) / (hi - lo) for lo <= x <= hi, lo < hi, without overflow.
 double part(double x, double lo, double hi) noexcept {
   const double span = hi - lo;
   return std::isfinite(span) ? (x - lo) / span : (0.5 * x - 0.5 * lo) / (0.5 * hi - 0.5 * lo);
@@ -53,16 +53,16 @@ double Parameter::evaluate_field(const Vec3& world, field::Cursor& cursor, std::
 
 double Parameter::min() const {
   if (!map_) return constant_;
-  double least = map_->outside;
-  for (const HapticTransferFunction::Point& point : map_->points) least = std::min(least, point.output);
-  return least;
+  double minimum = map_->outside;
+  for (const HapticTransferFunction::Point& point : map_->points) minimum = std::min(minimum, point.output);
+  return minimum;
 }
 
 double Parameter::max() const {
   if (!map_) return constant_;
-  double most = map_->outside;
-  for (const HapticTransferFunction::Point& point : map_->points) most = std::max(most, point.output);
-  return most;
+  double maximum = map_->outside;
+  for (const HapticTransferFunction::Point& point : map_->points) maximum = std::max(maximum, point.output);
+  return maximum;
 }
 
 }  // namespace catena::haptics

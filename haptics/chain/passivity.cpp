@@ -5,38 +5,38 @@ namespace catena::haptics {
 
 namespace {
 
-constexpr double kLeastEnergy = 1e-15;  // joules; less is round-off
-constexpr double kLeastDamping = 1e-3;  // N s/m; less counts as none
+constexpr double kMinEnergy = 1e-15;  // joules; less is round-off
+constexpr double kMinDamping = 1e-3;  // N s/m; less counts as none
 
 bool is_apart(const LinkState& link, bool has_gap) noexcept {
   return !link.switched_on || link.released || link.status == LinkStatus::no_surface || (link.status == LinkStatus::budget && !has_gap);
 }
 
-/// Fraction of a spring's energy that it can return through a force limit: r (2 - r), r = limit / force.
-double through_limit(double force_n, double most_n) noexcept {
-  if (!(force_n > most_n)) return 1;
-  const double r = most_n / force_n;
+/// Returns the fraction of a spring's energy that it can return through a force limit: r (2 - r), r = limit / force.
+double through_limit(double force_n, double max_n) noexcept {
+  if (!(force_n > max_n)) return 1;
+  const double r = max_n / force_n;
   return r * (2 - r);
 }
 
-/// Fraction of the chain force that the ramps of the force limiter let through.
+/// Returns the fraction of the chain force that the ramps of the force limiter let through.
 double ramp_of(const DeviceLimits& limits, const ForceLimiterState& guard) noexcept {
   if (guard.force_state == ForceState::stopped || guard.force_state == ForceState::off) return 0;
   return guard.late_ticks > limits.max_late_ticks ? guard.ramp_factor * guard.hold_factor : guard.ramp_factor;
 }
 
-// The force that acted since the last tick: the one sent in the last tick, or `delay_s` before (interpolated).
+// Returns the force that acted since the last tick: the one sent in the last tick, or the one `delay_s` before it (interpolated).
 PassivityState::SentForce acted(const PassivityState& state, double delay_s, double dt_s) noexcept {
   using Sent = PassivityState::SentForce;
   constexpr std::uint32_t size = PassivityState::kHistoryLength;
   const Sent& last = state.history[(state.next_index + size - 1) % size];
   if (!(delay_s > 0) || !(dt_s > 0)) return last;
   const double periods = std::fmin(delay_s / dt_s, size - 2.0);
-  const auto whole = static_cast<std::uint32_t>(periods);
-  const double part = periods - whole;
-  const Sent& newer = state.history[(state.next_index + size - 1 - whole) % size];
-  const Sent& older = state.history[(state.next_index + size - 2 - whole) % size];
-  const auto mix = [part](const Vec3& a, const Vec3& b) { return a * part + b * (1 - part); };
+  const auto whole_periods = static_cast<std::uint32_t>(periods);
+  const double fraction = periods - whole_periods;
+  const Sent& newer = state.history[(state.next_index + size - 1 - whole_periods) % size];
+  const Sent& older = state.history[(state.next_index + size - 2 - whole_periods) % size];
+  const auto mix = [fraction](const Vec3& a, const Vec3& b) { return a * fraction + b * (1 - fraction); };
   return {mix(older.force_n, newer.force_n), mix(older.exempt_n, newer.exempt_n), mix(older.ramped_n, newer.ramped_n),
           mix(older.damping_n, newer.damping_n)};
 }
@@ -44,16 +44,16 @@ PassivityState::SentForce acted(const PassivityState& state, double delay_s, dou
 // release time constant of the added damping; damping that changes from tick to tick would be perceived as a buzz
 constexpr double kReleaseS = 0.03;
 
-// Damping that dissipates `need_j` if the probe moves by `move_m` in the next tick: rises at once, falls slowly.
+// Returns the damping that dissipates `need_j` if the probe moves by `move_m` in the next tick; it rises at once and falls slowly.
 double step_damping(const DeviceLimits& limits, const Vec3& move_m, double dt_s, double need_j, double last) noexcept {
-  const double kept = dt_s < kReleaseS ? last * (1 - dt_s / kReleaseS) : 0;
+  const double decayed = dt_s < kReleaseS ? last * (1 - dt_s / kReleaseS) : 0;
   const double squared = dot(move_m, move_m);
   const double needed = need_j > 0 && squared > 0 ? need_j * dt_s / squared : 0;
-  const double damping = std::fmin(std::fmax(kept, needed), limits.max_added_damping_ns_per_m);
-  return damping > kLeastDamping && std::isfinite(damping) ? damping : 0;
+  const double damping = std::fmin(std::fmax(decayed, needed), limits.max_added_damping_ns_per_m);
+  return damping > kMinDamping && std::isfinite(damping) ? damping : 0;
 }
 
-// Damping force -d v, for a probe that keeps its velocity.
+// Returns the damping force -d v, for a probe that keeps its velocity.
 Vec3 brake(double damping_ns_per_m, const Vec3& move_m, double dt_s) noexcept {
   const Vec3 force = dt_s > 0 ? move_m * (-damping_ns_per_m / dt_s) : Vec3(0.0);
   return is_finite(force) ? force : Vec3(0.0);
@@ -84,10 +84,10 @@ void step_passivity(const HapticProgram& program, const std::array<LinkState, kM
   const double ramp = ramp_of(limits, guard);
   Vec3 springs_n(0.0);
   for (std::size_t i = 0; i < count; ++i) springs_n += tick.shares_n[i];
-  const double most_n = std::fmin(program.coupling.max_force_n, ramp > 0 ? limits.max_force_n / ramp : 0);
-  const double share = 0.5 * program.meters_per_unit * ramp * through_limit(norm(springs_n), most_n);
+  const double max_n = std::fmin(program.coupling.max_force_n, ramp > 0 ? limits.max_force_n / ramp : 0);
+  const double share = 0.5 * program.meters_per_unit * ramp * through_limit(norm(springs_n), max_n);
 
-  // per link: energy account, and the energy added by weights that rose
+  // energy account of each link, and the energy added by weights that rose
   bool anew = state.rebase_pending || !(tick.order == state.order);
   double storage_j = 0, raised_j = 0;
   Vec3 granted_n = tick.cues_n;
@@ -115,7 +115,7 @@ void step_passivity(const HapticProgram& program, const std::array<LinkState, kM
   }
   if (ramp > state.ramp_factor) raised_j += (storage_j - raised_j) * (1 - state.ramp_factor / ramp);
 
-  // the balance
+  // energy balance
   const double made_j = work_j - free_j + storage_j - state.storage_j;
   const double own_j = tick.dt_s > 0 ? limits.damping_ns_per_m * dot(move_m, move_m) / tick.dt_s : 0;
   const double booked_j = anew ? std::fmax(0.0, made_j) : std::fmax(0.0, raised_j);
@@ -132,12 +132,12 @@ void step_passivity(const HapticProgram& program, const std::array<LinkState, kM
     state.stored_j.fill(0);
   }
 
-  // the controller
+  // passivity controller
   Vec3 added_n(0.0);
   const bool flows = guard.force_state == ForceState::on || guard.force_state == ForceState::ramping_in;
   if (limits.passivity_control && flows) {
     const double next_j = state.balance_j + std::fmin(0.0, step_j - taken_j);
-    state.damping_ns_per_m = step_damping(limits, move_m, tick.dt_s, next_j < -kLeastEnergy ? -next_j : 0, state.damping_ns_per_m);
+    state.damping_ns_per_m = step_damping(limits, move_m, tick.dt_s, next_j < -kMinEnergy ? -next_j : 0, state.damping_ns_per_m);
     if (state.damping_ns_per_m > 0) {
       const Vec3 before = guard.force_n;
       guard.force_n = clamp_norm(before + brake(state.damping_ns_per_m, move_m, tick.dt_s),

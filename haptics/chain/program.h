@@ -46,7 +46,7 @@ struct ReleaseCue {
 /// Alignment ("align" in the scene): turns the tool's axis onto the link's axis, the normal of a surface or the tangent of a curve
 /// (alignment.h).
 struct Align {
-  /// Whether the direction of the link's axis matters; either: the axis and its opposite are equivalent.
+  /// Significance of the direction of the link's axis; either: the axis and its opposite are equivalent.
   enum class Sign { either, same };
   bool enabled = false;               ///< the link aligns the tool
   Vec3 tool_axis{0.0, 0.0, 1.0};      ///< axis a_i of the tool, unit, tool frame

@@ -25,7 +25,7 @@ inline Vec3 step_ramp(Ramp& ramp, const Vec3& now, double moved, double fall) no
   ramp.last_force = now;
   if (far > moved) ramp.offset += step * (moved / far) - step;
   const double left = norm(ramp.offset);
-  // an offset that is infinite or not a number cannot fade: reset to zero
+  // an offset that is infinite or not a number cannot fade and is reset to zero
   ramp.offset = left > fall && std::isfinite(left) ? ramp.offset * ((left - fall) / left) : Vec3(0.0);
   return ramp.offset;
 }

@@ -9,9 +9,9 @@ namespace catena::haptics {
 namespace {
 
 constexpr double kRoundOff = 1e-9;  // relative; a proxy that slips at its limit counts as having reached it
-constexpr double kBack = 0.95;      // release ratio below which the link is engaged again (hysteresis)
+constexpr double kBack = 0.95;      // release ratio below which the link re-engages (hysteresis)
 
-/// Triangle wave of period 1 between -1 and 1, zero at 0 and rising.
+/// Returns a triangle wave of period 1 between -1 and 1, zero and rising at 0.
 double triangle(double phase) noexcept {
   if (!std::isfinite(phase)) return 0;
   const double f = phase + 0.25 - std::floor(phase + 0.25);
@@ -28,7 +28,7 @@ Vec3 update_release_cue(const ReleaseCue& indication, const LinkState& link, con
   report.released = link.switched_on && (m >= 1 - kRoundOff || (state.released && m >= kBack));
   if (max_abs(gap) > 0) state.direction = direction(gap);
 
-  // a detent at release and at re-engagement
+  // detent at release and at re-engagement
   const bool passes = state.initialized && report.released != state.released;
   state.released = report.released;
   state.initialized = link.switched_on;
@@ -44,7 +44,7 @@ Vec3 update_release_cue(const ReleaseCue& indication, const LinkState& link, con
     return state.direction * (link.weight * indication.amplitude_n * state.pulse_level);
   }
 
-  // a vibration near release
+  // vibration near release
   if (link.released || report.release_ratio < indication.onset) return Vec3(0.0);
   return state.direction * (link.weight * indication.amplitude_n * triangle(indication.frequency_hz * t_s));
 }

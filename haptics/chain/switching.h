@@ -23,8 +23,8 @@ struct LinkOrder {
   std::int8_t mode = -1;  ///< index of the mode that sets the order; -1: none
   bool operator==(const LinkOrder&) const = default;
   /// Appends a link.
-  void add(std::size_t link, std::uint8_t take = 0) noexcept {
-    shape_revisions[static_cast<std::size_t>(count)] = take;
+  void add(std::size_t link, std::uint8_t shape_revision = 0) noexcept {
+    shape_revisions[static_cast<std::size_t>(count)] = shape_revision;
     links[static_cast<std::size_t>(count++)] = static_cast<std::int8_t>(link);
   }
   /// Returns whether the link runs.
@@ -33,10 +33,10 @@ struct LinkOrder {
       if (links[static_cast<std::size_t>(k)] == static_cast<int>(link)) return true;
     return false;
   }
-  /// Returns whether the link runs with the shape of revision `take`.
-  bool contains(std::size_t link, std::uint8_t take) const noexcept {
+  /// Returns whether the link runs with the shape of revision `shape_revision`.
+  bool contains(std::size_t link, std::uint8_t shape_revision) const noexcept {
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
-      if (links[k] == static_cast<int>(link) && shape_revisions[k] == take) return true;
+      if (links[k] == static_cast<int>(link) && shape_revisions[k] == shape_revision) return true;
     return false;
   }
 };

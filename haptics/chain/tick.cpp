@@ -35,7 +35,7 @@ double capped(double stiffness, const DeviceLimits& limits) noexcept {
   return stiffness > limits.max_stiffness_n_per_m ? limits.max_stiffness_n_per_m : stiffness;
 }
 
-// Sanitizes what a plug-in constraint may return: a proxy that is not finite, or a status or reason outside its enumeration.
+// Repairs results of a plug-in constraint: a proxy that is not finite, or a status or reason outside its enumeration.
 void keep_sane(const Vec3& incoming, LinkState& link) noexcept {
   if (is_finite(link.proxy) && is_valid_enum(link.status, LinkStatus::bad_probe) && is_valid_enum(link.reason, SampleStatus::parallel))
     return;
@@ -43,7 +43,7 @@ void keep_sane(const Vec3& incoming, LinkState& link) noexcept {
   set_link_status(link, LinkStatus::critical, SampleStatus::not_finite);
 }
 
-// Advances one active link: starts it, advances its proxy and its weight (the ramp after a switch).
+// Advances one active link: starts it if it was just switched on, then advances its proxy and its weight (the ramp after a switch).
 void advance_link(const HapticProgram& program, std::size_t i, const Vec3& incoming, bool first_tick, double dt, double ramp_step,
                   LinkState& link, LinkScratch& scratch) noexcept {
   const Link& spec = program.links[i];
@@ -64,8 +64,7 @@ void advance_link(const HapticProgram& program, std::size_t i, const Vec3& incom
   link.weight = link.weight + ramp_step < 1 ? link.weight + ramp_step : 1;
 }
 
-// Links that are off pass their probe through: their proxy is that of the link before them in the scene, or the probe itself if a mode
-// orders the chain.
+// Sets the proxies of links that are off: the proxy of the previous link in the scene, or the probe if a mode orders the chain.
 void pass_through(const HapticProgram& program, const LinkOrder& order, const Vec3& probe, ChainState& state) noexcept {
   Vec3 before = probe;
   for (std::size_t i = 0; i < program.links.size(); ++i) {
@@ -78,7 +77,7 @@ Vec3 last_proxy(const LinkOrder& order, const Vec3& probe, const ChainState& sta
   return order.count > 0 ? state.links[static_cast<std::size_t>(order.links[static_cast<std::size_t>(order.count - 1)])].proxy : probe;
 }
 
-// Tick of a baseline method: one proxy for all links. Returns the force K S (p - x).
+// Runs a tick of a baseline method, with one proxy for all links; the force is K S (p - x).
 Coupled one_proxy(const HapticProgram& program, const LinkOrder& order, const Vec3& probe, double dt, ChainState& state,
                   ChainScratch& scratch) noexcept {
   SingleProxyTick single{program, order, probe, dt, !state.has_probe, state.single_proxy, state.links, scratch.links};
@@ -98,7 +97,7 @@ Coupled one_proxy(const HapticProgram& program, const LinkOrder& order, const Ve
   return out;
 }
 
-// Tick of the chain: each proxy is the next link's probe.
+// Runs a tick of the chain, in which each proxy is the next link's probe.
 Coupled chain(const HapticProgram& program, const LinkOrder& order, const Vec3& probe, double dt, double ramp_step, ChainState& state,
               ChainScratch& scratch) noexcept {
   Coupled out;
@@ -129,8 +128,8 @@ Coupled chain(const HapticProgram& program, const LinkOrder& order, const Vec3& 
   return out;
 }
 
-// Direction of the total link force plus `braking` times the move, for values too large for a double: every term is scaled down before it
-// is formed.
+// Returns the direction of the total link force plus `braking` times the move, for values too large for a double: each term is scaled down
+// before it is computed.
 Vec3 huge_direction(const HapticProgram& program, const LinkOrder& order, const Vec3& probe, double braking,
                     const ChainState& state) noexcept {
   constexpr double small = 1e-160;
@@ -148,13 +147,14 @@ Vec3 huge_direction(const HapticProgram& program, const LinkOrder& order, const 
   return direction(force);
 }
 
-// Keeps reports finite: clamps to the largest double; NaN (a huge gap of weight 0) becomes 0.
+// Clamps a reported value to the largest double; NaN (an infinite gap of weight 0) becomes 0.
 double bounded(double v) noexcept {
-  constexpr double most = std::numeric_limits<double>::max();
-  return v > most ? most : v < -most ? -most : v == v ? v : 0;
+  constexpr double maximum = std::numeric_limits<double>::max();
+  return v > maximum ? maximum : v < -maximum ? -maximum : v == v ? v : 0;
 }
 
-/// Reason for the link's status. LinkState::reason keeps its last value, so it is reported only with a status that has a reason.
+/// Returns the reason for the link's status. LinkState::reason keeps its last value, so it is reported only with a status that has a
+/// reason.
 SampleStatus reason_of(const LinkState& link) noexcept {
   if (link.status == LinkStatus::bad_probe) return SampleStatus::not_finite;
   return link.status == LinkStatus::critical || link.status == LinkStatus::boundary ? link.reason : SampleStatus::ok;
@@ -201,7 +201,7 @@ void hold_all(const HapticProgram& program, double t_s, ChainState& state, Hapti
   state.chain_force_n = state.requested_force_n = Vec3(0.0);
   state.ramp = Ramp{};
   state.unaccounted.has_previous = false;
-  // no pose: no force, even if the tick is in time
+  // without a pose there is no force, even if the tick is in time
   limit_force(program.limits, {Vec3(0.0), Vec3(0.0), TickCondition::no_device, false, 0}, state.force_limiter);
   pause_passivity(state.passivity);
   pause_widgets(state.widgets);
@@ -239,7 +239,7 @@ void tick(const HapticProgram& program, const ProbeSample& probe, ChainState& st
 
   if (!program.widgets.empty()) move_widgets(program, last_proxy(order, probe.position, state), state.widgets);
 
-  // release cues and link reports
+  // release cues and reports of the links
   Vec3 cues(0.0);
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     const Vec3& share = coupled.shares_n[i];
@@ -249,23 +249,23 @@ void tick(const HapticProgram& program, const ProbeSample& probe, ChainState& st
                                out.links[i]);
   }
 
-  // chain force without a step
+  // chain force, with steps ramped
   const Vec3 move = state.has_probe ? probe.position - state.last_probe : Vec3(0.0);
-  const double most = program.coupling.max_force_n;
+  const double maximum = program.coupling.max_force_n;
   const bool huge = !std::isfinite(norm(coupled.force_n));
-  const Vec3 pull = huge ? huge_direction(program, order, probe.position, 0, state) * most : clamp_norm(coupled.force_n, most);
+  const Vec3 pull = huge ? huge_direction(program, order, probe.position, 0, state) * maximum : clamp_norm(coupled.force_n, maximum);
   if (!state.has_probe) state.ramp.last_force = pull;
-  const double fall = program.coupling.ramp_s > 0 ? most * ramp_step : std::numeric_limits<double>::infinity();
+  const double fall = program.coupling.ramp_s > 0 ? maximum * ramp_step : std::numeric_limits<double>::infinity();
   const Vec3 ramped = step_ramp(state.ramp, pull, coupled.newtons_per_unit * norm(move), fall);
-  const Vec3 told = coupled.force_n + ramped + cues;
-  state.requested_force_n = {bounded(told.x), bounded(told.y), bounded(told.z)};
+  const Vec3 requested = coupled.force_n + ramped + cues;
+  state.requested_force_n = {bounded(requested.x), bounded(requested.y), bounded(requested.z)};
 
-  // the coupling's damping, then the force limit (direction kept)
+  // the coupling's damping, then the force limit, which keeps the direction
   const double braking = dt > 0 ? program.coupling.damping_ns_per_m * s / dt : 0;
-  const Vec3 braked = state.has_probe ? move * braking : Vec3(0.0), sum = told - braked;
-  const Vec3 whole = max_abs(ramped) > 0 ? pull + ramped + cues - braked : sum;
+  const Vec3 braked = state.has_probe ? move * braking : Vec3(0.0), sum = requested - braked;
+  const Vec3 total = max_abs(ramped) > 0 ? pull + ramped + cues - braked : sum;
   const Vec3 force =
-      std::isfinite(norm(whole)) ? clamp_norm(whole, most) : huge_direction(program, order, probe.position, braking, state) * most;
+      std::isfinite(norm(total)) ? clamp_norm(total, maximum) : huge_direction(program, order, probe.position, braking, state) * maximum;
 
   state.chain_force_n = force;
   const Vec3 torque =

@@ -60,12 +60,12 @@ Outcome validate_state(const HapticProgram& program, const ChainState& state) {
                      is_sane(state.single_proxy) && is_sane(state.force_limiter) && is_sane(state.passivity) &&
                      are_valid_bools(state.switches.link_on) && are_valid_bools(state.switches.mode_on) && are_sane(state.release_cues) &&
                      is_finite(state.last_probe) && is_finite(state.chain_force_n);
-  if (!chain) return Error{"the state of the chain is damaged or forged: expected one that a tick leaves"};
-  if (!are_sane(program, state.widgets)) return Error{"the state of the widgets is damaged or forged: expected one that a tick leaves"};
+  if (!chain) return Error{"the state of the chain is damaged or forged, expected the state after a tick"};
+  if (!are_sane(program, state.widgets)) return Error{"the state of the widgets is damaged or forged, expected the state after a tick"};
   for (std::size_t i = 0; i < program.links.size(); ++i)
     if (!is_sane(state.links[i]) || !program.links[i].constraint->is_sane(state.links[i]))
       return Error{"the state of link \"" + program.links[i].name +
-                   "\" is damaged or forged, or of another scene: expected one that its constraint leaves"};
+                   "\" is damaged, forged or from another scene, expected a state written by the link's constraint"};
   return Done{};
 }
 

@@ -5,7 +5,7 @@ namespace catena::haptics {
 
 namespace {
 
-constexpr double kDifference = 1e-6;  // of L; step of the finite difference for a stiffness gradient
+constexpr double kDifference = 1e-6;  // step of the finite difference for a stiffness gradient, as a fraction of L
 
 }  // namespace
 
@@ -16,7 +16,7 @@ PulledBackForce virtual_work_force(const HapticProgram& program, const LinkOrder
   for (int k = order.count - 1; k >= 0; --k) {
     const auto i = static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)]);
     const Link& spec = program.links[i];
-    // a stiffness that follows a field pulls toward lower stiffness
+    // a stiffness that depends on a field pulls the proxy toward lower stiffness
     if (!spec.stiffness_n_per_m.is_constant()) {
       const Vec3 slope = spec.stiffness_n_per_m.gradient(links[i].proxy, kDifference * spec.constraint->domain_length(),
                                                          scratch[i].stiffness_cursor, links[i].evaluations);
@@ -36,17 +36,17 @@ PulledBackForce virtual_work_force(const HapticProgram& program, const LinkOrder
 }
 
 void accumulate_unaccounted(UnaccountedEnergy& state, const PulledBackForce& force, double energy_j, const Vec3& move_m) noexcept {
-  const Vec3 whole = force.force + force.truncated;
+  const Vec3 total_force = force.force + force.truncated;
   if (state.has_previous) {
-    const double jump = state.energy_j - energy_j - 0.5 * dot(state.force_n + whole, move_m);
-    const Vec3 turned = whole - state.force_n;
+    const double jump = state.energy_j - energy_j - 0.5 * dot(state.force_n + total_force, move_m);
+    const Vec3 turned = total_force - state.force_n;
     const double missed2 = dot(turned, turned) * dot(move_m, move_m);
     state.work_j += 0.5 * dot(state.truncated_n + force.truncated, move_m) + (jump * jump > missed2 ? jump : 0);
   }
-  state.force_n = whole;
+  state.force_n = total_force;
   state.truncated_n = force.truncated;
   state.energy_j = energy_j;
-  state.has_previous = std::isfinite(energy_j) && is_finite(whole);
+  state.has_previous = std::isfinite(energy_j) && is_finite(total_force);
 }
 
 }  // namespace catena::haptics

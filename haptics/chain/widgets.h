@@ -42,8 +42,8 @@ CATENA_EXPORT void pause_widgets(WidgetsState& state) noexcept;
 /// Sets the reports of all widgets in `out`.
 CATENA_EXPORT void report_widgets(const HapticProgram& program, const WidgetsState& state, HapticState& out) noexcept;
 
-/// Adapts the state to a new program: a widget of the same name and kind keeps its state, unless its pose has been set from outside
-/// meanwhile (a higher Spec::revision); the others start as their Spec says.
+/// Adapts the state to a new program: a widget of the same name and kind keeps its state, unless its pose was set from outside (a higher
+/// Spec::revision); the others start with the pose in their Spec.
 CATENA_EXPORT void rebind_widgets(const HapticProgram& from, const HapticProgram& to, WidgetsState& state) noexcept;
 
 }  // namespace catena::haptics

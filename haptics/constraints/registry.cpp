@@ -52,10 +52,10 @@ std::vector<ConstraintType>& list_of_types() {
   return list;
 }
 
-/// Help text for the user: what the constraint does, its paper and its origin.
+/// Returns the help text of a constraint for the user, with its source in the paper and its plug-in.
 std::string described(const ConstraintType& type) {
   return type.help + (type.paper.empty() ? "" : " Paper: " + type.paper + ".") +
-         (type.plugin.empty() ? "" : " Of the plug-in " + type.plugin + ".");
+         (type.plugin.empty() ? "" : " From the plug-in " + type.plugin + ".");
 }
 
 /// Builds a constraint of a plug-in. Exceptions and null results become errors of the link.
@@ -68,7 +68,7 @@ Result<std::shared_ptr<const Constraint>> build_of_plugin(const ConstraintType& 
     if (built && *built == nullptr) return failed("built nothing");
     return built;
   } catch (const std::bad_alloc&) {
-    throw;  // system errors are not the plug-in's: passed on
+    throw;  // system errors are not the plug-in's and are passed on
   } catch (const std::system_error&) {
     throw;
   } catch (const std::exception& error) {
@@ -92,32 +92,38 @@ const ConstraintType* find_constraint_type(std::string_view type) {
 
 const schema::Keys& common_keys() {
   static const schema::Keys keys{
-      schema::identifier("name", "Names the columns of the tick CSV; unique.").required(),
-      schema::text("type", "Which constraint.").required(),
-      schema::number("stiffness", "N/m", "Of the link's spring.").non_negative().or_field().with_default("the coupling's"),
-      schema::number("snap", "world", "The link starts apart, and takes hold within this distance of its feature.").positive().or_field(),
-      schema::number("release", "world", "The link lets go at this distance of its probe from its proxy.")
+      schema::identifier("name", "Unique name of the link, used in the column names of the tick CSV.").required(),
+      schema::text("type", "Type of the link.").required(),
+      schema::number("stiffness", "N/m", "Stiffness of the link's spring.").non_negative().or_field().with_default("`coupling.stiffness`"),
+      schema::number("snap", "world",
+                     "Distance between probe and feature within which the link engages; with `snap` the link starts released.")
+          .positive()
+          .or_field(),
+      schema::number("release", "world", "Distance between probe and proxy at which the link releases.")
           .positive()
           .or_field()
           .with_initial_value("0.05 L")
-          .with_default("2 `snap`, or never"),
+          .with_default("2 `snap`; without `snap` never"),
       switch_key(),
-      schema::boolean("enabled", "False: off, whatever the switch says.").with_default("true"),
+      schema::boolean("enabled", "`false`: the link is off, regardless of `active_when`.").with_default("true"),
       release_cue_key(),
       align_key()};
   return keys;
 }
 
 schema::Section chain_component() {
-  schema::Section chain{"chain", "What the hand feels: links, in their order.", schema::Section::Layout::list, common_keys(),
-                        kMaxSceneLinks};
+  schema::Section chain{"chain", "Links of the haptic chain, in order.", schema::Section::Layout::list, common_keys(), kMaxSceneLinks};
   for (const ConstraintType& type : constraint_types()) chain.variants.push_back({type.type, described(type), type.keys});
   for (const ModePreset& mode : mode_presets()) chain.variants.push_back({mode.type, mode.help + " Paper: " + mode.paper + ".", mode.keys});
   return chain;
 }
 
-schema::Key scalar_field_key(const std::string& name) { return schema::reference(name, schema::Role::scalar_field, "A scalar field."); }
-schema::Key vector_field_key(const std::string& name) { return schema::reference(name, schema::Role::vector_field, "A vector field."); }
+schema::Key scalar_field_key(const std::string& name) {
+  return schema::reference(name, schema::Role::scalar_field, "Name of a scalar field.");
+}
+schema::Key vector_field_key(const std::string& name) {
+  return schema::reference(name, schema::Role::vector_field, "Name of a vector field.");
+}
 schema::Key level_key(const std::string& help) {
   return schema::number("level", "value", help).with_range_text("in the field's range").with_role(schema::Role::level).or_widget();
 }
@@ -125,7 +131,7 @@ schema::Key length_key(const std::string& name, const std::string& help) {
   return schema::number(name, "world", help).non_negative().or_field();
 }
 schema::Key free_key(const std::string& above) {
-  return schema::choice("free", {"none", "above", "below"}, "Where the hand moves freely: `above` is " + above + ".")
+  return schema::choice("free", {"none", "above", "below"}, "Side of the surface on which the probe moves freely; `above`: " + above + ".")
       .with_default("\"none\"");
 }
 schema::Key law_key(const std::string& help) { return schema::choice("law", {"robust", "as_published"}, help).with_default("\"robust\""); }
@@ -135,9 +141,8 @@ Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& lin
   CATENA_TRY(const std::string word, json::require_string(link, "type"));
   const ConstraintType* type = find_constraint_type(word);
   if (!type)
-    return json::error_at(
-        *link.find("type"),
-        fmt::format("unknown constraint type \"{}\"; expected one of {}, or one that a --plugin brings", word, known_types()));
+    return json::error_at(*link.find("type"),
+                          fmt::format("unknown constraint type \"{}\"; expected one of {}, or a type of a --plugin", word, known_types()));
   CATENA_CHECK(json::check_known_keys(link, schema::key_names(common_keys(), type->keys)));
   CATENA_TRY(std::shared_ptr<const Constraint> made,
              type->plugin.empty() ? type->build(link, context) : build_of_plugin(*type, link, context));

@@ -38,7 +38,7 @@ struct ConstraintType {
   std::string type;   ///< value of "type" in the scene file
   std::string help;   ///< one sentence for docs/reference/scene.md
   std::string paper;  ///< equations and sections of the paper that it implements
-  schema::Keys keys;  ///< its own keys, besides common_keys()
+  schema::Keys keys;  ///< keys of the type, besides common_keys()
   /// Builds the constraint of a link whose keys have been checked. Off the tick; an Error names the link's line.
   Result<std::shared_ptr<const Constraint>> (*build)(const json::Node& link, const BuildContext& context);
   bool has_own_release = false;  ///< applies its own `release` rule (unless the link has `snap`); other types are wrapped by snap.h
@@ -54,7 +54,7 @@ CATENA_EXPORT const ConstraintType* find_constraint_type(std::string_view type);
 /// Adds a type, of a program that brings its own constraint. At start-up, before any scene is read.
 CATENA_EXPORT void register_constraint(ConstraintType type);
 
-/// Returns the keys that every link accepts: name, type, stiffness, on, enabled, indicate, align, snap, release.
+/// Returns the keys that every link accepts: name, type, stiffness, snap, release, active_when, enabled, release_cue, align.
 CATENA_EXPORT const schema::Keys& common_keys();
 /// Returns the schema of the scene's "chain": all types and the mode presets (presets/mode_presets.h).
 CATENA_EXPORT schema::Section chain_component();

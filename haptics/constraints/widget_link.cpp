@@ -46,7 +46,7 @@ class WidgetLink final : public Constraint {
     const SideMemory none{};
     return SphereSurface({shape.origin, shape.radius, false}, memory_as<SphereSurface::Memory>(state), none).pull_back(probe, f);
   }
-  /// The memory holds a normal, any value of which is valid.
+  /// Any value of the memory, a normal, is valid.
   bool is_sane(const LinkState&) const noexcept override { return true; }
 };
 

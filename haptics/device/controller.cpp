@@ -7,7 +7,7 @@ namespace catena::haptics {
 namespace {
 
 constexpr double kBehind = 1.1;                    // playback delay, relative to the longest interval
-constexpr int kIntervals = 3;                      // number of intervals of which the longest is taken
+constexpr int kIntervals = 3;                      // number of intervals from which the longest is taken
 constexpr double kSettle_ns = 1e8;                 // time constant with which the playback lag is corrected
 constexpr double kSlowest = 0.8, kFastest = 1.25;  // limits of the playback rate, relative to real time
 

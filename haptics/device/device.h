@@ -22,7 +22,7 @@ enum class DeviceStatus : std::uint8_t {
 /// Input of one tick from the device.
 struct DeviceInput {
   Vec3 position_m{0.0};                       ///< position of the probe, device axes; of a recorded path: world units
-  Quat orientation{kIdentityRotation};        ///< of the grip; the identity where the device does not measure it
+  Quat orientation{kIdentityRotation};        ///< orientation of the grip; the identity if the device does not measure it
   std::uint32_t buttons = 0;                  ///< bit n - 1: button n is held
   DeviceStatus status = DeviceStatus::ready;  ///< whether the pose is valid
   bool forces_on = true;                      ///< the user's force switch; false also while the clutch is held
@@ -55,7 +55,7 @@ struct Mechanics {
   double rotational_damping_nms_per_rad = 0;  ///< viscous, about any axis; for devices with torque output
 };
 
-/// What a device can do. Constant while it is open.
+/// Capabilities of a device. Constant while it is open.
 struct DeviceCapabilities {
   std::string name;              ///< display name
   double workspace_m = 0.2;      ///< edge of the cube of reachable positions, device axes

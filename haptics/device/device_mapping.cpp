@@ -52,13 +52,13 @@ MappedDevice::MappedDevice(std::unique_ptr<Device> device, const DeviceSettings&
   capabilities_ = mapped(device_->capabilities(), settings, has_rotation_);
 }
 
-// Parts of the mapping that are not set are skipped, so that the values stay bit for bit.
+// Maps a pose. Parts of the mapping that are not set are skipped, so that the values remain bitwise equal.
 void MappedDevice::map_pose(DeviceInput& input, bool rests) noexcept {
   if (has_rotation_) input.position_m = workspace_from_device_ * input.position_m;
   if (scale_ != 1) input.position_m *= scale_;
   if (has_rotation_ && capabilities_.has_orientation) input.orientation = rotation_ * input.orientation;
 
-  // the clutch: the position stays while it is pressed; the offset is kept when it is released
+  // clutch: the position is frozen while it is pressed; the offset remains when it is released
   if (rests) {
     offset_m_ = rest_m_ - input.position_m;
     if (capabilities_.has_orientation) offset_rotation_ = normalized(rest_rotation_ * glm::conjugate(input.orientation));

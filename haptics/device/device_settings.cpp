@@ -12,9 +12,9 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kMostRoom_m = 1000;
+constexpr double kMaxRoom_m = 1000;
 
-// For example ["x", "-z", "y"]: row i of workspace_from_device is the device axis that workspace axis i follows.
+// Reads axes such as ["x", "-z", "y"]: row i of workspace_from_device is the device axis that workspace axis i follows.
 Result<Mat3> read_axes(const json::Node& node) {
   const char* expected = "three different ones of x, -x, y, -y, z, -z, right-handed, were expected, such as [\"x\", \"-z\", \"y\"]";
   if (node.kind != json::Kind::array || node.items.size() != 3)
@@ -27,12 +27,12 @@ Result<Mat3> read_axes(const json::Node& node) {
     if (at == 6) return json::error_at(node, "\"axes\" names \"" + word + "\"; " + expected);
     m[static_cast<int>(at % 3)][row] = at < 3 ? 1 : -1;
   }
-  if (!(dot(m[0], cross(m[1], m[2])) > 0.5)) return json::error_at(node, std::string("\"axes\" is no rotation; ") + expected);
+  if (!(dot(m[0], cross(m[1], m[2])) > 0.5)) return json::error_at(node, std::string("\"axes\" is not a rotation; ") + expected);
   return m;
 }
 
 using Settings = DeviceSettings;
-/// The context is the path of the scene.
+/// Schema of the settings; the context is the path of the scene.
 using SettingsTable = schema::StructSchema<Settings, const std::string>;
 
 Outcome read_type(const std::string&, const json::Node& node, Settings& s) {
@@ -76,8 +76,8 @@ Outcome read_room(const std::string&, const json::Node& node, Settings& s) {
     return json::error_at(origin == nullptr ? *rotation : *origin, "\"room_origin\" and \"room_rotation\" go together; both were expected");
   s.room_registration.emplace();
   CATENA_TRY(s.room_registration->origin_m, json::as_vec3(*origin, "room_origin"));
-  if (!(max_abs(s.room_registration->origin_m) <= kMostRoom_m))
-    return json::error_at(*origin, "\"room_origin\" is out of range; metres of a room, up to 1000, were expected");
+  if (!(max_abs(s.room_registration->origin_m) <= kMaxRoom_m))
+    return json::error_at(*origin, "\"room_origin\" is out of range; coordinates up to 1000 m were expected");
   CATENA_TRY(s.room_registration->room_from_workspace, json::as_rotation(*rotation, "room_rotation"));
   return Done{};
 }
@@ -92,49 +92,64 @@ Outcome read_firmware(const std::string& scene_path, const json::Node& node, Set
 SettingsTable made_table() {
   using schema::number;
   SettingsTable t;
-  const std::string drivers = "the driver's", devices = "the device's";
-  t.custom(schema::text("type", "Which device: " + device_type_names() + ".").required(), read_type);
-  t.custom(number("rate", "Hz", "Ticks a second.").within(100, 10000).with_default("1000"), read_rate);
-  t.bind(number("mass", "kg", "Of the mechanism.").positive().with_default(drivers), &Settings::mass_kg);
-  t.bind(number("damping", "N s/m", "Of the mechanism.").non_negative().with_default(drivers), &Settings::damping_ns_per_m);
+  const std::string drivers = "the driver's value", devices = "the device's maximum";
+  t.custom(schema::text("type", "Device type: " + device_type_names() + ".").required(), read_type);
+  t.custom(number("rate", "Hz", "Ticks per second.").within(100, 10000).with_default("1000"), read_rate);
+  t.bind(number("mass", "kg", "Mass of the mechanism.").positive().with_default(drivers), &Settings::mass_kg);
+  t.bind(number("damping", "N s/m", "Damping of the mechanism.").non_negative().with_default(drivers), &Settings::damping_ns_per_m);
   t.bind(number("friction", "N", "Coulomb friction of the mechanism.").non_negative().with_default(drivers), &Settings::friction_n);
-  t.bind(number("encoder_step", "m", "Smallest step of the position; 0: continuous.").non_negative().with_default(drivers),
+  t.bind(number("encoder_step", "m", "Smallest position step of the encoders; 0: continuous.").non_negative().with_default(drivers),
          &Settings::encoder_step_m);
-  t.bind(number("delay", "s", "From the pose to the force.").non_negative().with_default(drivers), &Settings::delay_s);
+  t.bind(number("delay", "s", "Delay between reading the pose and applying the force.").non_negative().with_default(drivers),
+         &Settings::delay_s);
   t.custom(schema::any_of("stiffness_cap", {schema::choice("", {"safe", "none"}, ""), number("", "N/m", "").non_negative()},
-                          "Of every spring: `safe`, `none` or a number.")
+                          "Maximum stiffness of a spring, N/m; `safe`: the safe stiffness of the mechanism; `none`: no maximum.")
                .with_default("\"safe\""),
            read_cap);
-  t.bind(number("max_force", "N", "Limit of the force; its direction is kept.").non_negative().with_default(devices),
-         &Settings::max_force_n);
-  t.bind(number("max_torque", "N m", "Limit of the torque; its direction is kept.").non_negative().with_default(devices),
+  t.bind(
+      number("max_force", "N", "Maximum magnitude of the force; a limited force keeps its direction.").non_negative().with_default(devices),
+      &Settings::max_force_n);
+  t.bind(number("max_torque", "N m", "Maximum magnitude of the torque; a limited torque keeps its direction.")
+             .non_negative()
+             .with_default(devices),
          &Settings::max_torque_nm);
-  t.bind(number("slew", "N/s", "Limit of the change; it never delays the way to zero on a fault.")
+  t.bind(number("slew", "N/s", "Maximum rate of change of the force; a drop to zero after a fault is not limited.")
              .positive()
-             .with_default("`max_force` in 2 ms"),
+             .with_default("the device's maximum force in 2 ms, at most 10 kN/s"),
          &Settings::slew_n_per_s);
-  t.bind(number("ramp_in", "s", "From zero whenever the forces come on.").non_negative().with_default("0.5"), &Settings::ramp_in_s);
-  t.bind(schema::boolean("passivity", "Energy observer and controller."), &Settings::passivity_control);
-  t.custom(schema::texts("axes", "The device axis that each hand axis is, such as `[\"x\", \"-z\", \"y\"]`.")
+  t.bind(
+      number("ramp_in", "s", "Time over which the forces rise from zero whenever they are switched on.").non_negative().with_default("0.5"),
+      &Settings::ramp_in_s);
+  t.bind(schema::boolean("passivity", "Passivity observer and controller, which account for the energy of the loop."),
+         &Settings::passivity_control);
+  t.custom(schema::texts("axes", "Device axes that correspond to the workspace axes x, y and z, such as `[\"x\", \"-z\", \"y\"]`.")
                .with_size(3, 3)
                .with_range_text("a rotation")
                .with_default("[\"x\", \"y\", \"z\"]"),
            read_hand_axes);
-  t.bind(number("scale", "", "Metres of hand per metre of device. Newtons stay newtons; the limits know.").positive(), &Settings::scale);
-  t.bind(schema::integer("clutch_button", "", "While it is held the device moves, the probe rests, and the forces are off.", 0, 32)
-             .with_default("0, none"),
+  t.bind(number("scale", "",
+                "Metres of probe travel per metre of device travel. Forces are not scaled; the limits take the scale into account.")
+             .positive(),
+         &Settings::scale);
+  t.bind(schema::integer("clutch_button", "",
+                         "Clutch button. While the button is held, the device moves, the probe rests and the forces are off.", 0, 32)
+             .with_default("0: none"),
          &Settings::clutch_button);
-  t.bind(schema::integer("force_button", "", "Turns the forces on and off; with it they start off, and are off after a loss.", 0, 32)
-             .with_default("0, none"),
+  t.bind(schema::integer(
+             "force_button", "",
+             "Button that turns the forces on and off. With such a button, the forces are off at the start and after a loss of the device.",
+             0, 32)
+             .with_default("0: none"),
          &Settings::force_button);
-  t.bind(schema::vec3("gravity", "N", "Added in device axes while the forces are on; carries the grip."), &Settings::gravity_n);
-  t.group({schema::vec3("room_origin", "m", "Where the hand's origin is in the room of a headset; `catena view --xr` finds it.")
+  t.bind(schema::vec3("gravity", "N", "Force added in device axes while the forces are on, to compensate the weight of the grip."),
+         &Settings::gravity_n);
+  t.group({schema::vec3("room_origin", "m", "Position of the workspace's origin in the room of a headset; measured by `catena view --xr`.")
                .with_range_text("to 1000")
                .without_default(),
-           schema::rotation("room_rotation", "From the hand's axes to the room's.").without_default()},
+           schema::rotation("room_rotation", "Rotation from workspace axes to room axes.").without_default()},
           read_room);
-  t.custom(schema::file("firmware", "Falcon: the vendor's image."), read_firmware);
-  t.bind(number("force_gain", "counts/N m", "Falcon: motor counts.").positive(), &Settings::force_gain);
+  t.custom(schema::file("firmware", "Firmware file of the vendor of the Falcon, sent to a device without firmware."), read_firmware);
+  t.bind(number("force_gain", "counts/N m", "Motor counts of the Falcon per N m of motor torque.").positive(), &Settings::force_gain);
   return t;
 }
 
@@ -146,8 +161,7 @@ const SettingsTable& settings_table() {
 }  // namespace
 
 schema::Section device_component() {
-  return {"device", "What the hand holds; docs/user/devices.md says what each device is.", schema::Section::Layout::object,
-          settings_table().keys()};
+  return {"device", "Haptic device; docs/user/devices.md describes each type.", schema::Section::Layout::object, settings_table().keys()};
 }
 
 Result<DeviceSettings> read_device_settings(const json::Node& node, const std::string& scene_path) {

@@ -11,7 +11,7 @@ namespace catena::haptics {
 
 namespace {
 
-// e^A by its series, with A scaled below 1/4 and the result squared back.
+// Returns e^A from its series, with A scaled below 1/4 and the result squared back.
 Mat3 exponential(Mat3 a) {
   double largest = 0;
   for (int c = 0; c < 3; ++c) largest = std::max(largest, max_abs(a[c]));
@@ -31,7 +31,7 @@ Mat3 exponential(Mat3 a) {
 
 LinearStep make_linear_step(double mass_kg, double damping_ns_per_m, double stiffness_n_per_m, double step_s) {
   CATENA_ASSERT(mass_kg > 0 && damping_ns_per_m >= 0 && stiffness_n_per_m >= 0 && step_s >= 0);
-  // (x, v T, u T^2/m)' over one step: entries of similar magnitude
+  // (x, v T, u T^2/m)' over one step, so that the entries have similar magnitudes
   const double t = step_s;
   Mat3 a(0.0);
   a[1][0] = 1;
@@ -45,7 +45,7 @@ LinearStep make_linear_step(double mass_kg, double damping_ns_per_m, double stif
 void advance_mass(const LinearStep& step, const Vec3& force_n, double friction_n, MassState& state) noexcept {
   Vec3 u = force_n;
   if (friction_n > 0 && step.v_from_u > 0) {
-    // the friction force that would stop the mass, or all the friction available
+    // the friction force that would stop the mass, or the maximum friction
     const Vec3 stopping = state.velocity_m_per_s * (step.v_from_v / step.v_from_u) + force_n;
     const double needed = norm(stopping);
     if (needed <= friction_n) {
@@ -81,7 +81,7 @@ std::string describe_safe_stiffness(const Mechanics& mechanics, double period_s)
   if (mechanics.encoder_step_m > 0) text += ", f_c / step = " + whole(safe.by_friction_n_per_m);
   if (!(safe.min_n_per_m() > 0))
     text += std::string("; a device without ") + (mechanics.damping_ns_per_m > 0 ? "friction" : "damping") +
-            " shows no spring safely: state \"damping\", \"friction\" or \"stiffness_cap\" of \"device\"";
+            " cannot render a spring safely: set \"damping\", \"friction\" or \"stiffness_cap\" of \"device\"";
   return text;
 }
 

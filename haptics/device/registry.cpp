@@ -18,7 +18,7 @@
 namespace catena::haptics {
 namespace {
 
-/// A type of device: how its name is listed, its capabilities, how it is opened.
+/// Device type: listing, capabilities and opening.
 struct DeviceType {
   const char* name;
   DeviceCapabilities (*nominal)();
@@ -27,11 +27,12 @@ struct DeviceType {
 };
 
 Result<std::unique_ptr<Device>> open_null(const std::string& detail, const DeviceSettings&) {
-  if (!detail.empty()) return Error{"there is one null device; \"null\" alone was expected, not \"null:" + detail + "\""};
+  if (!detail.empty()) return Error{"the device \"null\" has no variants; \"null\" was expected, not \"null:" + detail + "\""};
   return std::unique_ptr<Device>(std::make_unique<NullDevice>());
 }
 
-// "simulated": the simulated user rests at 0; "simulated:PATH.csv" (t,x,y,z[,buttons], meters in the workspace): follows that path
+// Opens "simulated", whose simulated user rests at 0, or "simulated:PATH.csv" (t,x,y,z[,buttons], meters in the workspace), whose
+// simulated user follows the path.
 Result<std::unique_ptr<Device>> open_simulated(const std::string& detail, const DeviceSettings& settings) {
   SimulatedDeviceParameters p = desktop_device_parameters();
   p.period_s = 1 / settings.rate_hz;
@@ -61,16 +62,16 @@ Result<std::unique_ptr<Device>> open_simulated_tool(const std::string& detail, c
 }
 
 Result<std::unique_ptr<Device>> open_recorded(const std::string& path, const DeviceSettings&) {
-  if (path.empty()) return Error{"device \"recorded\" lacks its file; \"recorded:PATH.csv\" was expected"};
+  if (path.empty()) return Error{"device \"recorded\" has no file; \"recorded:PATH.csv\" was expected"};
   return RecordedPath::open(path);
 }
 
 Result<std::unique_ptr<Device>> open_mouse(const std::string&, const DeviceSettings&) {
-  return Error{"the mouse belongs to a window; \"catena view SCENE\" was expected, or another device"};
+  return Error{"the mouse needs a window; \"catena view SCENE\" or another device was expected"};
 }
 
 Result<std::unique_ptr<Device>> open_controller(const std::string&, const DeviceSettings&) {
-  return Error{"the controller belongs to a headset; \"catena view SCENE --xr\" was expected, or another device"};
+  return Error{"the controller needs a headset; \"catena view SCENE --xr\" or another device was expected"};
 }
 
 Result<std::unique_ptr<Device>> open_spacemouse(const std::string&, const DeviceSettings& settings) {
@@ -86,24 +87,25 @@ const std::vector<DeviceType>& types() {
        [](const std::string& detail, const DeviceSettings& settings) { return open_emulated_falcon(detail, settings, {}); }},
       {"null", [] { return NullDevice().capabilities(); },
        [](std::vector<DeviceInfo>& to) {
-         to.push_back({"null", true, "no device: the probe rests, forces go nowhere"});
+         to.push_back({"null", true, "no device: the probe rests, and forces are discarded"});
        },
        open_null},
       {"simulated", [] { return SimulatedDevice({{}}, desktop_device_parameters()).capabilities(); },
        [](std::vector<DeviceInfo>& to) {
-         to.push_back(
-             {"simulated", true,
-              "a simulated mechanism in a simulated hand; simulated:PATH.csv: t,x,y,z[,buttons], where the hand wants to be, metres"});
+         to.push_back({"simulated", true,
+                       "a simulated mechanism in a simulated hand; simulated:PATH.csv sets the target positions of the hand: "
+                       "t,x,y,z[,buttons], metres"});
        },
        open_simulated},
       {"simulated-6dof", [] { return (*open_simulated_tool("", DeviceSettings{}))->capabilities(); },
        [](std::vector<DeviceInfo>& to) {
-         to.push_back({"simulated-6dof", true, "the same with a grip that turns: orientation in, torque out"});
+         to.push_back({"simulated-6dof", true, "the simulated device with a rotating grip: orientation as input, torque as output"});
        },
        open_simulated_tool},
       {"recorded", [] { return RecordedPath(std::vector<RecordedPath::Sample>(1)).capabilities(); },
        [](std::vector<DeviceInfo>& to) {
-         to.push_back({"recorded:PATH.csv", true, "a probe path t,x,y,z[,buttons][,qw,qx,qy,qz]; stays at its end"});
+         to.push_back(
+             {"recorded:PATH.csv", true, "a recorded probe path t,x,y,z[,buttons][,qw,qx,qy,qz]; the probe stays at the end of the path"});
        },
        open_recorded},
       {"mouse", MouseDevice::nominal_capabilities,
@@ -113,7 +115,7 @@ const std::vector<DeviceType>& types() {
        open_mouse},
       {"controller", TrackedController::nominal_capabilities,
        [](std::vector<DeviceInfo>& to) {
-         to.push_back({"controller", false, "a headset's controller, with catena view --xr: it is tracked and vibrates"});
+         to.push_back({"controller", false, "a tracked headset controller with vibration, for catena view --xr"});
        },
        open_controller},
       {"spacemouse", SpaceMouse::nominal_capabilities,
@@ -173,7 +175,7 @@ Result<std::unique_ptr<Device>> open_device(const std::string& name, const Devic
   const DeviceType* found = find(parse_device_type(name));
   if (found == nullptr) return Error{"there is no device \"" + name + "\"; one of " + device_type_names() + " was expected"};
   if (colon != std::string::npos && colon + 1 == name.size())
-    return Error{"device \"" + name + "\" has nothing after its colon; \"" + found->name + "\" or \"" + found->name +
+    return Error{"device \"" + name + "\" has no detail after the colon; \"" + found->name + "\" or \"" + found->name +
                  ":DETAIL\" was expected"};
   CATENA_TRY(std::unique_ptr<Device> device, found->open(colon == std::string::npos ? std::string() : name.substr(colon + 1), settings));
   return with_device_mapping(std::move(device), settings);

@@ -14,8 +14,8 @@ namespace catena::haptics {
 /// One device that could be used.
 struct DeviceInfo {
   std::string name;       ///< name to pass to `open_device`
-  bool available = true;  ///< it can be opened
-  std::string detail;     ///< one line: what it is, or why it cannot be opened
+  bool available = true;  ///< false: the device cannot be opened
+  std::string detail;     ///< one line: description, or the reason why it cannot be opened
 };
 
 /// Returns the TYPE of a name.

@@ -109,7 +109,7 @@ SimulatedDevice::SimulatedDevice(std::vector<Waypoint> path, const SimulatedDevi
 }
 
 void SimulatedDevice::set_target(const Vec3& position_m) noexcept {
-  // a path of two points: the target positions at the tick that was read last and at the next one
+  // a path of two points: the target positions at the last tick that was read and at the next tick
   path_.resize(2, path_.front());
   const double next_s = start_s_ + static_cast<double>(ticks_) * parameters_.period_s;
   path_.front() = {next_s - parameters_.period_s, path_.back().position_m, path_.back().buttons};
@@ -175,12 +175,12 @@ DeviceInput SimulatedDevice::read() noexcept {
   return input;
 }
 
-// Takes effect from the tick that was read last.
+// The force acts from the last tick that was read.
 void SimulatedDevice::write(const DeviceOutput& output) noexcept {
   if (ticks_ == 0) return;
-  const double length = norm(output.force_n), most = parameters_.max_force_n;
+  const double length = norm(output.force_n), maximum = parameters_.max_force_n;
   Vec3& to = force_history_[(ticks_ - 1) % force_history_.size()];
-  to = !std::isfinite(length) ? Vec3(0.0) : length > most ? output.force_n * (most / length) : output.force_n;
+  to = !std::isfinite(length) ? Vec3(0.0) : length > maximum ? output.force_n * (maximum / length) : output.force_n;
 }
 
 }  // namespace catena::haptics

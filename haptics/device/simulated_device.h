@@ -72,10 +72,10 @@ class SimulatedTool final : public Device {
 
 /// Parameters of a SimulatedDevice. Defaults: ideal but for mass and grip; see desktop_device_parameters() for a real device.
 struct SimulatedDeviceParameters {
-  double mass_kg = 0.15;  ///< of the mechanism
+  double mass_kg = 0.15;  ///< mass of the mechanism
   /// Stiffness of the grip, toward the user's target position; 0 with damping 0: the user does not hold the device.
   double grip_stiffness_n_per_m = 500;
-  double grip_damping_ns_per_m = 5;  ///< of the grip
+  double grip_damping_ns_per_m = 5;  ///< damping of the grip
   double period_s = 1e-3;
   double hand_mass_kg = 0;  ///< effective mass of the user's hand, added to that of the mechanism
   double tremor_m = 0;      ///< root mean square, each axis

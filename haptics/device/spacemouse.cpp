@@ -31,7 +31,7 @@ double share(std::int32_t counts, double dead_zone) noexcept {
   return c < 0 ? -r : r;
 }
 
-// A daemon that hangs up during libspnav's greeting must not end the program (SIGPIPE).
+// Blocks SIGPIPE: a daemon that closes the connection during libspnav's greeting must not end the program.
 bool connect_daemon() {
   sigset_t pipe, before;
   sigemptyset(&pipe);
@@ -65,7 +65,7 @@ DeviceCapabilities SpaceMouse::nominal_capabilities() {
   return out;
 }
 
-// Checks where libspnav looks: its environment variable, a path in /etc/spnavrc, the daemon's default path.
+// Checks the places where libspnav looks: its environment variable, a path in /etc/spnavrc, the daemon's default path.
 bool SpaceMouse::is_daemon_available() {
   struct stat about {};
   return is_socket(std::getenv("SPNAV_SOCKET")) || is_socket("/var/run/spnav.sock") || stat("/etc/spnavrc", &about) == 0;
@@ -75,7 +75,7 @@ const char* SpaceMouse::daemon_missing_hint() { return "spacenavd is not running
 
 Result<std::unique_ptr<Device>> SpaceMouse::open(const SpaceMouseParameters& parameters) {
   if (!is_daemon_available()) return Error{daemon_missing_hint()};
-  if (in_use.exchange(true)) return Error{"the SpaceMouse is open already; one at a time was expected"};
+  if (in_use.exchange(true)) return Error{"the SpaceMouse is already in use; a single use was expected"};
   if (!connect_daemon()) {
     in_use = false;
     return Error{daemon_missing_hint()};
@@ -103,8 +103,8 @@ DeviceInput SpaceMouse::read() noexcept {
   DeviceInput input;
   if (counts.connected) {
     const SpaceMouseRates rates = compute_spacemouse_rates(counts, parameters_);
-    const double dt = 1 / parameters_.rate_hz, most = 0.5 * capabilities_.workspace_m;
-    for (int a = 0; a < 3; ++a) position_m_[a] = std::clamp(position_m_[a] + rates.velocity_m_per_s[a] * dt, -most, most);
+    const double dt = 1 / parameters_.rate_hz, maximum = 0.5 * capabilities_.workspace_m;
+    for (int a = 0; a < 3; ++a) position_m_[a] = std::clamp(position_m_[a] + rates.velocity_m_per_s[a] * dt, -maximum, maximum);
     if (max_abs(rates.turn_rad_per_s) > 0) orientation_ = normalized(rotation_from_vector(rates.turn_rad_per_s * dt) * orientation_);
   } else {
     input.status = DeviceStatus::lost;
@@ -121,7 +121,7 @@ void SpaceMouse::publish(bool connected) {
   counts_.publish(current_counts_);
 }
 
-// Reads whole packets only: libspnav takes a partial packet for a whole one, and does not report the end of the connection.
+// Reads complete packets only: libspnav treats a partial packet as a complete one, and does not report the end of the connection.
 bool SpaceMouse::receive_events() {
   char packet[kPacketBytes];
   while (!stop_) {
@@ -140,7 +140,7 @@ bool SpaceMouse::receive_events() {
       const auto bit = event.button.bnum >= 0 && event.button.bnum < 32 ? 1u << event.button.bnum : 0u;
       current_counts_.buttons = event.button.press != 0 ? current_counts_.buttons | bit : current_counts_.buttons & ~bit;
     } else if (type == SPNAV_EVENT_DEV) {
-      current_counts_.axes = {};  // plugged or unplugged while the daemon runs: it no longer reports what is deflected
+      current_counts_.axes = {};  // plugged or unplugged while the daemon runs: the daemon does not report the release of a deflected axis
       current_counts_.buttons = 0;
     } else {
       continue;

@@ -19,9 +19,9 @@ namespace catena::haptics {
 
 /// Parameters of a SpaceMouse.
 struct SpaceMouseParameters {
-  double speed_m_per_s = 0.1;    ///< at full deflection
-  double turn_rad_per_s = 1.5;   ///< at full deflection
-  double dead_zone_counts = 15;  ///< of 350
+  double speed_m_per_s = 0.1;    ///< speed at full deflection
+  double turn_rad_per_s = 1.5;   ///< angular velocity at full deflection
+  double dead_zone_counts = 15;  ///< deflection below which the output is zero; full deflection: 350 counts
   double rate_hz = 1000;         ///< tick rate of the servo that reads it
 };
 

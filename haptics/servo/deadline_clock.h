@@ -38,22 +38,22 @@ class DeadlineClock {
 
   /// Starts a tick at `now_ns`; returns its timing.
   TickTiming begin_tick(std::int64_t now_ns) noexcept {
-    const std::int64_t since = std::max<std::int64_t>(0, now_ns - first_ns_), deadline = std::max(next_, since / period_ns_);
-    TickTiming beat;
-    beat.missed = deadline - last_ - 1;
-    beat.time_ns = deadline * period_ns_;
-    if (since - beat.time_ns > period_ns_ / 4) beat.time_ns = since;
-    beat.late = last_ >= 0 && beat.time_ns - last_time_ns_ > 2 * period_ns_;
-    beat.stalled = now_ns - last_end_ns_ > stall_ns_;
+    const std::int64_t elapsed_ns = std::max<std::int64_t>(0, now_ns - first_ns_), deadline = std::max(next_, elapsed_ns / period_ns_);
+    TickTiming timing;
+    timing.missed = deadline - last_ - 1;
+    timing.time_ns = deadline * period_ns_;
+    if (elapsed_ns - timing.time_ns > period_ns_ / 4) timing.time_ns = elapsed_ns;
+    timing.late = last_ >= 0 && timing.time_ns - last_time_ns_ > 2 * period_ns_;
+    timing.stalled = now_ns - last_end_ns_ > stall_ns_;
     last_ = deadline;
-    last_time_ns_ = beat.time_ns;
-    return beat;
+    last_time_ns_ = timing.time_ns;
+    return timing;
   }
 
   /// Ends the tick at `now_ns`.
   void end_tick(std::int64_t now_ns) noexcept {
-    const std::int64_t since = std::max(now_ns - first_ns_, last_time_ns_ + (period_ns_ - 1) / 2);
-    next_ = std::max(last_, since / period_ns_) + 1;
+    const std::int64_t elapsed_ns = std::max(now_ns - first_ns_, last_time_ns_ + (period_ns_ - 1) / 2);
+    next_ = std::max(last_, elapsed_ns / period_ns_) + 1;
     last_end_ns_ = now_ns;
   }
 

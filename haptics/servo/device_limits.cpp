@@ -20,7 +20,7 @@ Mechanics resolve_mechanics(const DeviceCapabilities& device, const DeviceSettin
   m.friction_n = settings.friction_n.value_or(m.friction_n);
   m.encoder_step_m = settings.encoder_step_m.value_or(m.encoder_step_m);
   m.delay_s = settings.delay_s.value_or(m.delay_s);
-  // the device mapping passes a force unscaled, but scales lengths (haptics/device/device_mapping.h)
+  // the device mapping scales lengths but not forces (haptics/device/device_mapping.h)
   m.mass_kg /= settings.scale;
   m.damping_ns_per_m /= settings.scale;
   m.encoder_step_m *= settings.scale;
@@ -54,7 +54,7 @@ DeviceLimits compute_device_limits(const DeviceCapabilities& device, const Devic
 
   if (device.has_vibration) limits.ramp_in_s = kRampIn_s;
 
-  // settings of the user
+  // the user's settings
   if (settings.stiffness_cap == DeviceSettings::StiffnessCap::value) limits.max_stiffness_n_per_m = settings.stiffness_cap_n_per_m;
   limits.max_force_n = settings.max_force_n.value_or(limits.max_force_n);
   limits.max_torque_nm = settings.max_torque_nm.value_or(limits.max_torque_nm);

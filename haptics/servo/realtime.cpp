@@ -28,13 +28,13 @@ constexpr std::size_t kStackBytes = 256 * 1024;  // more than a tick ever uses
 
 std::string reason() { return std::strerror(errno); }
 
-/// How the user can obtain a permission that was denied; `limit` is its name in limits.d.
+/// Returns instructions for obtaining a denied permission; `limit` is its name in limits.d.
 std::string remedy(const char* limit) {
-  return std::string("join the group catena and log in again (`adduser YOU catena`, where the Debian package is installed), or raise ") +
-         limit + " in /etc/security/limits.d";
+  return std::string("join the group catena of the Debian package (`adduser YOU catena`) and log in again, or raise ") + limit +
+         " in /etc/security/limits.d";
 }
 
-/// Whether all future memory may be locked: under a limit, allocations of the process would fail.
+/// Returns whether all future memory may be locked: under a limit, allocations of the process would fail.
 bool may_lock_everything() {
   rlimit limit{};
   if (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY) return true;
@@ -106,7 +106,7 @@ void RealtimeThread::bind(int cpu) {
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
   if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) {
-    report_.notes.push_back("the thread was not bound to a core: the cores of this machine could not be read (" + reason() + ")");
+    report_.notes.push_back("the thread was not bound to a core: the list of cores could not be read (" + reason() + ")");
     return;
   }
   const bool chosen = cpu >= 0;
@@ -119,7 +119,7 @@ void RealtimeThread::bind(int cpu) {
   CPU_ZERO(&one);
   if (cpu < CPU_SETSIZE) CPU_SET(static_cast<unsigned>(cpu), &one);
   if (cpu >= CPU_SETSIZE || sched_setaffinity(0, sizeof one, &one) != 0) {
-    report_.notes.push_back("the thread was not bound to core " + std::to_string(cpu) + ": this machine does not let it run there");
+    report_.notes.push_back("the thread was not bound to core " + std::to_string(cpu) + ": the thread is not allowed to run on this core");
     return;
   }
   report_.cpu = cpu;
@@ -133,8 +133,10 @@ void RealtimeThread::lock(const void* own, std::size_t own_bytes) {
   const void* const stack = static_cast<const char*>(__builtin_frame_address(0)) - kStackBytes;  // the stack grows downward
   for (const LockedRange& part : {LockedRange{stack, kStackBytes}, LockedRange{own, own_bytes}})
     if (mlock(part.at, part.bytes) == 0) locked_ranges_.push_back(part);
-  report_.notes.push_back(std::string("not all memory could be locked (") +
-                          (locked_ranges_.size() == 2 ? "the thread's own is): " : "not even the thread's own): ") + remedy("memlock"));
+  report_.notes.push_back(
+      std::string("not all memory could be locked (") +
+      (locked_ranges_.size() == 2 ? "the memory of the thread is locked): " : "the memory of the thread is not locked, either): ") +
+      remedy("memlock"));
 }
 
 }  // namespace catena::haptics

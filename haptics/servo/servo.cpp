@@ -15,7 +15,7 @@ namespace catena::haptics {
 
 namespace {
 
-// after this many consecutive late ticks, or this long with every tick late, SCHED_FIFO priority is released
+// SCHED_FIFO priority is given up after this many consecutive late ticks, or after this time with every tick late
 constexpr int kMissesUntilNormal = 1000;
 constexpr std::int64_t kMissesUntilNormalNs = 1'000'000'000;
 
@@ -31,7 +31,7 @@ void sleep_until(std::int64_t ns, const std::atomic<bool>& stop) noexcept {
   }
 }
 
-/// Unpaced runs must not occupy the machine, and do not benefit from locked memory.
+/// Real-time options of a run. Unpaced runs must not occupy the machine, and do not benefit from locked memory.
 RealtimeOptions realtime_options(const ServoOptions& options) {
   if (options.paced) return options.realtime;
   return {.fifo = false, .lock_memory = false, .cpu = RealtimeOptions::kUnbound};
@@ -93,11 +93,11 @@ void Servo::set_program(std::shared_ptr<const HapticProgram> program) {
   programs_.push_back(std::move(program));
 }
 
-bool Servo::set_sink(TickSink* sink, double patience_s) {
+bool Servo::set_sink(TickSink* sink, double timeout_s) {
   requested_sink_.store(sink, std::memory_order_release);
   const std::int64_t began = now_ns();
   while (running() && active_sink_.load(std::memory_order_acquire) != sink) {
-    if (1e-9 * static_cast<double>(now_ns() - began) > patience_s) return false;
+    if (1e-9 * static_cast<double>(now_ns() - began) > timeout_s) return false;
     std::this_thread::sleep_for(std::chrono::microseconds(200));
   }
   return true;
@@ -132,13 +132,13 @@ ServoStats Servo::stats() const {
   if (prepared_.load(std::memory_order_acquire)) out.realtime = realtime_;
   if (read(counters_.released_fifo)) {
     out.realtime.fifo = false;
-    out.realtime.notes.push_back("real-time scheduling was given back: the ticks take longer than the period");
+    out.realtime.notes.push_back("real-time scheduling was given up, because the ticks take longer than the period");
   }
   return out;
 }
 
 void Servo::run_tick(double t_s, const TickTiming& beat, HapticState& out) noexcept {
-  // before the program: a sink that is taken up has been given every program handed over before it
+  // read before the program, because a sink in use must have received each program published before
   TickSink* wanted = requested_sink_.load(std::memory_order_acquire);
   const bool takes_up = wanted != sink_;
 
@@ -160,7 +160,7 @@ void Servo::run_tick(double t_s, const TickTiming& beat, HapticState& out) noexc
   ProbeSample probe = make_probe_sample(*program_, input, t_s);
   probe.forces_on = input.forces_on && forces_enabled();
 
-  // the tick that finds the watchdog's flag outputs no force; the next one may drive the device again
+  // a tick that finds the watchdog's flag outputs no force; the next tick may drive the device
   const bool stalled = watchdog_ && (beat.stalled || stalled_in_tick_);
   if (watchdog_ && beat.stalled) watchdog_->report_stall();
   const bool tripped = (watchdog_ && watchdog_->consume_trip()) || stalled;
@@ -191,7 +191,7 @@ void Servo::run_tick(double t_s, const TickTiming& beat, HapticState& out) noexc
   if (sink_ != nullptr) sink_->put(probe, out);
 }
 
-/// SCHED_FIFO priority is for ticks that fit into their period: it is released after a second of misses.
+/// Releases SCHED_FIFO priority after a second of missed ticks: it is for ticks that fit into their period.
 void Servo::release_priority_if_overloaded(bool missed, std::int64_t now_ns) noexcept {
   if (!missed) misses_in_row_ = 0;
   if (!missed || !realtime_.fifo || counters_.released_fifo.load(std::memory_order_relaxed)) return;
@@ -209,7 +209,7 @@ void Servo::loop() noexcept {
   device_.resume();
   stopped_ = stalled_in_tick_ = false;
   misses_in_row_ = 0;
-  state_.force_limiter = {};  // every run starts at zero force, whatever an earlier run sent
+  state_.force_limiter = {};  // each run starts at zero force, whatever an earlier run sent
   pause_passivity(state_.passivity);
 
   const auto period_ns = static_cast<std::int64_t>(1e9 / options_.rate_hz);
@@ -243,7 +243,7 @@ void Servo::loop() noexcept {
 
     const std::int64_t ended = now_ns();
     pace.end_tick(ended);
-    // the thread may also have stalled after the force was computed: in the device, or on the way here
+    // the thread may also have stalled after the force was computed: in the device, or before this line
     if (watchdog_ && !stalled_in_tick_ && ended - began > watchdog_->limit_ns()) {
       stalled_in_tick_ = true;
       watchdog_->report_stall();

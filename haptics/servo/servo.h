@@ -79,9 +79,9 @@ class CATENA_EXPORT Servo {
   void set_program(std::shared_ptr<const HapticProgram> program);
   /// Gets the newest published state and frees older programs. Returns false, with `state` unchanged, if there is no newer one.
   bool receive(HapticState& state);
-  /// Sets another sink, or none, from one of the next ticks on. Waits a tick or two, at most `patience_s`, until the haptic thread uses it.
+  /// Sets another sink, or none, from one of the next ticks on. Waits a tick or two, at most `timeout_s`, until the haptic thread uses it.
   /// Returns true if the old sink is not in use; on false it must stay alive until stop() or until a call returns true.
-  bool set_sink(TickSink* sink, double patience_s = 1);
+  bool set_sink(TickSink* sink, double timeout_s = 1);
   /// Returns the hash of all ticks (StateHash); after stop().
   std::uint64_t state_hash() const { return hash_.value(); }
   /// Returns the number of programs that are kept: the one that runs and those that a tick may still use.

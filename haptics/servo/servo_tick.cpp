@@ -12,7 +12,7 @@ Vec3 device_from_world(const HapticProgram& program, const Vec3& world) noexcept
 }
 
 ProbeSample make_probe_sample(const HapticProgram& program, const DeviceInput& input, double t_s) noexcept {
-  // a recorded path is in world coordinates already, and so is its orientation
+  // a recorded path, including its orientation, is already in world coordinates
   ProbeSample probe;
   probe.buttons = input.buttons;
   probe.t_s = input.is_recorded ? input.t_s : t_s;

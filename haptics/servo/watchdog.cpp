@@ -43,8 +43,8 @@ void Watchdog::report_stall() noexcept {
 void Watchdog::watch() {
   fifo_priority_.wait(kNotStarted, std::memory_order_acquire);
   const int fifo_priority = fifo_priority_.load(std::memory_order_acquire);
-  std::vector<std::string> notes;  // the haptic thread has reported them
-  // a busy haptic thread must not block the watchdog: it gets a higher priority if permitted, and any core
+  std::vector<std::string> notes;  // already reported by the haptic thread
+  // the watchdog gets a higher priority if permitted, and any core, so that a busy haptic thread cannot block it
   reset_cpu_affinity();
   if (fifo_priority > 0 && !acquire_fifo_priority(fifo_priority, notes)) acquire_fifo_priority(fifo_priority - 1, notes);
   const std::chrono::nanoseconds nap(std::clamp<std::int64_t>(limit_ns_ / 8, 500'000, 10'000'000));

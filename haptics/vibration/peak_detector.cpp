@@ -9,7 +9,7 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kLeastSpeed = 1e-3;  // m/s; below it the probe counts as at rest, and energy per distance is meaningless
+constexpr double kMinSpeed = 1e-3;  // m/s; below it the probe counts as at rest, and energy per distance is meaningless
 
 // Packs two non-negative, finite floats; the packed values are ordered like the pairs, the first number first.
 std::uint64_t packed(double first, double second) noexcept {
@@ -20,7 +20,7 @@ std::uint64_t packed(double first, double second) noexcept {
 double first_of(std::uint64_t word) noexcept { return std::bit_cast<float>(static_cast<std::uint32_t>(word >> 32)); }
 double second_of(std::uint64_t word) noexcept { return std::bit_cast<float>(static_cast<std::uint32_t>(word)); }
 
-// Raises the peak. The other thread only ever writes zero, so if the first exchange fails, the value is zero and the second one succeeds.
+// Raises the peak. The other thread only writes zero, so if the first exchange fails, the value is zero and the second one succeeds.
 void raise(std::atomic<std::uint64_t>& peak, std::uint64_t to) noexcept {
   std::uint64_t before = peak.load(std::memory_order_relaxed);
   for (int tries = 0; tries < 2 && to > before; ++tries)
@@ -49,7 +49,7 @@ void PeakDetector::add(const ForceSample& tick) noexcept {
     lost_j_ += last_accounted_j_ - tick.accounted_j - gain_ * lost_j_;
     path_m_ += way_m - gain_ * path_m_;
     const double speed = path_m_ / kTau_s;
-    if (lost_j_ > 0 && speed >= kLeastSpeed) raise(friction_, packed(std::min(force_n, lost_j_ / path_m_), speed));
+    if (lost_j_ > 0 && speed >= kMinSpeed) raise(friction_, packed(std::min(force_n, lost_j_ / path_m_), speed));
   }
   last_m_ = tick.position_m;
   last_accounted_j_ = tick.accounted_j;

@@ -58,7 +58,7 @@ class PeakDetector {
   Vec3 mean_n_{0.0}, last_m_{0.0};
   double last_accounted_j_ = 0, lost_j_ = 0, path_m_ = 0;
 
-  // Shared: each is raised by one thread only and zeroed by the other only. Two 32-bit floats per word; the first decides which is larger.
+  // Shared: one thread only raises a word, the other only sets it to zero. Each word packs two 32-bit floats and is ordered by the first.
   static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
   std::atomic<std::uint64_t> change_{0}, friction_{0};
 };

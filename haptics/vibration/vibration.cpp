@@ -8,7 +8,7 @@ namespace catena::haptics {
 namespace {
 
 constexpr double kShortestCallS = 1e-3, kLongestCallS = 0.1;
-constexpr double kFrictionCalls = 1.5;  // in calls: a call that is a little late leaves no gap
+constexpr double kFrictionCalls = 1.5;  // duration of the vibration in calls: a call that is a little late leaves no gap
 
 std::int64_t nanoseconds(double s) noexcept { return static_cast<std::int64_t>(1e9 * s); }
 
@@ -24,7 +24,7 @@ Vibration compute_vibration(const ForcePeaks& peaks, double call_s, const Vibrat
 }
 
 VibrationSender::Command VibrationSender::next(PeakDetector& peaks, std::int64_t now_ns, bool allowed) noexcept {
-  const ForcePeaks felt = peaks.take_peaks();
+  const ForcePeaks peaks_in_period = peaks.take_peaks();
   if (!allowed) {
     const bool stops = was_allowed_;
     was_allowed_ = false;
@@ -34,13 +34,13 @@ VibrationSender::Command VibrationSender::next(PeakDetector& peaks, std::int64_t
   const bool began = !was_allowed_;
   was_allowed_ = true;
   const double since_s = 1e-9 * static_cast<double>(now_ns - std::exchange(last_ns_, now_ns));
-  if (began) return {};  // discard what accumulated before vibration was allowed
-  const Vibration wish = compute_vibration(felt, std::clamp(since_s, kShortestCallS, kLongestCallS), map_);
+  if (began) return {};  // discards values accumulated before vibration was allowed
+  const Vibration requested = compute_vibration(peaks_in_period, std::clamp(since_s, kShortestCallS, kLongestCallS), map_);
   const bool pulse_lasts = current_.is_pulse && now_ns < ends_ns_;
-  if (!(wish.amplitude > 0) || (pulse_lasts && wish.amplitude < current_.amplitude)) return {};
-  current_ = wish;
-  ends_ns_ = now_ns + wish.duration_ns;
-  return {Action::vibrate, wish};
+  if (!(requested.amplitude > 0) || (pulse_lasts && requested.amplitude < current_.amplitude)) return {};
+  current_ = requested;
+  ends_ns_ = now_ns + requested.duration_ns;
+  return {Action::vibrate, requested};
 }
 
 }  // namespace catena::haptics

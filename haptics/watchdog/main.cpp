@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The program `catena-watchdog`: started by the driver of a USB device, which passes it the device's node (descriptor 3), the shared memory
-// page (descriptor 4) and the lifeline (descriptor 5). It has a session of its own, blocks all signals that can be blocked, and locks its
+// The program `catena-watchdog`: started by the driver of a USB device, which passes the device node (descriptor 3), the shared memory page
+// (descriptor 4) and the lifeline (descriptor 5). The program has its own session, blocks all signals that can be blocked, and locks its
 // memory.
 #include <fcntl.h>
 #include <sched.h>
@@ -18,10 +18,10 @@
 namespace {
 
 constexpr int kUsb = 3, kPage = 4, kLifeline = 5;
-constexpr int kPriority = 85;  // above all of the program's threads: it rarely runs
+constexpr int kPriority = 85;  // above all of the program's threads, because it rarely runs
 
 int usage() {
-  std::fputs("catena-watchdog: is started by catena for a USB device, and is of no use alone\n", stderr);
+  std::fputs("catena-watchdog: stops the force of a USB device for catena, which starts this program\n", stderr);
   return 2;
 }
 

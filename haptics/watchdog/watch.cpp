@@ -16,7 +16,7 @@ namespace catena::haptics::watchdog {
 namespace {
 
 constexpr int kLookMs = 5, kWriteMs = 20;
-constexpr int kOffsForTheGone = 2;  // zero-force packets after the program has exited: the first may be corrupted by a packet under way
+constexpr int kOffsForTheGone = 2;  // zero-force packets after the program has exited: a packet in transit may corrupt the first one
 
 std::int64_t now_ms() noexcept {
   timespec now{};
@@ -53,7 +53,7 @@ Sent send_off(SharedPage& page, int usb) noexcept {
   return Sent::not_yet;
 }
 
-/// A counter that must keep changing, and the time of its last change.
+/// Counter that must keep changing, and the time of its last change.
 struct Beat {
   std::uint32_t last = 0;
   std::int64_t since_ms = 0;
@@ -86,7 +86,7 @@ EndReason program_gone(SharedPage& page, int usb, int messages) noexcept {
     const timespec nap{0, 1000000};
     if (sent == Sent::not_yet) nanosleep(&nap, nullptr);
   }
-  if (pushed) say(messages, "catena: the program has ended with a force on: its device was let go\n");
+  if (pushed) say(messages, "catena: the program ended while a force was on: the force was set to zero\n");
   return EndReason::program_gone;
 }
 
@@ -127,7 +127,7 @@ EndReason run_watchdog(SharedPage& page, int usb, int lifeline, int messages) no
     if (sent == Sent::gone) return EndReason::device_gone;
     if (sent != Sent::yes) continue;
     next_off_ms = now + silence_ms;
-    if (!said) say(messages, "catena: the program has stood still with a force on: its device was let go until it goes on\n");
+    if (!said) say(messages, "catena: the program stopped responding while a force was on: the force is zero until the program responds\n");
     said = true;
   }
 }

@@ -8,10 +8,10 @@
 namespace catena::render {
 namespace {
 
-constexpr double kEdgeOn = 1e-9;  // a face that is nearly seen from its side is not seen
-constexpr double kLean = 0.01;    // of lowest to the left, and of leftmost to the bottom: no two are alike
+constexpr double kEdgeOnTolerance = 1e-9;  // a face closer to edge-on than this counts as turned away; by the diagonal in perspective
+constexpr double kTieBreakWeight = 0.01;   // weight of the second coordinate in the score; breaks ties
 
-/// A place in the picture, right and up; behind the eye, too.
+/// Coordinates in the image, right and up; finite for points behind the camera, too.
 struct ScreenPoint {
   double x, y;
 };
@@ -21,14 +21,14 @@ ScreenPoint seen_at(const Camera& camera, const Vec3& p) {
   return {dot(away, camera.right), dot(away, camera.up)};
 }
 
-/// Whether the face of least (0) or greatest (1) coordinate is turned to the eye.
+/// Returns whether the face of minimum (side 0) or maximum (side 1) coordinate is turned to the camera.
 bool faces_eye(const Bounds& box, const Camera& camera, int axis, int side) {
-  if (camera.orthographic) return side == 1 ? camera.back[axis] > kEdgeOn : camera.back[axis] < -kEdgeOn;
-  const double slack = kEdgeOn * box.diagonal();
+  if (camera.orthographic) return side == 1 ? camera.back[axis] > kEdgeOnTolerance : camera.back[axis] < -kEdgeOnTolerance;
+  const double slack = kEdgeOnTolerance * box.diagonal();
   return side == 1 ? camera.position[axis] > box.hi[axis] + slack : camera.position[axis] < box.lo[axis] - slack;
 }
 
-/// How far, in the picture, a step along `out` leads away from the edge.
+/// Returns the distance in the image from the edge's line to the point one step along `out` from its middle.
 double leads_away(const Camera& camera, const AxisEdge& edge, const Vec3& out, double step) {
   const Vec3 middle = 0.5 * (edge.from + edge.to);
   const ScreenPoint a = seen_at(camera, edge.from), b = seen_at(camera, edge.to), m = seen_at(camera, middle),
@@ -50,7 +50,7 @@ AxisEdge edge_of(const Bounds& box, const Camera& camera, int axis, bool upright
     edge.to[axis] = box.hi[axis];
     const bool outlines = faces_eye(box, camera, b, side_b) != faces_eye(box, camera, c, side_c);
     const ScreenPoint at = seen_at(camera, 0.5 * (edge.from + edge.to));
-    const double score = upright ? at.x + kLean * at.y : at.y + kLean * at.x;
+    const double score = upright ? at.x + kTieBreakWeight * at.y : at.y + kTieBreakWeight * at.x;
     if (outlines < best_outlines || (outlines == best_outlines && score >= best_score)) continue;
     Vec3 out_b(0.0), out_c(0.0);
     out_b[b] = 2 * side_b - 1;

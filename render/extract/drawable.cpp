@@ -7,7 +7,7 @@
 namespace catena::render {
 namespace {
 
-/// An extraction that cannot fail, as one that can.
+/// Adapts an extraction that cannot fail to the signature of those that can.
 template <void (*Extract)(const scene::Scene&, FramePacket&)>
 Outcome always(const scene::Scene& scene, FramePacket& packet) {
   Extract(scene, packet);

@@ -13,11 +13,11 @@
 
 namespace catena::render {
 
-/// What a scalar bar shows of an item.
+/// Content of an item's scalar bar.
 struct Legend {
   std::vector<std::array<double, 4>> colors;  ///< Value, r, g, b, with rising values; empty: nothing is shown
   std::string name;                           ///< Name and unit of the values
-  const scene::LabelMap* labels = nullptr;    ///< Labels whose colors they are; null: none
+  const scene::LabelMap* labels = nullptr;    ///< Label map that the colors belong to; null: none
   double linear_below = 0;                    ///< Linear threshold of a symlog scale; 0: linear scale
 };
 
@@ -32,7 +32,7 @@ struct DrawableExtraction {
 
 /// Adds a kind, which must be registered in the scene, too. Call it at startup.
 void register_extraction(const DrawableExtraction& kind);
-/// All kinds, in the order of extraction.
+/// Returns all kinds, in the order of extraction.
 const std::vector<DrawableExtraction>& extractions();
 
 }  // namespace catena::render

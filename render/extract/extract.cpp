@@ -17,16 +17,16 @@ namespace catena::render {
 
 namespace {
 
-constexpr double kCursorShare = 0.008;  // fitted glyph radius by the diagonal of what is drawn
+constexpr double kCursorShare = 0.008;  // fitted cursor radius / diagonal of the drawn bounds
 constexpr double kCursorOverTube = 2;
 
-/// |F| by the largest force; 0 where there is none.
+/// Returns |F| / maximum force, 0..1; 0 without a maximum force or with a force that is not finite.
 double strain_of(const scene::Scene& scene, const scene::Cursor& cursor) {
-  const double most = scene.coupling.max_force_n;
-  return most > 0 && is_finite(cursor.force_n) ? std::clamp(norm(cursor.force_n) / most, 0.0, 1.0) : 0;
+  const double max_force = scene.coupling.max_force_n;
+  return max_force > 0 && is_finite(cursor.force_n) ? std::clamp(norm(cursor.force_n) / max_force, 0.0, 1.0) : 0;
 }
 
-/// Those that are drawn, in one order.
+/// Calls work(cursor) for each visible cursor with a finite probe, in the order of the entities.
 template <class Work>
 void each_cursor(const scene::Scene& scene, const Work& work) {
   scene.entities.each<scene::Cursor>([&](scene::Entity, const scene::Cursor& cursor) {
@@ -34,7 +34,7 @@ void each_cursor(const scene::Scene& scene, const Work& work) {
   });
 }
 
-/// What of the cursor is the hand's, and not its look.
+/// Returns the cursor item's state of the hand, without its appearance.
 CursorItem hand_of(const scene::Scene& scene, const scene::Cursor& cursor) {
   CursorItem item{cursor.probe, cursor.proxies, cursor.active, cursor.force_n, 0, cursor.release_ratios, 0};
   if (cursor.pseudo_haptic) item.force_ratio = strain_of(scene, cursor);
@@ -46,7 +46,7 @@ CursorItem hand_of(const scene::Scene& scene, const scene::Cursor& cursor) {
 void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
   Bounds drawn = packet_bounds(packet);
   if (drawn.empty()) {
-    // nothing but the cursor: its size follows the fields and meshes that the hand feels
+    // only the cursor is drawn: its size follows the bounds of the loaded fields, curves, points and meshes
     scene.entities.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
       if (const field::Field* field = source.loaded.get()) drawn.extend(field->world_bounds());
     });
@@ -71,14 +71,14 @@ void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
     item.id = packet.add_object("cursor", "");
     item.show_occluded = cursor.show_occluded;
     item.is_crosshair = cursor.crosshair;
-    if (cursor.drop_line) item.foot_point = item.probe;  // extract_feet lowers it
+    if (cursor.drop_line) item.foot_point = item.probe;  // extract_feet projects it to the floor
     if (!(item.radius > 0)) item.radius = std::max(kCursorShare * (drawn.empty() ? 4.0 : drawn.diagonal()), kCursorOverTube * widest_tube);
     packet.cursors.push_back(std::move(item));
   });
 }
 
-/// Where the drop lines end: below the probe on the ground, if the scene states one, else on the lowest face of the box of what is drawn,
-/// along the world's axis that the view's up is nearest to. Nothing is dropped from below that, or where nothing is drawn.
+/// Projects the feet of drop lines to the floor: the ground, if the scene has one, else the lowest face of the drawn bounds, along the
+/// world axis nearest to the view's up direction. Removes a foot if the probe is not above the floor or nothing is drawn.
 void extract_feet(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
   const Vec3 up = scene.ground ? Vec3(0, 0, 1) : packet.view.up;
   int axis = 2;
@@ -193,7 +193,7 @@ Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width
   CATENA_CHECK(extract_indicators(scene, packet));
   extract_overlay(scene, packet);
   packet.view = make_screen_window_view(view_of(scene, packet), scene.stereo);
-  // the box, its axes and the ground stay where the data are while the hand goes elsewhere
+  // the box, axes and ground enclose the data only, so that they do not move with the hand
   const Bounds drawn = drawn_bounds(packet);
   extract_feet(scene, drawn, packet);
   extract_environment(scene, drawn.empty() ? packet_bounds(packet) : drawn, packet);

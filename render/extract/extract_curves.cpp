@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Curves from files as tubes.
+/// Extracts curves from files as tubes.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,19 +15,21 @@ namespace catena::render {
 
 namespace {
 
-constexpr double kShareOfAll = 0.003;                         // fitted radius by the diagonal of all
-constexpr double kManyCurves = 300, kNarrowest = 0.25;        // from so many on they get thinner, down to that share
-constexpr std::size_t kBytesAPoint = 160, kBytesALine = 400;  // drawn: place, colour, its ring here and on the device; the item
+constexpr double kRadiusShare = 0.003;  // fitted tube radius / diagonal of the set
+constexpr double kFullRadiusCurves = 300,
+                 kMinRadiusFactor = 0.25;  // sets of more lines get thinner tubes, down to this share of the radius
+constexpr std::size_t kBytesPerPoint = 160,
+                      kBytesPerLine = 400;  // memory of a drawn point (position, color, ring on host and device) and of a tube item
 
-/// What this room keeps beside curves: the tubes that are drawn, made once.
+/// Cached tubes of a curve set.
 struct FlatCurves {
   curves::CurveSetPtr of;
   std::vector<TubeItem> tubes;
-  ColorTable colors;  ///< of "color_by"
+  ColorTable colors;  ///< from "color_by"
   std::string left_out;
 };
 
-/// The lines that are drawn: all, or an even choice of as many as the budget of points allows.
+/// Returns the indices of the drawn lines: all, or evenly spaced ones within the budget of points.
 std::vector<std::size_t> drawn_lines(const curves::CurveSet& set) {
   const double share = std::min(1.0, static_cast<double>(kMaxCurvePoints) / static_cast<double>(set.points.size()));
   std::vector<std::size_t> lines;
@@ -37,7 +39,7 @@ std::vector<std::size_t> drawn_lines(const curves::CurveSet& set) {
   return lines;
 }
 
-/// The colours of a line's points by the direction of the line there: that of its chord from the point before to the one after.
+/// Returns the color of each point by the line's direction, taken as the chord from the previous to the next point.
 std::vector<Color> direction_colors(const std::vector<Vec3>& points) {
   std::vector<Color> colors;
   colors.reserve(points.size());
@@ -49,7 +51,7 @@ std::vector<Color> direction_colors(const std::vector<Vec3>& points) {
   return colors;
 }
 
-/// What "color_by" shows at each of a set's points.
+/// Evaluates the quantity of "color_by" at the points of a curve set.
 class CurveValue {
  public:
   CurveValue(const scene::ColorBy& by, field::AnyField shown, const curves::PointValues* values)
@@ -101,8 +103,8 @@ Result<CurveValue> curve_value(scene::Scene& scene, const scene::ColorBy& by, co
 }
 
 double fitted_radius(const curves::CurveSet& set) {
-  const double many = std::sqrt(std::sqrt(kManyCurves / static_cast<double>(set.line_count())));
-  return kShareOfAll * norm(set.max_corner - set.min_corner) * std::clamp(many, kNarrowest, 1.0);
+  const double many = std::sqrt(std::sqrt(kFullRadiusCurves / static_cast<double>(set.line_count())));
+  return kRadiusShare * norm(set.max_corner - set.min_corner) * std::clamp(many, kMinRadiusFactor, 1.0);
 }
 
 Result<FlatCurves> flat_curves(scene::Scene& scene, const scene::CurvesSource& drawn, const std::string& name) {
@@ -113,7 +115,7 @@ Result<FlatCurves> flat_curves(scene::Scene& scene, const scene::CurvesSource& d
   std::size_t points = 0;
   for (const std::size_t k : lines) points += set.line_offsets[k + 1] - set.line_offsets[k];
   CATENA_CHECK(check_memory_available("drawing " + std::to_string(lines.size()) + " lines of curves " + in_quotes(name),
-                                      static_cast<double>(points * kBytesAPoint + lines.size() * kBytesALine)));
+                                      static_cast<double>(points * kBytesPerPoint + lines.size() * kBytesPerLine)));
   if (lines.size() < set.line_count())
     flat.left_out = "curves " + in_quotes(name) + ": " + std::to_string(lines.size()) + " of " + std::to_string(set.line_count()) +
                     " lines are drawn, evenly chosen, so that they have about " + std::to_string(kMaxCurvePoints) + " points; all are felt";

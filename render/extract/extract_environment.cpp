@@ -10,15 +10,15 @@
 namespace catena::render {
 namespace {
 
-constexpr double kLineShare = 0.0012;                  // radius of lines by the diagonal
-constexpr double kTickShare = 0.015;                   // length of ticks by the diagonal
-constexpr double kLabelReach = 2.6, kNameReach = 5.5;  // from the axis, in ticks
+constexpr double kLineShare = 0.0012;                         // line radius / diagonal of the drawn bounds
+constexpr double kTickShare = 0.015;                          // tick length / diagonal
+constexpr double kNumberDistance = 2.6, kNameDistance = 5.5;  // distances of numbers and names from the axis, in tick lengths
 constexpr double kNumberPt = 10, kNamePt = 13;
-constexpr double kGroundShare = 1.6;  // the ground's edge by the diagonal
-constexpr double kGroundGap = 0.02;   // below what is drawn, by the diagonal
+constexpr double kGroundShare = 1.6;  // edge of the ground / diagonal
+constexpr double kGroundGap = 0.02;   // gap between the drawn bounds and the ground / diagonal
 constexpr int kTilesAcross = 16;
 
-/// Corner i + 2 j + 4 k of a box that may be oblique.
+/// Corners of a box, possibly oblique; corner i + 2 j + 4 k, i, j, k in {0, 1}.
 using Corners = std::array<Vec3, 8>;
 
 Corners corners_of(const scene::Scene& scene, scene::Entity named, const Bounds& drawn) {
@@ -67,7 +67,7 @@ Bounds box_of_axes(const scene::Scene& scene, const Bounds& drawn) {
   return box;
 }
 
-/// The id of what there is one of; made at the first call.
+/// Returns the object id of a kind that a packet has once; adds the object at the first call.
 std::uint32_t only_object(FramePacket& packet, const std::string& kind) {
   for (const ObjectName& object : packet.objects)
     if (object.kind == kind) return object.id;
@@ -79,7 +79,7 @@ void add_bounding_box(const scene::Scene& scene, const Bounds& drawn, FramePacke
   const Corners corners = corners_of(scene, box.field, drawn);
   const double radius = box.radius > 0 ? box.radius : kLineShare * diagonal_of(corners);
   const std::uint32_t id = only_object(packet, "bounding box");
-  // edges that the axes draw are left to them: two tubes in one place would fight for every pixel
+  // edges drawn by the axes are left out: two tubes at one position would fight for each pixel
   std::vector<AxisEdge> axes;
   if (scene.axes)
     for (const AxisEdge& edge : find_axis_edges(box_of_axes(scene, drawn), packet.view)) axes.push_back(edge);
@@ -92,7 +92,7 @@ void add_bounding_box(const scene::Scene& scene, const Bounds& drawn, FramePacke
         packet.environment.tubes.push_back(line(corners[i], corners[i | axis], radius, box.color, id));
 }
 
-/// Ticks point away from the box.
+/// Adds the three axis edges with ticks that point away from the box, numbers and names.
 void add_axes(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
   const scene::Axes& axes = *scene.axes;
   const Bounds box = box_of_axes(scene, drawn);
@@ -108,14 +108,14 @@ void add_axes(const scene::Scene& scene, const Bounds& drawn, FramePacket& packe
       Vec3 at = edge.from;
       at[axis] = t.value;
       packet.environment.tubes.push_back(line(at, at + out, radius, color, id));
-      packet.overlay.axis_labels.push_back(label(at + kLabelReach * out, t.label, kNumberPt, color));
+      packet.overlay.axis_labels.push_back(label(at + kNumberDistance * out, t.label, kNumberPt, color));
     }
-    const Vec3 middle = 0.5 * edge.from + 0.5 * edge.to + kNameReach * out;
+    const Vec3 middle = 0.5 * edge.from + 0.5 * edge.to + kNameDistance * out;
     packet.overlay.axis_labels.push_back(label(middle, axes.names[std::size_t(axis)], kNamePt, color));
   }
 }
 
-/// Both colours of the checkerboard, one mesh each.
+/// Adds the ground as two meshes, one for each color of the checkerboard.
 void add_ground(const scene::Ground& ground, const Bounds& drawn, FramePacket& packet) {
   Bounds bounds = drawn;
   if (bounds.empty()) {
@@ -154,8 +154,9 @@ FogItem fog_of(const scene::Fog& fog, const Bounds& drawn, const FramePacket& pa
     farthest = i == 0 ? depth : std::max(farthest, depth);
   }
   item.near = fog.near.value_or(std::max(0.0, nearest));
-  const double least = 1e-9 * (drawn.empty() ? 1 : drawn.diagonal()) + 1e-12 * std::fabs(item.near);  // the fog's share divides by it
-  item.far = std::max(fog.far.value_or(farthest), item.near + least);
+  const double min_range =
+      1e-9 * (drawn.empty() ? 1 : drawn.diagonal()) + 1e-12 * std::fabs(item.near);  // the fog's ratio divides by far - near
+  item.far = std::max(fog.far.value_or(farthest), item.near + min_range);
   return item;
 }
 

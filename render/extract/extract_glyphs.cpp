@@ -18,29 +18,29 @@ namespace {
 
 using On = scene::GlyphSet::Support;
 
-constexpr double kSurfaceShare = 1.0 / 24, kBoxShare = 1.0 / 16;  // fitted spacing by the domain's diagonal
-constexpr double kShaftShare = 0.06;                              // fitted radius of a shaft by its length
-constexpr double kLongestHead = 0.8;                              // of an arrow
-constexpr double kGlyphBytes = 6000;                              // of the triangles of one while they are made
+constexpr double kSurfaceShare = 1.0 / 24, kBoxShare = 1.0 / 16;  // fitted spacing / domain diagonal
+constexpr double kShaftShare = 0.06;                              // fitted shaft radius / longest glyph
+constexpr double kMaxHeadShare = 0.8;                             // maximum head length / arrow length
+constexpr double kGlyphBytes = 6000;                              // memory of one glyph's triangles while they are made
 
-/// All that the places depend on beside the set's own description.
+/// State that the glyph positions depend on, besides the set's own description.
 struct GlyphBasis {
-  std::uint64_t field = 0, shown = 0, base = 0;  ///< versions
-  Vec3 lo{0.0}, hi{0.0};                         ///< of the domain
+  std::uint64_t field = 0, shown = 0, base = 0;  ///< versions of the field, of the "color_by" field and of the support
+  Vec3 lo{0.0}, hi{0.0};                         ///< bounds of the domain
   Vec3 point{0.0}, normal{0.0};
   double level = 0;
   bool operator==(const GlyphBasis&) const = default;
 };
 
-/// What this room keeps beside a GlyphSet.
+/// Cached glyphs of a GlyphSet.
 struct MadeGlyphs {
   std::optional<GlyphBasis> basis;
   SharedList<Glyph> glyphs;
-  double shaft = 0, head = 0;  ///< by length
-  ColorTable colors;           ///< of "color_by"
+  double shaft = 0, head = 0;  ///< radius of the shaft and length of the head / length of the longest glyph
+  ColorTable colors;           ///< from "color_by"
 };
 
-/// Where a field has values: a formula is drawn in its box.
+/// Returns the domain of a field: the grid's, or the stated box of a formula.
 scene::Domain domain_of(const scene::Scene& scene, scene::Entity field) {
   const scene::FieldSource& source = scene.entities.get<scene::FieldSource>(field);
   if (source.loaded.get()->is_grid()) return {source.loaded.get()->mapping(), source.loaded.get()->index_box()};
@@ -100,7 +100,7 @@ Result<scene::UniformSamples> places_at(const scene::Scene& scene, const scene::
   return scene::sample_isosurface(*any.scalar, surface.level, spacing, scene::kMaxGlyphs);
 }
 
-/// What follows the hand gets wider rather than wrong.
+/// Returns whether the hand can move the support. Such a set widens its spacing beyond the maximum count instead of reporting an error.
 bool follows_hand(const scene::Scene& scene, const scene::GlyphSet& set) {
   const scene::Slice* slice = slice_of(scene, set);
   const scene::Isosurface* surface = surface_of(scene, set);
@@ -108,16 +108,16 @@ bool follows_hand(const scene::Scene& scene, const scene::GlyphSet& set) {
 }
 
 Result<std::vector<Vec3>> places_of(const scene::Scene& scene, const scene::GlyphSet& set, const GlyphBasis& basis, double spacing) {
-  const double most = static_cast<double>(scene::kMaxGlyphs);
+  const double max_count = static_cast<double>(scene::kMaxGlyphs);
   for (;;) {
     CATENA_TRY(scene::UniformSamples even, places_at(scene, set, basis, spacing));
-    if (even.expected_count <= most) {
+    if (even.expected_count <= max_count) {
       const Outcome asked = check_text_memory_available(to_text(even.expected_count) + " glyphs", kGlyphBytes * even.expected_count);
       if (!asked) return with_cause(json::error_at(set.where, asked.error().message), asked.error());
       return std::move(even.positions);
     }
     if (follows_hand(scene, set) && std::isfinite(even.expected_count)) {
-      spacing *= 1.05 * std::sqrt(even.expected_count / most);
+      spacing *= 1.05 * std::sqrt(even.expected_count / max_count);
       continue;
     }
     const std::string count = even.expected_count < 1e15 ? to_text(std::round(even.expected_count)) : to_text(even.expected_count);
@@ -127,7 +127,7 @@ Result<std::vector<Vec3>> places_of(const scene::Scene& scene, const scene::Glyp
   }
 }
 
-/// A vector, or a line's axis times its magnitude; zero where there is none.
+/// Returns the vector at p, or axis x magnitude of a line field; zero where the field has no value.
 Vec3 arrow_at(const scene::GlyphSet& set, const field::VectorField& field, const Vec3& p, field::Cursor& cursor) {
   Vec3 arrow(0.0);
   if (set.is_line_field) {
@@ -150,7 +150,7 @@ double value_at(const field::AnyField& shown, const Vec3& p, field::Cursor& curs
   return sample.inside ? sample.value : none;
 }
 
-/// The table, and every glyph's colour by it.
+/// Makes the color table and sets each glyph's color.
 Result<ColorTable> color_glyphs(const scene::Scene& scene, const scene::GlyphSet& set, const std::vector<Vec3>& places,
                                 const std::vector<double>& speeds, std::vector<Glyph>& glyphs) {
   std::vector<double> values = speeds;
@@ -177,11 +177,11 @@ Result<MadeGlyphs> make_glyphs(const scene::Scene& scene, const scene::GlyphSet&
   const double fitted = (set.support == On::box ? kBoxShare : kSurfaceShare) * diagonal, spacing = set.spacing > 0 ? set.spacing : fitted;
   CATENA_TRY(const std::vector<Vec3> all, places_of(scene, set, basis, spacing));
 
-  // within what is seen of a slice
+  // a slice is drawn only within the domain of its own field
   std::optional<scene::Domain> within;
   if (const scene::Slice* slice = slice_of(scene, set)) {
-    const field::Field& seen = *scene::rendered_field(scene, slice->color_by.field).get();
-    within = {seen.mapping(), seen.index_box()};
+    const field::Field& slice_field = *scene::rendered_field(scene, slice->color_by.field).get();
+    within = {slice_field.mapping(), slice_field.index_box()};
   }
   std::vector<Vec3> places, arrows;
   std::vector<double> speeds;
@@ -197,12 +197,12 @@ Result<MadeGlyphs> make_glyphs(const scene::Scene& scene, const scene::GlyphSet&
 
   MadeGlyphs made;
   made.basis = basis;
-  // what lies beyond the field's display range is drawn as long as the longest
+  // vectors beyond the field's display range are drawn at the maximum length
   const DisplayRange range = field::display_range(speeds, any);
   const double fastest = range.hi;
   const double longest = set.length > 0 ? set.length : spacing, full = set.reference_speed > 0 ? set.reference_speed : fastest;
   made.shaft = set.radius > 0 ? set.radius / longest : kShaftShare;
-  made.head = set.is_line_field ? 0 : std::min(kLongestHead, kArrowLength * made.shaft);
+  made.head = set.is_line_field ? 0 : std::min(kMaxHeadShare, kArrowLength * made.shaft);
   const double before = set.anchor == scene::GlyphSet::Anchor::tail ? 0 : set.anchor == scene::GlyphSet::Anchor::head ? 1 : 0.5;
   std::vector<Glyph> glyphs;
   for (std::size_t i = 0; i < places.size(); ++i) {

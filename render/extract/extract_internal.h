@@ -31,28 +31,28 @@ std::vector<scene::Entity> entities_with(const scene::EntityStore& world) {
 using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
 
 /// Returns the color table of the data cached beside an entity (scene.cache); null if there is none or it is empty.
-template <class Kept>
+template <class Cached>
 const ColorTable* cached_colors(const scene::EntityStore& made, scene::Entity e) {
-  return made.has<Kept>(e) && !made.get<Kept>(e).colors.empty() ? &made.get<Kept>(e).colors : nullptr;
+  return made.has<Cached>(e) && !made.get<Cached>(e).colors.empty() ? &made.get<Cached>(e).colors : nullptr;
 }
 
 /// Rebuilds the cached data beside visible curves or points unless it was made from the source loaded at present (`of`).
-template <class Kept, class Drawn, class Make>
+template <class Cached, class Drawable, class Make>
 Outcome prepare_cached(scene::Scene& scene, const Make& make) {
-  for (const scene::Entity e : entities_with<Drawn>(scene.entities)) {
+  for (const scene::Entity e : entities_with<Drawable>(scene.entities)) {
     if (is_hidden(scene.entities, e)) continue;
-    if (!scene.cache.has<Kept>(e)) scene.cache.emplace<Kept>(e);
-    if (scene.cache.get<Kept>(e).of == scene.entities.get<Drawn>(e).loaded) continue;
-    const Drawn drawn = scene.entities.get<Drawn>(e);
-    CATENA_TRY(Kept made, make(scene, drawn, entity_name(scene, e)));
-    scene.cache.get<Kept>(e) = std::move(made);
+    if (!scene.cache.has<Cached>(e)) scene.cache.emplace<Cached>(e);
+    if (scene.cache.get<Cached>(e).of == scene.entities.get<Drawable>(e).loaded) continue;
+    const Drawable drawn = scene.entities.get<Drawable>(e);
+    CATENA_TRY(Cached made, make(scene, drawn, entity_name(scene, e)));
+    scene.cache.get<Cached>(e) = std::move(made);
   }
   return Done{};
 }
 
 /// Volumes and isosurfaces: adds the visible ones to the packet. An Error for a vector field, or a level that the field does not have.
 Outcome extract_volumes(const scene::Scene& scene, FramePacket& packet);
-/// As extract_volumes().
+/// Like extract_volumes(), for isosurfaces.
 Outcome extract_isosurfaces(const scene::Scene& scene, FramePacket& packet);
 
 /// Bounding box, axes, ground, fog and lights. Frame thread.

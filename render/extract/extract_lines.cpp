@@ -14,16 +14,16 @@ namespace catena::render {
 
 namespace {
 
-constexpr double kIndicatorShare = 0.004;  // radius by the domain's diagonal
-constexpr double kIndicatorLength = 0.1;   // of L
-constexpr double kDimmest = 0.25;          // brightness between pulses
+constexpr double kIndicatorShare = 0.004;  // indicator radius / domain diagonal
+constexpr double kIndicatorLength = 0.1;   // in units of L
+constexpr double kMinBrightness = 0.25;    // minimum brightness between pulses
 
-/// The tube with its colours dimmed between the pulses.
+/// Returns the tube with its colors dimmed between the pulses.
 TubeItem with_pulse(TubeItem tube, const std::vector<double>& arc, double pulse, double phase) {
   std::vector<Color> colors = tube.colors.empty() ? std::vector<Color>(tube.points.size(), tube.color) : tube.colors.list();
   for (std::size_t i = 0; i < colors.size(); ++i) {
     const double wave = 0.5 + 0.5 * std::cos(2 * std::numbers::pi * (arc[i] / pulse - phase));
-    const auto bright = static_cast<float>(kDimmest + (1 - kDimmest) * wave * wave);
+    const auto bright = static_cast<float>(kMinBrightness + (1 - kMinBrightness) * wave * wave);
     Color& c = colors[i];
     c = {bright * c.r, bright * c.g, bright * c.b};
   }
@@ -95,8 +95,8 @@ Outcome extract_indicators(const scene::Scene& scene, FramePacket& packet) {
       const bool cut = indicator.starts_at_cursor && !(*curve)->is_closed();
       std::vector<Vec3> points;
       if (cut) points.push_back(cursor.probe);
-      for (const FlattenedPoint& place : flatten_with_arc_length(**curve, {radius}))
-        if (!cut || place.arc_length > 0) points.push_back(place.position);
+      for (const FlattenedPoint& flattened : flatten_with_arc_length(**curve, {radius}))
+        if (!cut || flattened.arc_length > 0) points.push_back(flattened.position);
       if (points.size() < 2) continue;
       IndicatorItem item{{std::move(points), radius, indicator.color, {}},
                          {end.p, end.p + (kArrowLength * radius) * end.t, kArrowRadius * radius, indicator.color}};

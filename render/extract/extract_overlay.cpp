@@ -17,10 +17,10 @@
 namespace catena::render {
 namespace {
 
-constexpr int kFromExponent = 5, kToExponent = -4;  // numbers of that size get a common factor
+constexpr int kFromExponent = 5, kToExponent = -4;  // decimal exponents from which on the tick numbers get a common factor
 constexpr double kSlack = 1e-9;
 
-/// With a minus sign as typeset.
+/// Replaces each hyphen by the minus sign U+2212.
 std::string typeset(std::string text) {
   for (std::size_t at = 0; (at = text.find('-', at)) != std::string::npos;) text.replace(at, 1, "\u2212");
   return text;
@@ -46,11 +46,11 @@ std::string superscript(int n) {
 
 namespace {
 
-/// 0 and powers of ten of both signs within lo..hi, of sizes from `least` on; every so-many-th power, so that there are about `count`.
-/// Their doubles and fivefolds where there are few.
-std::vector<double> decade_ticks(double lo, double hi, double least, int count) {
+/// Returns ticks of a symlog scale within lo..hi: 0 and powers of ten of both signs with |tick| >= `min_magnitude`, in a stride of powers
+/// that gives about `count`. Adds 2 and 5 times the powers where there are fewer than three ticks.
+std::vector<double> decade_ticks(double lo, double hi, double min_magnitude, int count) {
   const double largest = std::max(std::fabs(lo), std::fabs(hi)),
-               smallest = lo > 0 || hi < 0 ? std::min(std::fabs(lo), std::fabs(hi)) : least;
+               smallest = lo > 0 || hi < 0 ? std::min(std::fabs(lo), std::fabs(hi)) : min_magnitude;
   const int first = static_cast<int>(std::floor(std::log10(smallest) + kSlack)),
             last = static_cast<int>(std::floor(std::log10(largest) + kSlack));
   const bool both = lo < 0 && hi > 0;
@@ -77,7 +77,7 @@ std::vector<double> decade_ticks(double lo, double hi, double least, int count) 
   return ticks;
 }
 
-/// "0.01", "200", "10⁻⁶", "2×10⁵"
+/// Formats a decade tick: "0.01", "200", "10⁻⁶", "2×10⁵".
 std::string decade_text(double value) {
   const double size = std::fabs(value);
   if (value == 0 || (size >= 0.999e-3 && size < 0.999e4)) return formatted("%.4g", value);
@@ -99,7 +99,7 @@ ScalarBarTicks make_scalar_bar_ticks(double lo, double hi, int count, const std:
     if (scale.ticks.size() > 1) return scale;
     scale = {};
   }
-  // nice steps are coarse: rather a few ticks more than too few
+  // nice steps are coarse: a few ticks more are better than too few
   std::vector<AxisTick> ticks = nice_ticks(lo, hi, count);
   for (int about = count + 1; about <= 2 * count && static_cast<int>(ticks.size()) + 1 < count; ++about) ticks = nice_ticks(lo, hi, about);
   if (!format.empty() || ticks.size() < 2) {
@@ -107,9 +107,9 @@ ScalarBarTicks make_scalar_bar_ticks(double lo, double hi, int count, const std:
     return scale;
   }
   const double step = ticks[1].value - ticks[0].value;
-  double most = 0;
-  for (const AxisTick& tick : ticks) most = std::max(most, std::fabs(tick.value));
-  int exponent = most > 0 ? static_cast<int>(std::floor(std::log10(most) + kSlack)) : 0;
+  double max_value = 0;
+  for (const AxisTick& tick : ticks) max_value = std::max(max_value, std::fabs(tick.value));
+  int exponent = max_value > 0 ? static_cast<int>(std::floor(std::log10(max_value) + kSlack)) : 0;
   if (exponent < kFromExponent && exponent > kToExponent) exponent = 0;
   const int decimals = std::clamp(exponent - static_cast<int>(std::floor(std::log10(step) + kSlack)), 0, 15);
   for (const AxisTick& tick : ticks)
@@ -120,7 +120,8 @@ ScalarBarTicks make_scalar_bar_ticks(double lo, double hi, int count, const std:
 
 namespace {
 
-constexpr std::size_t kMostEntries = 20, kLongestName = 24, kNameEnd = 8;  // of a legend; bytes
+constexpr std::size_t kMaxEntries = 20, kMaxNameLength = 24,
+                      kNameEnd = 8;  // limits of a legend: entries, and bytes of a name and of its kept end
 constexpr double kTitleSizePt = 17, kTitleTopPt = 12;
 
 std::optional<Color> optional_color(const std::optional<Color>& c) {
@@ -133,10 +134,10 @@ Anchor anchor_of(scene::ImageCorner corner) {
   return anchors[static_cast<int>(corner)];
 }
 
-/// The labels of the most voxels, by their numbers from above.
+/// Sets the legend to the labels with the most voxels, in the order of their numbers, the smallest at the top.
 void set_legend(const scene::LabelMap& map, ScalarBarItem& item) {
   std::vector<scene::LabelEntry> labels = map.labels;
-  const std::size_t count = std::min<std::size_t>(labels.size(), kMostEntries), more = labels.size() - count;
+  const std::size_t count = std::min<std::size_t>(labels.size(), kMaxEntries), more = labels.size() - count;
   std::stable_sort(labels.begin(), labels.end(), [](const auto& a, const auto& b) { return a.voxel_count > b.voxel_count; });
   labels.resize(count);
   std::sort(labels.begin(), labels.end(), [](const auto& a, const auto& b) { return a.value > b.value; });
@@ -145,10 +146,10 @@ void set_legend(const scene::LabelMap& map, ScalarBarItem& item) {
     const Color& c = labels[i].color;
     for (const double end : {at, at + 1}) item.colors.push_back({end, c.r, c.g, c.b});
     std::string text = labels[i].name.empty() ? to_text(labels[i].value) : labels[i].name;
-    // the middle goes: names end with their side
-    if (text.size() > kLongestName)
-      text =
-          sanitize_for_terminal(text.substr(0, kLongestName - kNameEnd)) + "…" + sanitize_for_terminal(text.substr(text.size() - kNameEnd));
+    // the middle is cut out: names of regions end with their side
+    if (text.size() > kMaxNameLength)
+      text = sanitize_for_terminal(text.substr(0, kMaxNameLength - kNameEnd)) + "…" +
+             sanitize_for_terminal(text.substr(text.size() - kNameEnd));
     item.ticks.push_back({at + 0.5, std::move(text)});
   }
   item.band_count = static_cast<int>(count);
@@ -184,7 +185,7 @@ void extract_scalar_bars(const scene::Scene& scene, const FramePacket& packet, O
   }
 }
 
-/// What the visible cursor feels.
+/// Extracts the force and the link states of the visible cursor.
 void extract_status(const scene::Scene& scene, Overlay& overlay) {
   if (!scene.annotations.show_status || !scene.cursor || !scene.entities.has<scene::Cursor>(scene.cursor)) return;
   const scene::Cursor& cursor = scene.entities.get<scene::Cursor>(scene.cursor);

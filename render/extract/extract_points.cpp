@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Points from tables as balls.
+/// Extracts points from tables as spheres.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,19 +15,19 @@ namespace catena::render {
 
 namespace {
 
-constexpr double kShareOfSpacing = 0.35;                 // fitted radius by the distance of neighbours
-constexpr double kLeastBall = 0.0012, kMostBall = 0.02;  // by the diagonal of all but strays
-constexpr double kBytesABall = 80;                       // place, radius, colour and value here, and on the device
+constexpr double kSpacingShare = 0.35;                              // fitted radius / distance of neighbors
+constexpr double kMinRadiusShare = 0.0012, kMaxRadiusShare = 0.02;  // bounds of the fitted radius / diagonal of the set without outliers
+constexpr double kBytesPerSphere = 80;                              // position, radius, color and value on host and device
 
-/// What this room keeps beside points: the balls that are drawn, made once.
+/// Cached spheres of a point set.
 struct FlatPoints {
   curves::PointSetPtr of;
   std::shared_ptr<const SphereSet> balls;
-  ColorTable colors;  ///< of "color_by"
+  ColorTable colors;  ///< from "color_by"
   std::string left_out;
 };
 
-/// The column of that name; an error at the key that names it.
+/// Returns the column named `name`. Error: at the key `key`, if there is none.
 Result<const std::vector<float>*> column_of(const curves::PointSet& set, const json::Node& where, const char* key,
                                             const std::string& name) {
   if (const curves::PointValues* found = set.find_values(name)) return &found->values;
@@ -41,10 +41,10 @@ Result<const std::vector<float>*> column_of(const curves::PointSet& set, const j
 double fitted_ball(const curves::PointSet& set) {
   const double diagonal = set.robust_bounds.box.diagonal();
   if (!(diagonal > 0)) return 1;
-  return std::clamp(kShareOfSpacing * set.median_spacing, kLeastBall * diagonal, kMostBall * diagonal);
+  return std::clamp(kSpacingShare * set.median_spacing, kMinRadiusShare * diagonal, kMaxRadiusShare * diagonal);
 }
 
-/// Values of a field at all points; not a number outside of it.
+/// Returns the field's value (of a vector field: the magnitude) at each point; NaN outside of its domain.
 std::vector<float> field_values(const field::AnyField& shown, const curves::PointSet& set) {
   field::Cursor cursor;
   std::vector<float> values;
@@ -68,7 +68,7 @@ Result<FlatPoints> flat_points(scene::Scene& scene, const scene::PointsSource& d
   flat.of = drawn.loaded;
   const std::size_t count = std::min(set.points.size(), kMaxSpheres);
   CATENA_CHECK(check_memory_available("drawing " + std::to_string(count) + " points of " + in_quotes(name),
-                                      kBytesABall * static_cast<double>(count)));
+                                      kBytesPerSphere * static_cast<double>(count)));
   if (count < set.points.size())
     flat.left_out = "points " + in_quotes(name) + ": " + std::to_string(count) + " of " + std::to_string(set.points.size()) +
                     " are drawn, evenly chosen; all are felt";
@@ -95,7 +95,7 @@ Result<FlatPoints> flat_points(scene::Scene& scene, const scene::PointsSource& d
     flat.colors = scene::make_color_table(drawn.color_by->colors, drawn.color_by->named, range.lo, range.hi);
   }
 
-  // a ball without a radius is not drawn
+  // points without a positive finite radius are not drawn
   const auto fitted = static_cast<float>(drawn.radius > 0 ? drawn.radius : fitted_ball(set));
   auto balls = std::make_shared<SphereSet>();
   balls->origin = set.origin;

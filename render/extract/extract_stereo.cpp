@@ -71,22 +71,22 @@ std::vector<View> eyes_before_screen(const View& head, const scene::Stereo& ster
 
 View make_screen_window_view(const View& view, const scene::Stereo& stereo) {
   if (!stereo.screen_index) return view;
-  auto seen = seen_through(stereo, view.position);
-  return seen ? *seen : view;
+  auto screen_view = seen_through(stereo, view.position);
+  return screen_view ? *screen_view : view;
 }
 
 Outcome check_screen_view(const FramePacket& packet, const scene::Stereo& stereo) {
   if (!stereo.screen_index) return Done{};
-  const auto seen = seen_through(stereo, packet.view.position);
-  if (seen) return Done{};
-  return Error{"screen \"" + stereo.screens[*stereo.screen_index].name + "\": " + seen.error().message};
+  const auto screen_view = seen_through(stereo, packet.view.position);
+  if (screen_view) return Done{};
+  return Error{"screen \"" + stereo.screens[*stereo.screen_index].name + "\": " + screen_view.error().message};
 }
 
 Outcome check_eye_separation(const FramePacket& packet, const scene::Stereo& stereo) {
-  constexpr double kMaxApart = 1e15;  // world units: a float of the picture still tells them apart
+  constexpr double kMaxSeparation = 1e15;  // world units; a float still resolves the images' disparity
   const auto too_far = [&](const View& eye) {
     return std::fabs(eye.window.left) > 0.5 * kMaxWindowShift || !is_finite(eye.position) || !is_finite(eye.target) ||
-           max_abs(eye.position) > kMaxApart;
+           max_abs(eye.position) > kMaxSeparation;
   };
   if (std::none_of(packet.eyes.begin(), packet.eyes.end(), too_far)) return Done{};
   return Error{fmt::format("\"stereo\": the eyes are {} apart with a zero-parallax distance of {}: expected eyes that see one scene",

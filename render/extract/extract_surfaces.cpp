@@ -19,7 +19,7 @@ namespace catena::render {
 
 TransferTable make_transfer_table(const scene::TransferFunction& transfer, const field::ScalarField& field) {
   CATENA_ASSERT(!transfer.colors.empty() && !(transfer.extinctions.empty() && transfer.opacities.empty()));
-  constexpr double kOff = 1.0 / 32768;
+  constexpr double kOffset = 1.0 / 32768;
   TransferTable table;
   table.linear_below = scene::linear_below(transfer);
   for (const auto& c : transfer.colors) table.colors.push_back({c.value, c.color.r, c.color.g, c.color.b});
@@ -29,24 +29,24 @@ TransferTable make_transfer_table(const scene::TransferFunction& transfer, const
   const double unit = transfer.opacity_unit > 0 ? transfer.opacity_unit : field.mapping().min_voxel_edge();
   if (table.extinctions.empty())
     for (const auto& o : transfer.opacities) table.extinctions.push_back({o.value, -std::log1p(-o.alpha) / unit});
-  table.colors = refine_for_symlog(table.colors, table.linear_below, kOff);
-  table.extinctions = refine_for_symlog(table.extinctions, table.linear_below, kOff);
+  table.colors = refine_for_symlog(table.colors, table.linear_below, kOffset);
+  table.extinctions = refine_for_symlog(table.extinctions, table.linear_below, kOffset);
   return table;
 }
 
 namespace {
 
-constexpr double kMaxVoxels = 1 << 28;  ///< of a grid of magnitudes
+constexpr double kMaxVoxels = 1 << 28;  ///< maximum size of a grid of magnitudes
 
 // ---- meshes ----
 
-/// What this room keeps beside a SurfaceMesh: its triangles as plain data, made once.
+/// Cached triangles of a SurfaceMesh as plain arrays.
 struct PlainMesh {
   std::shared_ptr<const MeshGeometry> geometry;
   std::uint64_t version = 0, field_version = 0;
 };
 
-/// The triangles as plain data take memory beside the mesh.
+/// Error: too little memory for the copy of a mesh as plain arrays.
 Outcome ask_for_copy(const mesh::TriangleMesh& mesh, const scene::SurfaceMesh& surface) {
   const std::size_t vertex = sizeof(Vec3) * (surface.smooth_shading ? 3 : 1) + (surface.color_by ? sizeof(Color) + sizeof(double) : 0);
   auto asked =
@@ -85,7 +85,7 @@ Result<std::vector<Color>> vertex_colors(const scene::Scene& scene, const mesh::
 
 // ---- slices ----
 
-/// What this room keeps beside a Slice of a vector field.
+/// Cached magnitude grid of a Slice of a vector field.
 struct PlainMagnitude {
   std::shared_ptr<const field::ScalarGrid> grid;
   std::uint64_t version = 0;
@@ -116,25 +116,25 @@ std::shared_ptr<const field::ScalarGrid> sliced_grid(const scene::Scene& scene, 
   return scene.cache.get<PlainMagnitude>(e).grid;
 }
 
-/// The same but for rounding.
+/// Returns whether two slices have the same plane, up to rounding.
 bool is_same_plane(const SliceItem& a, const SliceItem& b) {
   const Vec3 n = direction(a.normal), m = direction(b.normal);
   constexpr double kRounding = 1e-6;
-  const double reach = a.grid->mapping().min_voxel_edge();
-  return norm(cross(n, m)) < kRounding && std::fabs(dot(n, b.point - a.point)) < kRounding * reach;
+  const double voxel_edge = a.grid->mapping().min_voxel_edge();
+  return norm(cross(n, m)) < kRounding && std::fabs(dot(n, b.point - a.point)) < kRounding * voxel_edge;
 }
 
-/// Whether the plane meets the domain.
+/// Returns whether the slice's plane meets the grid's domain.
 bool cuts(const scene::Slice& slice, const field::ScalarGrid& grid) {
   const Vec3 normal = direction(slice.normal);
-  double least = HUGE_VAL, most = -HUGE_VAL;
+  double min_distance = HUGE_VAL, max_distance = -HUGE_VAL;
   for (int i = 0; i < 8; ++i) {
     const double distance = dot(normal, grid.corner(i) - slice.point);
-    least = std::min(least, distance);
-    most = std::max(most, distance);
+    min_distance = std::min(min_distance, distance);
+    max_distance = std::max(max_distance, distance);
   }
-  const double slack = 1e-6 * (most - least);
-  return least <= slack && most >= -slack;
+  const double slack = 1e-6 * (max_distance - min_distance);
+  return min_distance <= slack && max_distance >= -slack;
 }
 
 }  // namespace
@@ -204,7 +204,7 @@ Outcome extract_slices(const scene::Scene& scene, FramePacket& packet) {
     if (is_hidden(scene.entities, e)) continue;
     const std::shared_ptr<const field::ScalarGrid> grid = sliced_grid(scene, e);
     const scene::Slice& slice = scene.entities.get<scene::Slice>(e);
-    // the hand may carry a widget's plane out of the domain: there nothing is seen
+    // a widget may be dragged out of the domain: then nothing is drawn, without an error
     if (!slice.widget && !cuts(slice, *grid))
       return json::error_at(slice.where, "the slice's plane does not meet the domain of \"" + entity_name(scene, slice.color_by.field) +
                                              "\"; a plane that cuts it was expected");
@@ -223,7 +223,7 @@ Outcome extract_slices(const scene::Scene& scene, FramePacket& packet) {
     item.opacity = static_cast<float>(slice.opacity);
     item.lit = slice.lit;
     if (slice.contours) {
-      // between the colours' ends: that is what the eye sees told apart
+      // levels lie between the ends of the color map, the range in which colors differ
       const bool spread = item.colors.size() > 1 && item.colors.front()[0] < item.colors.back()[0];
       const double lo = spread ? item.colors.front()[0] : range.lo, hi = spread ? item.colors.back()[0] : range.hi;
       const bool multiples = slice.contours->spacing > 0;

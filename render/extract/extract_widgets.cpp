@@ -15,12 +15,12 @@ namespace {
 using widget::Kind;
 using widget::Mode;
 
-// lengths by L, the length that a widget's sizes follow
+// shares of L, the length that a widget's sizes follow
 constexpr double kSphere = 0.12, kBall = 0.012, kLine = 0.0035;
-// by the sphere's radius
-constexpr double kNormalReach = 1.45, kFreeReach = 2.1, kHead = 0.34, kHeldSquare = 0.36;
-// by the handle's radius
-constexpr double kGradientReach = 6, kHandleReach = 7, kHandleHead = 2.4, kHandleSquare = 2.8;
+// shares of the sphere's radius
+constexpr double kNormalLength = 1.45, kFreeLength = 2.1, kHead = 0.34, kGrabbedSquare = 0.36;
+// shares of the handle's radius
+constexpr double kGradientLength = 6, kHandleLength = 7, kHandleHead = 2.4, kHandleSquare = 2.8;
 
 double length_of(const scene::Widget& widget) { return widget.spec.length > 0 ? widget.spec.length : 4; }
 
@@ -44,7 +44,7 @@ bool is_drawable(const scene::Widget& widget) {
 
 bool is_measured(const scene::Widget& widget) { return widget.spec.kind == Kind::ruler && is_drawable(widget); }
 
-/// A double arrow along every axis that is free, a square across every one that is held.
+/// Draws a double arrow along each free axis and a square across each held axis.
 void draw_axes(WidgetShapes& shapes, const scene::Widget& widget, const Vec3& at, double reach, double square, double head) {
   for (int i = 0; i < 3; ++i) {
     if (is_held(widget, i))
@@ -80,12 +80,12 @@ void draw_cutting_plane(WidgetShapes& shapes, const scene::Widget& widget, const
     shapes.circle(centre, axis_of(widget, i), radius, weight, color);
   }
   if (moves)
-    draw_axes(shapes, widget, centre, kFreeReach * radius, kHeldSquare * radius, kHead * radius);
+    draw_axes(shapes, widget, centre, kFreeLength * radius, kGrabbedSquare * radius, kHead * radius);
   else
-    shapes.arrow(centre, centre + kNormalReach * radius * axis_of(widget, 2), 1.5, kHead * radius, widget.color);
+    shapes.arrow(centre, centre + kNormalLength * radius * axis_of(widget, 2), 1.5, kHead * radius, widget.color);
 }
 
-/// A ball of a widget, by what the hand does with it.
+/// Draws a handle as a ball; its size and brightness show hover and drag.
 void draw_handle(WidgetShapes& shapes, const scene::Widget& widget, int handle, const Vec3& at, double radius) {
   const bool mine = widget.report.handle == handle || widget.spec.kind == Kind::seed || widget.spec.kind == Kind::isolevel;
   const bool hovered = mine && widget.report.mode == Mode::hover, dragged = mine && widget.report.mode == Mode::drag;
@@ -97,7 +97,7 @@ bool is_dragged(const scene::Widget& widget) { return widget.report.mode == Mode
 
 void draw_handle_axes(WidgetShapes& shapes, const scene::Widget& widget, const Vec3& at) {
   const double r = shapes.visible_radius(at, radius_of(widget));
-  draw_axes(shapes, widget, at, kHandleReach * r, kHandleSquare * r, kHandleHead * r);
+  draw_axes(shapes, widget, at, kHandleLength * r, kHandleSquare * r, kHandleHead * r);
 }
 
 void draw_seed(WidgetShapes& shapes, const scene::Widget& widget) {
@@ -109,7 +109,7 @@ void draw_seed(WidgetShapes& shapes, const scene::Widget& widget) {
   shapes.circle(at, shapes.direction_to_camera(at), (hovered ? 2.6 : 2.1) * radius, 0.8, widget.color);
 }
 
-/// A rake's line of seeds, and a ruler with the way that it measures.
+/// Draws a rake's line of seeds, or a ruler with its measured path.
 void draw_line(WidgetShapes& shapes, const scene::Widget& widget, const scene::RulerMeasure* ruler) {
   const auto& [a, b] = widget.report.pose.points;
   const Vec3 middle = 0.5 * a + 0.5 * b;
@@ -133,8 +133,8 @@ void draw_isolevel(WidgetShapes& shapes, const scene::Widget& widget) {
   const Vec3 along = direction(widget.spec.field->sample(at, cursor).gradient);
   if (max_abs(along) == 0) return;
   const Color color = widget.color;
-  shapes.arrow(at, at + kGradientReach * radius * along, 1, kHandleHead * radius, color);
-  if (is_dragged(widget)) shapes.arrow(at, at - kGradientReach * radius * along, 1, kHandleHead * radius, color);
+  shapes.arrow(at, at + kGradientLength * radius * along, 1, kHandleHead * radius, color);
+  if (is_dragged(widget)) shapes.arrow(at, at - kGradientLength * radius * along, 1, kHandleHead * radius, color);
 }
 
 void draw_box(WidgetShapes& shapes, const scene::Widget& widget) {
@@ -148,10 +148,10 @@ void draw_box(WidgetShapes& shapes, const scene::Widget& widget) {
   for (int face = 0; face < 6; ++face) {
     Vec3 at = box.center(), out(0.0);
     at[face / 2] = face % 2 ? box.hi[face / 2] : box.lo[face / 2];
-    out[face / 2] = kHandleReach * shapes.visible_radius(at, radius);
+    out[face / 2] = kHandleLength * shapes.visible_radius(at, radius);
     draw_handle(shapes, widget, face, at, radius);
     if (is_dragged(widget) && widget.report.handle == face)
-      shapes.double_arrow(at, out, 1.5, kHandleHead / kHandleReach * norm(out), brighten(axis_color(face / 2), 0.15f));
+      shapes.double_arrow(at, out, 1.5, kHandleHead / kHandleLength * norm(out), brighten(axis_color(face / 2), 0.15f));
   }
   draw_handle(shapes, widget, 6, box.center(), 1.2 * radius);
   if (is_dragged(widget) && widget.report.handle == 6) draw_handle_axes(shapes, widget, box.center());
@@ -173,7 +173,7 @@ void draw(WidgetShapes& shapes, const scene::Widget& widget, const scene::RulerM
   }
 }
 
-/// Of a polyline, by arc length.
+/// Returns the midpoint of a polyline by arc length.
 Vec3 halfway(const std::vector<Vec3>& points) {
   double length = 0;
   for (std::size_t i = 1; i < points.size(); ++i) length += norm(points[i] - points[i - 1]);
@@ -186,7 +186,7 @@ Vec3 halfway(const std::vector<Vec3>& points) {
   return points.empty() ? Vec3(0.0) : points.back();
 }
 
-/// The widgets of a packet keep their ids when they are made anew.
+/// Returns the object id of a widget; an existing widget keeps its id when it is extracted again.
 std::uint32_t id_of(FramePacket& packet, const std::string& name) {
   for (const ObjectName& object : packet.objects)
     if (object.kind == "widget" && object.name == name) return object.id;

@@ -11,33 +11,33 @@ namespace catena::render {
 
 namespace {
 
-constexpr double kSampledShare = 0.25;  ///< of the error: the chords of the samples; the rest is for leaving samples out
-constexpr double kLargestTurn = 0.8;    ///< radians of a segment
+constexpr double kSampledShare = 0.25;  ///< share of the error for the chords of the samples; the rest is for leaving out samples
+constexpr double kMaxTurn = 0.8;        ///< maximum turn of the tangent along a segment, in radians
 
-/// Of vectors in units of the tube's radius: far from either end of the double range.
+/// Returns |v| of a vector in units of the tube radius, whose square neither overflows nor underflows.
 double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
 struct Sample {
-  FlattenedPoint place;
+  FlattenedPoint flattened;
   Vec3 tangent{0.0};
 };
 
-/// Into how many parts the interval between two knots is cut so that each part's chord is off by no more than `error`, by the radius, and
-/// does not turn by more than half of what a segment may. The largest |p''| decides: p'' is linear in s, so it is at one of the ends.
+/// Returns the number of parts for the interval between two knots: the chord of each part deviates by at most `error` tube radii and its
+/// tangent turns by at most half of a segment's maximum. The bound is the maximum of |p''|, which lies at an end because p'' is linear in
+/// s.
 double parts_of(const flow::Knot& a, const flow::Knot& b, const FlattenOptions& options, double error) {
   const double scale = 1 / options.radius, h = scale * (b.s - a.s);
   if (!(h > 0)) return 1;
-  // h^2 |p''|; on a tiny interval the positions' rounding would count, the tangents' does not
+  // h^2 |p''|; on a short interval from the tangents, because the positions' rounding error would dominate
   const Vec3 chord = (6 * scale) * (b.p - a.p), start = h * a.t, end = h * b.t, at_start = chord - (4.0 * start + 2.0 * end),
              at_end = (2.0 * start + 4.0 * end) - chord;
   const double bend = h < 1e-3 ? 2 * length_of(end - start) : std::sqrt(std::max(dot(at_start, at_start), dot(at_end, at_end)));
-  double parts = std::max(std::sqrt(bend / (8 * error)), bend / (h * 0.5 * kLargestTurn));
+  double parts = std::max(std::sqrt(bend / (8 * error)), bend / (h * 0.5 * kMaxTurn));
   if (options.max_segment > 0) parts = std::max(parts, (b.s - a.s) / options.max_segment);
   return std::min(std::ceil(parts), static_cast<double>(options.max_points));
 }
 
-/// Calls visit(sample) from the first knot to the last, or until it returns false: every knot, and places between two as their chord's
-/// error asks for.
+/// Calls visit(sample) for each knot and for points between knots by parts_of(), in order, until it returns false.
 template <class Visit>
 void each_sample(const flow::Curve& curve, const FlattenOptions& options, double error, Visit&& visit) {
   const std::vector<flow::Knot>& knots = curve.knots();
@@ -55,35 +55,35 @@ void each_sample(const flow::Curve& curve, const FlattenOptions& options, double
   }
 }
 
-/// Whether a segment from one sample may reach another, past those between: each of them allows a cone of directions in which the segment
-/// passes it within the error. The cones' intersection is followed as a cone within it, its size as that of a chord on the unit sphere.
+/// Decides which samples a segment may skip. Each skipped sample allows a cone of directions in which the segment passes it within the
+/// error. The intersection is tracked as an inscribed cone, whose size is a chord on the unit sphere.
 class Segment {
  public:
-  /// The error by the radius; the rest in world units.
+  /// `error`: in tube radii; `radius`, `longest`: in world units.
   Segment(double error, double radius, double longest) : error_(error), scale_(1 / radius), longest_(longest) {}
   void begin(const Sample& from) {
     from_ = from;
     farthest_ = 0;
     spread_ = std::numeric_limits<double>::infinity();
   }
-  /// False: a segment has to end before this sample. True: it is passed.
+  /// Returns whether the segment may end at or beyond this sample; false: it must end at the previous one.
   bool reaches(const Sample& to) {
-    const Vec3 way = scale_ * (to.place.position - from_.place.position);
+    const Vec3 way = scale_ * (to.flattened.position - from_.flattened.position);
     const double length = length_of(way);
-    const bool reached = to.place.arc_length - from_.place.arc_length <= longest_ && allows(to, way, length);
+    const bool reached = to.flattened.arc_length - from_.flattened.arc_length <= longest_ && allows(to, way, length);
     pass(way, length);
     return reached;
   }
 
  private:
   bool allows(const Sample& to, const Vec3& way, double length) const {
-    if (farthest_ <= error_ && length <= error_) return true;  // the core of a spiral
+    if (farthest_ <= error_ && length <= error_) return true;  // core of a spiral
     if (length < farthest_ - error_) return false;
-    const Vec3 aside = (1 / length) * way - axis_;
-    if (spread_ < 2 && !(spread_ >= 0 && dot(aside, aside) <= spread_ * spread_)) return false;
-    // the outer wall of the bend: its radius is larger by the tube's
+    const Vec3 deviation = (1 / length) * way - axis_;
+    if (spread_ < 2 && !(spread_ >= 0 && dot(deviation, deviation) <= spread_ * spread_)) return false;
+    // bound for the outer wall of the bend, whose radius of curvature is larger by the tube radius
     const Vec3 turn = to.tangent - from_.tangent;
-    return dot(turn, turn) <= std::min(kLargestTurn * kLargestTurn, 8 * error_);
+    return dot(turn, turn) <= std::min(kMaxTurn * kMaxTurn, 8 * error_);
   }
   void pass(const Vec3& way, double length) {
     farthest_ = std::max(farthest_, length);
@@ -96,15 +96,15 @@ class Segment {
     } else if (apart + spread_ > spread) {
       const Vec3 between = axis_ + (0.5 * (apart - spread + spread_) / apart) * (axis - axis_);
       axis_ = (1 / length_of(between)) * between;
-      spread_ = 0.5 * (spread + spread_ - apart);  // below 0: no direction is left
+      spread_ = 0.5 * (spread + spread_ - apart);  // negative: no direction is left
     }
   }
 
   double error_, scale_, longest_;
   Sample from_;
-  double farthest_ = 0;  ///< of the samples passed, by the radius
+  double farthest_ = 0;  ///< maximum distance of the skipped samples, in tube radii
   Vec3 axis_{0.0};
-  double spread_ = 0;  ///< of the directions allowed about the axis; 2 and more: all
+  double spread_ = 0;  ///< radius of the cone of allowed directions about the axis; >= 2: all directions
 };
 
 }  // namespace
@@ -120,10 +120,10 @@ std::vector<FlattenedPoint> flatten_with_arc_length(const flow::Curve& curve, co
     Sample last;
     each_sample(curve, options, kSampledShare * error, [&](const Sample& sample) {
       if (points.empty()) {
-        points.push_back(sample.place);
+        points.push_back(sample.flattened);
         segment.begin(sample);
-      } else if (!segment.reaches(sample) && last.place.arc_length > points.back().arc_length) {
-        points.push_back(last.place);
+      } else if (!segment.reaches(sample) && last.flattened.arc_length > points.back().arc_length) {
+        points.push_back(last.flattened);
         segment.begin(last);
         segment.reaches(sample);
       }
@@ -131,7 +131,7 @@ std::vector<FlattenedPoint> flatten_with_arc_length(const flow::Curve& curve, co
       return points.size() < options.max_points;
     });
     if (points.size() < options.max_points || !std::isfinite(error)) {
-      points.push_back(last.place);
+      points.push_back(last.flattened);
       return points;
     }
   }

@@ -17,16 +17,16 @@ namespace catena::render {
 
 namespace {
 
-constexpr double kTubeShare = 0.003;  ///< fitted tube radius by the domain's diagonal
+constexpr double kTubeShare = 0.003;  ///< fitted tube radius / domain diagonal
 constexpr double kMaxArrows = 100000;
-constexpr double kPulseShare = 1.0 / 12;  ///< of a pulse: the longest segment
+constexpr double kPulseShare = 1.0 / 12;  ///< maximum segment length / pulse length
 constexpr double kErrors[] = {0.02, 0.05, 0.1, 0.2};
-constexpr double kFinest = 1e-6;           ///< of the domain's length: no error needs to be less
-constexpr std::size_t kTried = 64;         ///< lines by which the error is chosen
-constexpr std::size_t kBytesAPoint = 100;  ///< drawn: place, value, colour, ring
+constexpr double kFinest = 1e-6;             ///< minimum error / domain length
+constexpr std::size_t kTrialLines = 64;      ///< number of lines that the error is chosen by
+constexpr std::size_t kBytesPerPoint = 100;  ///< memory of a drawn point: position, value, color, ring
 constexpr std::size_t kLinesAtOnce = 8;
 
-/// What a set's colours show, at a place of a line.
+/// Evaluates the quantity of "color_by" along a streamline.
 class LineValue {
  public:
   LineValue(const scene::ColorBy& by, field::AnyField shown, field::VectorFieldPtr flow)
@@ -42,7 +42,7 @@ class LineValue {
     const field::ScalarSample sample = shown_.scalar->sample(point.position, cursor_);
     return sample.inside ? sample.value : none;
   }
-  /// The finest detail of what is shown: a segment's longest length.
+  /// Returns the maximum segment length that resolves the quantity, in world units; 0: no limit.
   double detail() const {
     if (by_.source == scene::ColorBy::Source::arc_length) return 0;
     const field::Field* field = by_.source == scene::ColorBy::Source::speed ? flow_.get() : shown_.get();
@@ -69,14 +69,14 @@ void add_arrows(const flow::Curve& curve, double spacing, double radius, std::ve
   }
 }
 
-/// Of the domain; of a formula that of the box of its picture.
+/// Returns the diagonal of the domain; for a formula that of its drawn box.
 double shown_diagonal(const scene::Scene& scene, const scene::StreamlineSet& set, const field::Field& flow) {
   if (flow.is_grid()) return domain_diagonal(flow);
   const std::array<double, 2>& box = scene.entities.get<scene::FieldSource>(set.field).box;
   return std::sqrt(3.0) * (box[1] - box[0]);
 }
 
-/// The lines of a set as they come, each flattened once.
+/// Flattens the lines of a set, each once, as the integrator delivers them.
 class Flattener {
  public:
   Flattener(scene::Scene& scene, const scene::StreamlineSet& set, field::VectorFieldPtr flow, field::AnyField shown)
@@ -88,7 +88,7 @@ class Flattener {
   Result<FlattenedStreamlines> finish();
 
  private:
-  /// What becomes of one curve.
+  /// A flattened curve.
   struct Line {
     std::vector<Vec3> points;
     std::vector<double> arc_lengths, values;
@@ -104,9 +104,9 @@ class Flattener {
   field::VectorFieldPtr flow_;
   field::AnyField shown_;
   std::optional<LineValue> value_;
-  double error_ = 0;            ///< by the radius; 0: not chosen yet
-  double length_ = 0;           ///< of all curves so far
-  std::vector<double> values_;  ///< by point of all tubes
+  double error_ = 0;            ///< in tube radii; 0: not chosen yet
+  double length_ = 0;           ///< total length of the curves so far
+  std::vector<double> values_;  ///< one per point of all tubes
   std::vector<FlattenedPoint> arrow_places_;
   FlattenedStreamlines flat_;
 };
@@ -122,18 +122,18 @@ FlattenOptions Flattener::options_for(const flow::Curve& curve) const {
 
 Flattener::Line Flattener::line_of(const flow::Curve& curve, std::optional<LineValue>& value) const {
   Line line;
-  for (const FlattenedPoint& place : flatten_with_arc_length(curve, options_for(curve))) {
-    line.points.push_back(place.position);
-    if (set_.band_length > 0) line.arc_lengths.push_back(place.arc_length);
-    if (value) line.values.push_back(value->at(place));
+  for (const FlattenedPoint& flattened : flatten_with_arc_length(curve, options_for(curve))) {
+    line.points.push_back(flattened.position);
+    if (set_.band_length > 0) line.arc_lengths.push_back(flattened.arc_length);
+    if (value) line.values.push_back(value->at(flattened));
   }
   line.points.shrink_to_fit();
   return line;
 }
 
-/// The smallest error with which the set has no more than its share of points, as a few of its lines tell it.
+/// Chooses the smallest error that keeps the set within its share of points, estimated from the first lines.
 Outcome Flattener::choose_error(const scene::LineBlock& block) {
-  const std::size_t tried = std::min(kTried, block.curves.size());
+  const std::size_t tried = std::min(kTrialLines, block.curves.size());
   const double lines =
       static_cast<double>(block.curves.size()) * static_cast<double>(block.seeds_total) / static_cast<double>(block.seeds_done);
   double points = 0;
@@ -145,12 +145,12 @@ Outcome Flattener::choose_error(const scene::LineBlock& block) {
       points += static_cast<double>(flatten_with_arc_length(curve, options_for(curve)).size());
     }
     points *= lines / static_cast<double>(tried);
-    if (points <= kPointsPerLine * std::max(lines, kFewLines)) break;
+    if (points <= kPointsPerLine * std::max(lines, kMinLineCount)) break;
   }
-  return check_memory_available("drawing " + to_text(std::round(lines)) + " streamlines", points * kBytesAPoint);
+  return check_memory_available("drawing " + to_text(std::round(lines)) + " streamlines", points * kBytesPerPoint);
 }
 
-/// A slip of the spacing must not fill the memory.
+/// Error: the arrow spacing would give more than kMaxArrows arrows, which would fill the memory.
 Outcome Flattener::check_arrows(const scene::LineBlock& block) {
   for (const flow::CurvePtr& curve : block.curves) length_ += curve->period();
   if (!(set_.arrow_spacing > 0) || !(length_ / set_.arrow_spacing > kMaxArrows)) return Done{};
@@ -197,7 +197,7 @@ Result<FlattenedStreamlines> Flattener::finish() {
   for (TubeItem& tube : flat_.tubes) {
     const std::span<double> values = std::span(values_).subspan(first, tube.points.size());
     first += values.size();
-    // a line ends on the domain's face, which rounding may put outside
+    // a line ends on the face of the domain; rounding may put its end outside, where the field has no value
     if (values.size() > 1 && std::isnan(values.front())) values.front() = values[1];
     if (values.size() > 1 && std::isnan(values.back())) values.back() = values[values.size() - 2];
     std::vector<Color> colors;
@@ -223,7 +223,7 @@ Result<FlattenedStreamlines> flatten_streamlines(scene::Scene& scene, scene::Ent
   if (set.color_by && set.color_by->source == scene::ColorBy::Source::field) {
     CATENA_TRY(shown, scene::resolve_field(scene, set.color_by->field, set.where));
   }
-  if (!flow.vector) CATENA_CHECK(scene::resolve_lines(scene, entity));  // says so
+  if (!flow.vector) CATENA_CHECK(scene::resolve_lines(scene, entity));  // reports why there is no flow
   Flattener flattener(scene, set, flow.vector, shown);
   CATENA_CHECK(scene::visit_lines(scene, entity, [&](const scene::LineBlock& block) { return flattener.add(block); }));
   CATENA_TRY(FlattenedStreamlines made, flattener.finish());

@@ -22,8 +22,8 @@ struct FlattenedStreamlines {
 };
 
 /// Number of points per line of a set above which the tolerance is increased from 2 % of the radius to at most 20 %. A set of few lines
-/// counts as `kFewLines`. The tolerance is at least 1e-6 of the domain's length.
-inline constexpr double kPointsPerLine = 150, kFewLines = 10000;
+/// counts as `kMinLineCount`. The tolerance is at least 1e-6 of the domain's length.
+inline constexpr double kPointsPerLine = 150, kMinLineCount = 10000;
 
 /// Flattens the set. An Error gives the scene file's name and line: errors of the tracer, arrows too close together, more memory than
 /// permitted.

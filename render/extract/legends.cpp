@@ -17,7 +17,7 @@ std::vector<std::array<double, 4>> rows_of(const ColorTable& points) {
   return rows;
 }
 
-/// Returns "velocity (m/s)".
+/// Returns a name with its unit, as "velocity (m/s)".
 std::string with_unit(const std::string& name, const std::string& unit) { return unit.empty() ? name : name + " (" + unit + ")"; }
 
 std::string field_name(const scene::Scene& scene, scene::Entity field) {
@@ -62,7 +62,7 @@ Legend volume_legend(const scene::Scene& scene, scene::Entity item, const FrameP
   Legend legend{rows_of(volume.transfer.colors), field_name(scene, volume.field), states ? nullptr : find_label_map(scene, volume.field)};
   if (legend.colors.empty()) return legend;
   const scene::ValueMapping& mapping = volume.transfer.named.mapping;
-  // a volume's scale follows from its opacities, too
+  // the threshold of a volume's symlog scale follows from its opacities, too
   legend.linear_below = mapping.kind == scene::ValueMapping::Kind::symlog
                             ? scene::linear_below(volume.transfer)
                             : scene::linear_below(mapping, legend.colors.front()[0], legend.colors.back()[0]);
@@ -79,7 +79,7 @@ Legend isosurface_legend(const scene::Scene& scene, scene::Entity item, const Fr
 }
 
 Legend slice_legend(const scene::Scene& scene, scene::Entity item, const FramePacket& packet) {
-  // the packet's slices are in the order of their entities, without the hidden ones
+  // packet.slices are in the order of the entities, without the hidden ones
   std::size_t i = 0, found = packet.slices.size();
   scene.entities.each<scene::Slice>([&](scene::Entity e, const scene::Slice&) {
     if (is_hidden(scene.entities, e)) return;

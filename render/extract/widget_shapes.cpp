@@ -16,7 +16,7 @@ PlaneBasis make_plane_basis(const Vec3& normal) {
 std::vector<Vec3> plane_outline(const Vec3& point, const Vec3& normal, const Bounds& box) {
   const Vec3 n = direction(normal);
   if (box.empty() || max_abs(n) == 0) return {};
-  const double flat = 1e-9 * box.diagonal();  // a corner this near lies in the plane
+  const double flat = 1e-9 * box.diagonal();  // corners within this distance count as in the plane
   std::array<double, 8> height;
   std::vector<Vec3> corners;
   for (int i = 0; i < 8; ++i) {
@@ -32,7 +32,7 @@ std::vector<Vec3> plane_outline(const Vec3& point, const Vec3& normal, const Bou
     }
   if (corners.size() < 3) return {};
 
-  // in order around their middle
+  // in order around their centroid
   Vec3 middle(0.0);
   for (const Vec3& p : corners) middle += p / double(corners.size());
   const auto [u, v] = make_plane_basis(n);
@@ -43,9 +43,9 @@ std::vector<Vec3> plane_outline(const Vec3& point, const Vec3& normal, const Bou
 
 namespace {
 
-constexpr double kLeastTubePx = 0.9, kLeastBallPx = 3;  // radii
-constexpr double kHeadWidth = 0.38;                     // a cone's radius by its length
-constexpr double kLeastHeadPx = 9;
+constexpr double kMinTubePx = 0.9, kMinBallPx = 3;  // minimum radii on the screen
+constexpr double kHeadWidth = 0.38;                 // cone radius / cone length
+constexpr double kMinHeadPx = 9;
 constexpr int kCircleSteps = 72;
 
 }  // namespace
@@ -55,7 +55,7 @@ Color mix_colors(const Color& a, const Color& b, float share_of_b) {
 }
 
 Color brighten(const Color& color, float share) {
-  const float more = 1 + 0.6f * share;  // what is lit stays below its colour
+  const float more = 1 + 0.6f * share;  // tube and ball colors are shaded, so that they stay below the plain color
   return mix_colors({more * color.r, more * color.g, more * color.b}, {1, 1, 1}, 0.55f * share);
 }
 
@@ -78,7 +78,7 @@ Vec3 WidgetShapes::direction_to_camera(const Vec3& p) const {
 
 void WidgetShapes::tube(std::vector<Vec3> points, double weight, const Color& color) {
   double radius = line_radius_;
-  for (const Vec3& p : points) radius = std::max(radius, kLeastTubePx * pixel_size_at(p));
+  for (const Vec3& p : points) radius = std::max(radius, kMinTubePx * pixel_size_at(p));
   add(std::move(points), weight * radius, color);
 }
 
@@ -118,13 +118,13 @@ void WidgetShapes::parallelogram(const Vec3& middle, const Vec3& u, const Vec3& 
 void WidgetShapes::sphere(const Vec3& centre, double radius, const Color& color) { add({centre}, visible_radius(centre, radius), color); }
 
 double WidgetShapes::visible_radius(const Vec3& centre, double radius) const {
-  return std::max(radius, kLeastBallPx * pixel_size_at(centre));
+  return std::max(radius, kMinBallPx * pixel_size_at(centre));
 }
 
 void WidgetShapes::arrow(const Vec3& from, const Vec3& tip, double weight, double head, const Color& color) {
   const double length = norm(tip - from);
   if (!(length > 0)) return;
-  const double cone = std::min(std::max(head, kLeastHeadPx * pixel_size_at(tip)), 0.6 * length);
+  const double cone = std::min(std::max(head, kMinHeadPx * pixel_size_at(tip)), 0.6 * length);
   const Vec3 along = direction(tip - from), neck = tip - cone * along;
   tube({from, neck}, weight, color);
   ArrowItem item;

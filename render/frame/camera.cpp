@@ -12,10 +12,10 @@ namespace catena::render {
 
 namespace {
 
-constexpr double kNearestShare = 1e-4;  // near >= far * this: keeps a float depth buffer useful with the eye inside the scene
-constexpr double kSlack = 1e-3;         // near and far stand off the bounds by this share
+constexpr double kNearestShare = 1e-4;  // near >= far * this; keeps the precision of a float depth buffer with the camera inside the scene
+constexpr double kSlack = 1e-3;         // margin of near and far around the bounds, as a share
 
-/// An orthonormal frame with its z along `back`, its y as near to `up` as can be.
+/// Sets an orthonormal frame with z along `back` and y as close to `up` as possible.
 void set_axes(Camera& camera, const Vec3& back, const Vec3& up) {
   camera.back = direction(back);
   if (max_abs(camera.back) == 0) camera.back = {0.0, -1.0, 0.0};
@@ -37,7 +37,7 @@ void set_depth_range(Camera& camera, const Bounds& bounds, double fallback_dista
       farthest = std::max(farthest, depth);
     }
   }
-  // nothing to see, or all of it behind the eye
+  // no bounds, or all of them behind the camera
   if (!(farthest > 0)) {
     camera.near = 0.01 * fallback_distance;
     camera.far = 100 * fallback_distance;
@@ -88,7 +88,7 @@ bool may_be_visible(const Camera& c, const Vec3& centre, double radius) {
   const Vec3 from_eye = centre - c.position;
   const double x = dot(from_eye, c.right), y = dot(from_eye, c.up), depth = -dot(from_eye, c.back);
   if (!c.orthographic && depth < -radius) return false;
-  // the four planes of the window
+  // the four side planes of the view frustum
   const auto reaches = [&](double across, double middle, double half) {
     for (const double side : {-1.0, 1.0}) {
       const double edge = middle + side * half, away = side * (c.orthographic ? across - edge : across - edge * depth);
@@ -184,17 +184,17 @@ double pixel_size(const Camera& c, double depth) { return 2 * c.half_height / c.
 
 Vec3 default_view_direction() { return direction(Vec3(0.5, -1.0, 0.45)); }
 
-View fit_view(const Bounds& given, double aspect, const Vec3& towards_eye, double fovy_deg, const Vec3& up) {
-  Bounds bounds = given;
+View fit_view(const Bounds& data_bounds, double aspect, const Vec3& to_camera, double fovy_deg, const Vec3& up) {
+  Bounds bounds = data_bounds;
   if (bounds.empty()) {
     bounds.extend(Vec3(-1.0));
     bounds.extend(Vec3(1.0));
   }
   Camera axes;
-  set_axes(axes, towards_eye, up);
+  set_axes(axes, to_camera, up);
   const double tan_y = std::tan(0.5 * fovy_deg * std::numbers::pi / 180), tan_x = tan_y * aspect;
 
-  // the nearest distance from which every corner lies inside the four planes of the frustum
+  // minimum distance at which all corners lie inside the four side planes of the frustum
   double distance = 0, half_height = 0;
   for (int i = 0; i < 8; ++i) {
     const Vec3 q = bounds.corner(i) - bounds.center();
@@ -202,7 +202,7 @@ View fit_view(const Bounds& given, double aspect, const Vec3& towards_eye, doubl
     distance = std::max(distance, z + std::max(x / tan_x, y / tan_y));
     half_height = std::max(half_height, std::max(y, x / aspect));
   }
-  if (!(distance > 0)) distance = half_height = 1;  // a single point
+  if (!(distance > 0)) distance = half_height = 1;  // the bounds are a single point
   View view;
   view.target = bounds.center();
   view.position = view.target + 1.05 * distance * axes.back;
@@ -214,35 +214,35 @@ View fit_view(const Bounds& given, double aspect, const Vec3& towards_eye, doubl
 
 namespace {
 
-/// The largest of a x + b z over the places, or the quantile that leaves the ignored ones out.
+/// Returns the support function max of dot(p, along) over the points, or the quantile that leaves out outlier_share of a cloud.
 double support(const std::vector<FitPoints>& clouds, const Vec3& along) {
-  double most = -INFINITY;
-  std::vector<double> reach;
+  double max_distance = -INFINITY;
+  std::vector<double> distances;
   for (const FitPoints& cloud : clouds) {
     if (cloud.points.empty()) continue;
-    if (cloud.outlier_share == 0) {  // nothing to sort out
-      for (const Vec3& p : cloud.points) most = std::max(most, dot(p, along));
+    if (cloud.outlier_share == 0) {  // no outliers: the maximum
+      for (const Vec3& p : cloud.points) max_distance = std::max(max_distance, dot(p, along));
       continue;
     }
-    reach.clear();
-    for (const Vec3& p : cloud.points) reach.push_back(dot(p, along));
-    const auto n = static_cast<std::ptrdiff_t>((1 - cloud.outlier_share) * static_cast<double>(reach.size() - 1));
-    std::nth_element(reach.begin(), reach.begin() + n, reach.end());
-    most = std::max(most, reach[static_cast<std::size_t>(n)]);
+    distances.clear();
+    for (const Vec3& p : cloud.points) distances.push_back(dot(p, along));
+    const auto n = static_cast<std::ptrdiff_t>((1 - cloud.outlier_share) * static_cast<double>(distances.size() - 1));
+    std::nth_element(distances.begin(), distances.begin() + n, distances.end());
+    max_distance = std::max(max_distance, distances[static_cast<std::size_t>(n)]);
   }
-  return most;
+  return max_distance;
 }
 
 }  // namespace
 
-View fit_view(const std::vector<FitPoints>& clouds, double aspect, double width, double height, const Vec3& towards_eye, double fovy_deg,
+View fit_view(const std::vector<FitPoints>& clouds, double aspect, double width, double height, const Vec3& to_camera, double fovy_deg,
               const Vec3& up) {
   if (std::ranges::all_of(clouds, [](const FitPoints& c) { return c.points.empty(); }))
-    return fit_view(Bounds(), aspect, towards_eye, fovy_deg, up);
+    return fit_view(Bounds(), aspect, to_camera, fovy_deg, up);
   Camera axes;
-  set_axes(axes, towards_eye, up);
+  set_axes(axes, to_camera, up);
   const double tan_y = std::tan(0.5 * fovy_deg * std::numbers::pi / 180), tan_x = tan_y * aspect;
-  // across each axis of the picture: the eye's place, and how far back it must be
+  // along an axis of the image: the camera's position, and its minimum distance back
   struct Across {
     double at = 0, back = 0;
   };
@@ -254,7 +254,9 @@ View fit_view(const std::vector<FitPoints>& clouds, double aspect, double width,
   const double near = support(clouds, axes.back), far = -support(clouds, -1.0 * axes.back);
   const double middle = 0.5 * (near + far);
   double back = std::max(x.back, y.back);
-  if (!(back > near)) back = near + std::max(1e-6 * std::fabs(near), near > far ? near - far : 1.0);  // a single point, or a line of sight
+  if (!(back > near))
+    back =
+        near + std::max(1e-6 * std::fabs(near), near > far ? near - far : 1.0);  // the points are a single point, or lie on a line of sight
   View view;
   view.target = x.at * axes.right + y.at * axes.up + middle * axes.back;
   view.position = view.target + (back - middle) * axes.back;
@@ -279,7 +281,7 @@ View orbit_view(const View& view, double azimuth_deg, double elevation_deg) {
   Vec3 arm = view.position - view.target;
   if (elevation_deg != 0) {
     const Camera camera = make_camera(view, 1, 1, {});
-    // about the right axis, backwards: the eye rises towards up
+    // about the right axis, backwards: the camera rises towards up
     arm = turned_about(camera.right, -elevation_deg, arm);
     moved.up = turned_about(camera.right, -elevation_deg, camera.up);
   }
@@ -296,18 +298,18 @@ View zoom_view(const View& view, double factor) {
   return closer;
 }
 
-std::optional<Vec3> axis_direction(std::string_view words) {
-  if (words == "iso") return direction(Vec3(1.0, -1.0, 1.0));
-  if (words.size() != 2 || (words[0] != '+' && words[0] != '-') || words[1] < 'x' || words[1] > 'z') return std::nullopt;
-  Vec3 towards_eye(0.0);
-  towards_eye[words[1] - 'x'] = words[0] == '+' ? -1 : 1;
-  return towards_eye;
+std::optional<Vec3> axis_direction(std::string_view name) {
+  if (name == "iso") return direction(Vec3(1.0, -1.0, 1.0));
+  if (name.size() != 2 || (name[0] != '+' && name[0] != '-') || name[1] < 'x' || name[1] > 'z') return std::nullopt;
+  Vec3 to_camera(0.0);
+  to_camera[name[1] - 'x'] = name[0] == '+' ? -1 : 1;
+  return to_camera;
 }
 
-std::optional<View> axis_view(const Bounds& bounds, double aspect, std::string_view words, double fovy_deg) {
-  const auto towards_eye = axis_direction(words);
-  if (!towards_eye) return std::nullopt;
-  return fit_view(bounds, aspect, *towards_eye, fovy_deg);
+std::optional<View> axis_view(const Bounds& bounds, double aspect, std::string_view name, double fovy_deg) {
+  const auto to_camera = axis_direction(name);
+  if (!to_camera) return std::nullopt;
+  return fit_view(bounds, aspect, *to_camera, fovy_deg);
 }
 
 View refit_view(const View& view, const Bounds& bounds, double aspect) {

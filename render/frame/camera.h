@@ -71,9 +71,9 @@ CATENA_EXPORT bool may_be_visible(const Camera& camera, const Vec3& centre, doub
 
 /// Returns the unit direction from the scene towards the camera of the default view: oblique, with +z up.
 CATENA_EXPORT Vec3 default_view_direction();
-/// Returns a perspective view that fits the box: all its corners are inside the image, with a margin of 5 % of the distance. An empty box
-/// counts as -1..1. `towards_eye` (from the scene to the camera) and `up` need not be unit vectors.
-CATENA_EXPORT View fit_view(const Bounds& bounds, double aspect, const Vec3& towards_eye = default_view_direction(), double fovy_deg = 30,
+/// Returns a perspective view that fits the box: all its corners are inside the image, with a margin of 5 % of the distance. `aspect`:
+/// width / height. An empty box counts as -1..1. `to_camera` (from the scene to the camera) and `up` need not be unit vectors.
+CATENA_EXPORT View fit_view(const Bounds& bounds, double aspect, const Vec3& to_camera = default_view_direction(), double fovy_deg = 30,
                             const Vec3& up = Vec3(0.0, 0.0, 1.0));
 
 /// Point cloud to fit a view to.
@@ -87,7 +87,7 @@ struct FitPoints {
 ///   p_y - e_y <= t (e_z - p_z),  e_y - p_y <= t (e_z - p_z),   t = share tan(fovy / 2)
 /// The sums of these over the extreme points on either side give e_y and the minimum e_z. Without points, the box -1..1 is fitted.
 CATENA_EXPORT View fit_view(const std::vector<FitPoints>& clouds, double aspect, double width, double height,
-                            const Vec3& towards_eye = default_view_direction(), double fovy_deg = 30, const Vec3& up = Vec3(0.0, 0.0, 1.0));
+                            const Vec3& to_camera = default_view_direction(), double fovy_deg = 30, const Vec3& up = Vec3(0.0, 0.0, 1.0));
 
 /// Camera moves: orbit, zoom, view along an axis, refit. Angles in degrees. Pure functions, any thread.
 
@@ -101,10 +101,10 @@ CATENA_EXPORT View zoom_view(const View& view, double factor);
 
 /// Returns the unit direction from the scene towards the camera for the name of a view direction: "+x", "-x", "+y", "-y", "+z" or "-z" (the
 /// direction in which the camera looks), or "iso" (camera at +x, -y, +z at equal angles). nullopt for any other text.
-CATENA_EXPORT std::optional<Vec3> axis_direction(std::string_view words);
+CATENA_EXPORT std::optional<Vec3> axis_direction(std::string_view name);
 
-/// Returns fit_view() along axis_direction(words), up +z (+y if the camera looks along z); nullopt for an unknown name.
-CATENA_EXPORT std::optional<View> axis_view(const Bounds& bounds, double aspect, std::string_view words, double fovy_deg = 30);
+/// Returns fit_view() along axis_direction(name), up +z (+y if the camera looks along z); nullopt for an unknown name.
+CATENA_EXPORT std::optional<View> axis_view(const Bounds& bounds, double aspect, std::string_view name, double fovy_deg = 30);
 
 /// Returns a view with the same direction, up, field of view and projection that fits the box.
 CATENA_EXPORT View refit_view(const View& view, const Bounds& bounds, double aspect);

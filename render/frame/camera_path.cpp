@@ -50,7 +50,7 @@ CameraPath::CameraPath(std::vector<CameraKey> keys) : keys_(std::move(keys)) {
 
 View CameraPath::at(const View& base, double t_s) const {
   const double t = std::clamp(t_s, keys_.front().t_s, keys_.back().t_s);
-  // the keys around t
+  // the keys before and after t
   const auto later = std::ranges::upper_bound(keys_, t, {}, &CameraKey::t_s);
   const std::size_t next = std::max<std::size_t>(1, static_cast<std::size_t>(later - keys_.begin()));
   const std::size_t to = std::min(next, keys_.size() - 1), from = keys_.size() == 1 ? 0 : to - 1;

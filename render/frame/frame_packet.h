@@ -56,7 +56,7 @@ struct FogItem {
   bool operator==(const FogItem&) const = default;
 };
 
-/// Scene object that an id in the id image stands for.
+/// Scene object of an id in the id image.
 struct ObjectName {
   std::uint32_t id = 0;      ///< value in the id image, 1 or greater
   std::string kind, name;    ///< kind of object, for instance "isosurface"; name in the scene
@@ -91,10 +91,10 @@ struct TransferTable {
   bool operator==(const TransferTable&) const = default;
 };
 
-/// How a ray combines the values along it into one color.
+/// Projection of the values along a ray to one color.
 ///   composite   emission and absorption
-///   maximum     color and opacity, over the table's opacity_length, of the maximum value along the ray; minimum likewise
-///   average     the same of the mean value
+///   maximum     color and opacity, over the table's opacity_length, of the maximum value along the ray; minimum: of the minimum
+///   average     color and opacity, over the table's opacity_length, of the mean value
 enum class Projection { composite, maximum, minimum, average };
 
 /// Coloring by another field, sampled at the same world position. Where that field has no value, the item's own color is used.
@@ -102,7 +102,7 @@ struct ColorSource {
   std::shared_ptr<const field::ScalarGrid> grid;  ///< field that gives the colors
   std::vector<std::array<double, 4>> colors;      ///< value, r, g, b
   bool is_categorical = false;  ///< values are whole numbers (labels), each with its own color; 0 is no label and has no color
-  bool spread_labels = false;   ///< where the nearest voxel has no label: use the color of the nearest voxel of the cell that has one
+  bool spread_labels = false;   ///< if the nearest voxel has no label: the color of the nearest voxel of the cell that has one
   double linear_below = 0;      ///< as in TransferTable
   bool operator==(const ColorSource&) const = default;
 };
@@ -114,7 +114,7 @@ struct VolumeItem {
   bool is_shaded = false;                         ///< shaded by the gradient
   std::uint32_t id = 0;                           ///< id in the id image; 0: none
   bool is_clipped = true;                         ///< cut by the clip planes
-  Projection projection = Projection::composite;  ///< how a ray combines the values
+  Projection projection = Projection::composite;  ///< projection of the values along a ray
   std::optional<ColorSource> color_by{};          ///< color by another field; composite only
   bool operator==(const VolumeItem&) const = default;
 };
@@ -279,7 +279,7 @@ struct SpheresItem {
 struct FramePacket {
   View view;                 ///< camera
   std::vector<View> eyes{};  ///< views rendered one by one, each at the packet's size, then packed into one image; empty: only `view`
-  Packing packing = Packing::single;            ///< how the images of `eyes` are packed into one
+  Packing packing = Packing::single;            ///< packing of the images of `eyes` into one
   std::uint32_t width = 1024, height = 768;     ///< size of each view, pixels
   std::array<float, 4> background{0, 0, 0, 1};  ///< alpha 0: transparent
   std::vector<VolumeItem> volumes;              ///< rendered by ray casting

@@ -9,7 +9,7 @@
 namespace catena::render {
 namespace {
 
-// wide and low: the row of tiles that is put together on the host stays small
+// wide and low, so that the row of tiles assembled on the host stays small
 constexpr std::uint32_t kTileWidth = 2048, kTileHeight = 512;
 
 }  // namespace
@@ -27,12 +27,12 @@ TileArea TilePlan::area(std::uint32_t column, std::uint32_t row) const {
   return a;
 }
 
-TilePlan plan_tiles(std::uint32_t width, std::uint32_t height, std::uint32_t antialias, std::uint32_t tile, bool lattices,
-                    std::uint32_t most) {
-  CATENA_ASSERT(width > 0 && height > 0 && antialias > 0 && most >= 2048);
-  TilePlan plan{width, height, antialias, 0, 0, lattices ? kRayGridMargin : 0};
+TilePlan plan_tiles(std::uint32_t width, std::uint32_t height, std::uint32_t antialias, std::uint32_t tile, bool needs_ray_grids,
+                    std::uint32_t max_side) {
+  CATENA_ASSERT(width > 0 && height > 0 && antialias > 0 && max_side >= 2048);
+  TilePlan plan{width, height, antialias, 0, 0, needs_ray_grids ? kRayGridMargin : 0};
   const std::uint64_t samples = std::uint64_t(plan.samples_x()) * plan.samples_y();
-  if (tile == 0 && samples <= kMaxUntiledSamples && plan.samples_x() <= most && plan.samples_y() <= most) {
+  if (tile == 0 && samples <= kMaxUntiledSamples && plan.samples_x() <= max_side && plan.samples_y() <= max_side) {
     plan.tile_width = plan.samples_x();
     plan.tile_height = plan.samples_y();
     plan.margin = 0;
@@ -40,7 +40,7 @@ TilePlan plan_tiles(std::uint32_t width, std::uint32_t height, std::uint32_t ant
   }
   const std::uint32_t step = std::lcm(kTileAlignment, antialias);
   const auto side = [&](std::uint32_t wanted) {
-    const std::uint32_t largest = most - 2 * plan.margin;
+    const std::uint32_t largest = max_side - 2 * plan.margin;
     return std::max(step, std::min(wanted, largest) / step * step);
   };
   plan.tile_width = side(tile ? tile : kTileWidth);

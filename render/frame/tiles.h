@@ -41,10 +41,10 @@ struct TilePlan {
   TileArea area(std::uint32_t column, std::uint32_t row) const;
 };
 
-/// Plans the tiles of an image of width x height pixels. `tile`: requested tile side in samples (0: chosen here). `lattices`: whether rays
-/// are interpolated on ray grids, which needs a margin. `most`: longest image side of the device, samples, at least 2048.
-TilePlan plan_tiles(std::uint32_t width, std::uint32_t height, std::uint32_t antialias, std::uint32_t tile, bool lattices,
-                    std::uint32_t most);
+/// Plans the tiles of an image of width x height pixels. `tile`: requested tile side in samples (0: chosen here). `needs_ray_grids`:
+/// whether rays are interpolated on ray grids, which needs a margin. `max_side`: longest image side of the device, samples, at least 2048.
+TilePlan plan_tiles(std::uint32_t width, std::uint32_t height, std::uint32_t antialias, std::uint32_t tile, bool needs_ray_grids,
+                    std::uint32_t max_side);
 
 /// Returns the packet of one tile: its size, its window, and the position of the tile for overlay items that are placed in pixels of the
 /// whole image (Overlay::frame). `packet` is that of the whole image.

@@ -13,8 +13,8 @@
 namespace catena::render {
 
 /// Encodes a JPEG; `quality` 1 to 100.
-Result<std::string> encode_jpeg(const Image8& picture, int quality);
+Result<std::string> encode_jpeg(const Image8& image, int quality);
 /// Encodes a PNG.
-Result<std::string> encode_png(const Image8& picture);
+Result<std::string> encode_png(const Image8& image);
 
 }  // namespace catena::render

@@ -20,10 +20,10 @@
 namespace catena::render {
 namespace {
 
-/// OpenEXR goes back to write its table of rows: in the file itself, or in memory for a pipe.
+/// Output stream of OpenEXR, which seeks back to write its table of rows: in a regular file, or in a memory copy for a pipe.
 class Stream : public Imf::OStream {
  public:
-  explicit Stream(OutputFile& file) : Imf::OStream("picture"), file_(file) {
+  explicit Stream(OutputFile& file) : Imf::OStream("image"), file_(file) {
     struct stat what {};
     seeks_ = fstat(fileno(file.stream()), &what) == 0 && S_ISREG(what.st_mode);
   }
@@ -57,13 +57,13 @@ class Stream : public Imf::OStream {
 
 struct ExrWriter::Impl {
   Impl(OutputFile output, const ExrFormat& f, const std::string& name) : file(std::move(output)), format(f), path(name), stream(file) {}
-  Error error(const std::exception& e) const { return Error{path + ": the picture cannot be encoded as EXR: " + e.what()}; }
+  Error error(const std::exception& e) const { return Error{path + ": the image cannot be encoded as EXR: " + e.what()}; }
 
   OutputFile file;
   ExrFormat format;
   std::string path;
   Stream stream;
-  std::optional<Imf::OutputFile> exr;  // first out
+  std::optional<Imf::OutputFile> exr;  // destroyed before the stream
 };
 
 ExrWriter::ExrWriter(std::unique_ptr<Impl> parts) : impl_(std::move(parts)) {}
@@ -90,7 +90,7 @@ Outcome ExrWriter::write_rows(std::span<const float> values) {
   const std::size_t channels = impl_->format.channels.size(), row = channels * impl_->format.width;
   CATENA_ASSERT(values.size() % row == 0);
   try {
-    // OpenEXR counts rows from the top of the whole picture
+    // OpenEXR counts rows from the top of the whole image
     const std::ptrdiff_t done = impl_->exr->currentScanLine() * static_cast<std::ptrdiff_t>(row * sizeof(float));
     char* first = const_cast<char*>(reinterpret_cast<const char*>(values.data())) - done;
     Imf::FrameBuffer frame;

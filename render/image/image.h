@@ -30,7 +30,7 @@ struct ImageF32 {
 
 /// Writes an 8-bit PNG file, RGBA (`alpha`) or RGB. A regular file is written under a temporary name and renamed when complete, so that no
 /// incomplete file is left. An Error gives the path.
-CATENA_EXPORT Outcome write_png(const std::string& path, const Image8& picture, bool alpha);
+CATENA_EXPORT Outcome write_png(const std::string& path, const Image8& image, bool alpha);
 /// Reads an 8-bit PNG file of any kind as RGBA. An Error gives the path.
 CATENA_EXPORT Result<Image8> read_png(const std::string& path);
 

@@ -12,13 +12,13 @@
 namespace catena::render {
 namespace {
 
-constexpr int kRadius = 3;          // of the opening, pixels
-constexpr float kThin = 8;          // 1/255
-constexpr std::size_t kLeast = 20;  // pixels of a part
+constexpr int kRadius = 3;                  // radius of the opening, in pixels
+constexpr float kMinTopHat = 8;             // minimum top-hat value of a thin part, in 1/255
+constexpr std::size_t kMinPartPixels = 20;  // minimum size of a thin part, in pixels
 
 bool is_covered(const Image8& a, const Image8& b, std::size_t i) { return a.rgba[4 * i + 3] > 0 || b.rgba[4 * i + 3] > 0; }
 
-/// The least (or the greatest) of a disc about every pixel; what lies beyond the picture is left out.
+/// Returns the minimum or maximum (by `better`) over a disc about each pixel, clipped to the image.
 template <class Better>
 std::vector<float> of_disc(const std::vector<float>& from, int width, int height, Better&& better) {
   std::vector<float> to = from;
@@ -35,52 +35,52 @@ std::vector<float> of_disc(const std::vector<float>& from, int width, int height
   return to;
 }
 
-std::vector<float> top_hat(const Image8& picture) {
-  const int width = int(picture.width), height = int(picture.height);
-  std::vector<float> bright(picture.rgba.size() / 4);
+std::vector<float> top_hat(const Image8& rendered) {
+  const int width = int(rendered.width), height = int(rendered.height);
+  std::vector<float> bright(rendered.rgba.size() / 4);
   for (std::size_t i = 0; i < bright.size(); ++i)
-    bright[i] = float(picture.rgba[4 * i] + picture.rgba[4 * i + 1] + picture.rgba[4 * i + 2]) / 3;
-  const auto least = of_disc(bright, width, height, [](float a, float b) { return b < a ? b : a; });
-  const auto opened = of_disc(least, width, height, [](float a, float b) { return b > a ? b : a; });
+    bright[i] = float(rendered.rgba[4 * i] + rendered.rgba[4 * i + 1] + rendered.rgba[4 * i + 2]) / 3;
+  const auto eroded = of_disc(bright, width, height, [](float a, float b) { return b < a ? b : a; });
+  const auto opened = of_disc(eroded, width, height, [](float a, float b) { return b > a ? b : a; });
   for (std::size_t i = 0; i < bright.size(); ++i) bright[i] -= opened[i];
   return bright;
 }
 
-void measure_thin_parts(const Image8& picture, const Image8& converged, ImageError& error) {
+void measure_thin_parts(const Image8& rendered, const Image8& converged, ImageError& error) {
   const int width = int(converged.width), height = int(converged.height);
-  const std::vector<float> truth = top_hat(converged), have = top_hat(picture);
-  std::vector<bool> seen(truth.size());
+  const std::vector<float> truth = top_hat(converged), have = top_hat(rendered);
+  std::vector<bool> visited(truth.size());
   std::vector<std::size_t> part;
-  double all = 0, all_kept = 0;
+  double all = 0, all_retained = 0;
   for (std::size_t first = 0; first < truth.size(); ++first) {
-    if (seen[first] || !(truth[first] > kThin)) continue;
+    if (visited[first] || !(truth[first] > kMinTopHat)) continue;
     part.assign(1, first);
-    seen[first] = true;
-    double sum = 0, kept = 0;
+    visited[first] = true;
+    double sum = 0, retained = 0;
     for (std::size_t n = 0; n < part.size(); ++n) {
       const std::size_t i = part[n];
       sum += double(truth[i]);
-      kept += double(std::min(truth[i], have[i]));
+      retained += double(std::min(truth[i], have[i]));
       const int x = int(i % std::size_t(width)), y = int(i / std::size_t(width));
       for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {
           if (x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height) continue;
           const std::size_t j = std::size_t(y + dy) * width + std::size_t(x + dx);
-          if (seen[j] || !(truth[j] > kThin)) continue;
-          seen[j] = true;
+          if (visited[j] || !(truth[j] > kMinTopHat)) continue;
+          visited[j] = true;
           part.push_back(j);
         }
     }
-    if (part.size() < kLeast) continue;
+    if (part.size() < kMinPartPixels) continue;
     ++error.thin_feature_count;
-    error.min_thin_retained = std::min(error.min_thin_retained, kept / sum);
+    error.min_thin_retained = std::min(error.min_thin_retained, retained / sum);
     all += sum;
-    all_kept += kept;
+    all_retained += retained;
   }
-  if (all > 0) error.thin_retained = all_kept / all;
+  if (all > 0) error.thin_retained = all_retained / all;
 }
 
-/// Squares of the changes of the difference from one frame to the next, over what is covered in either.
+/// Adds the squared changes of the error (image - converged image) between two frames, and the count of values, over covered pixels.
 void add_changes(const Image8& last, const Image8& last_converged, const Image8& now, const Image8& converged, double& sum, double& count) {
   for (std::size_t i = 0; i < now.rgba.size() / 4; ++i) {
     if (!is_covered(now, converged, i) && !is_covered(last, last_converged, i)) continue;
@@ -94,8 +94,8 @@ void add_changes(const Image8& last, const Image8& last_converged, const Image8&
 
 }  // namespace
 
-Image8 composite_over(const Image8& picture, const std::array<float, 3>& background) {
-  Image8 out = picture;
+Image8 composite_over(const Image8& rendered, const std::array<float, 3>& background) {
+  Image8 out = rendered;
   for (std::size_t i = 0; i < out.rgba.size(); i += 4) {
     const float alpha = float(out.rgba[i + 3]) / 255;
     for (std::size_t c = 0; c < 3; ++c)
@@ -104,33 +104,33 @@ Image8 composite_over(const Image8& picture, const std::array<float, 3>& backgro
   return out;
 }
 
-PixelErrors compute_covered_errors(const Image8& picture, const Image8& converged) {
+PixelErrors compute_covered_errors(const Image8& rendered, const Image8& converged) {
   PixelErrors errors;
-  for (std::size_t i = 0; i < picture.rgba.size() / 4; ++i) {
-    if (!is_covered(picture, converged, i)) continue;
-    double square = 0, most = 0;
+  for (std::size_t i = 0; i < rendered.rgba.size() / 4; ++i) {
+    if (!is_covered(rendered, converged, i)) continue;
+    double square = 0, max_difference = 0;
     for (std::size_t c = 4 * i; c < 4 * i + 3; ++c) {
-      const double d = std::fabs(double(picture.rgba[c]) - converged.rgba[c]);
+      const double d = std::fabs(double(rendered.rgba[c]) - converged.rgba[c]);
       square += d * d / 3;
-      most = std::max(most, d);
+      max_difference = std::max(max_difference, d);
     }
     errors.squared.push_back(square);
-    errors.max_channel.push_back(most);
+    errors.max_channel.push_back(max_difference);
   }
   return errors;
 }
 
-ImageError measure_error(const Image8& given, const Image8& given_converged, const std::array<float, 3>& background) {
-  CATENA_ASSERT(given.width == given_converged.width && given.height == given_converged.height);
-  const Image8 picture = composite_over(given, background), converged = composite_over(given_converged, background);
+ImageError measure_error(const Image8& rendered_rgba, const Image8& converged_rgba, const std::array<float, 3>& background) {
+  CATENA_ASSERT(rendered_rgba.width == converged_rgba.width && rendered_rgba.height == converged_rgba.height);
+  const Image8 rendered = composite_over(rendered_rgba, background), converged = composite_over(converged_rgba, background);
   ImageError error;
-  PixelErrors errors = compute_covered_errors(picture, converged);
+  PixelErrors errors = compute_covered_errors(rendered, converged);
   if (errors.squared.empty()) return error;
   const auto count = double(errors.squared.size());
   error.rmse = std::sqrt(std::accumulate(errors.squared.begin(), errors.squared.end(), 0.0) / count);
-  error.covered_share = count / (double(picture.rgba.size()) / 4);
+  error.covered_share = count / (double(rendered.rgba.size()) / 4);
   error.p999 = quantile(errors.max_channel, 0.999);
-  measure_thin_parts(picture, converged, error);
+  measure_thin_parts(rendered, converged, error);
   return error;
 }
 

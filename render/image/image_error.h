@@ -22,7 +22,7 @@ struct PixelErrors {
   std::vector<double> max_channel;  ///< maximum of the three differences, 1/255
 };
 /// Returns the errors of the covered pixels of two images of equal size.
-PixelErrors compute_covered_errors(const Image8& picture, const Image8& converged);
+PixelErrors compute_covered_errors(const Image8& rendered, const Image8& converged);
 
 /// Error measures of one image.
 struct ImageError {
@@ -34,7 +34,7 @@ struct ImageError {
 };
 
 /// Compares two images of equal size; `background`: display values, 0 to 1.
-ImageError measure_error(const Image8& picture, const Image8& converged, const std::array<float, 3>& background = {});
+ImageError measure_error(const Image8& rendered, const Image8& converged, const std::array<float, 3>& background = {});
 
 /// Returns the flicker of a sequence of at least two frames, given their references, 1/255.
 double measure_flicker(const std::vector<Image8>& frames, const std::vector<Image8>& converged,
@@ -44,6 +44,6 @@ double measure_flicker(const std::vector<Image8>& frames, const std::vector<Imag
 double measure_frame_flicker(const Image8& last, const Image8& last_converged, const Image8& now, const Image8& converged);
 
 /// Returns the image composited over a color; alpha is unchanged, so that the coverage remains known.
-Image8 composite_over(const Image8& picture, const std::array<float, 3>& background);
+Image8 composite_over(const Image8& rendered, const std::array<float, 3>& background);
 
 }  // namespace catena::render

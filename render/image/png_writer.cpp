@@ -19,7 +19,7 @@ void flush(png_structp) {}
 void quiet(png_structp, png_const_charp) {}
 [[noreturn]] void give_up(png_structp png, png_const_charp) { png_longjmp(png, 1); }
 
-// The three that libpng may leave by its long jump hold no object with a destructor. False: it gave up.
+// Calls of libpng that can longjmp; their frames hold no object with a destructor. They return false after an error of libpng.
 bool begin(png_structp png, png_infop info, const PngFormat& format, png_textp text) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_compression_level(png, 3);
@@ -46,7 +46,7 @@ bool end(png_structp png) {
 struct PngWriter::Impl {
   Impl(OutputFile output, const PngFormat& f, const std::string& name) : file(std::move(output)), format(f), path(name) {}
   ~Impl() { png_destroy_write_struct(&png, &info); }
-  Error error() const { return Error{path + ": the picture cannot be encoded as PNG"}; }
+  Error error() const { return Error{path + ": the image cannot be encoded as PNG"}; }
   std::size_t row_values() const { return std::size_t(format.width) * format.channels; }
 
   OutputFile file;
@@ -54,7 +54,7 @@ struct PngWriter::Impl {
   std::string path;
   png_structp png = nullptr;
   png_infop info = nullptr;
-  std::vector<std::uint8_t> big_endian;  // a row of 16 bits
+  std::vector<std::uint8_t> big_endian;  // a row of 16-bit samples
 };
 
 PngWriter::PngWriter(std::unique_ptr<Impl> parts) : impl_(std::move(parts)) {}

@@ -14,7 +14,7 @@ namespace catena::render {
 
 /// Format of the file.
 struct PngFormat {
-  std::uint32_t width = 0, height = 0;  ///< pixels
+  std::uint32_t width = 0, height = 0;  ///< pixels, greater than 0
   int bits = 8;                         ///< 8 or 16
   int channels = 4;                     ///< 1, 3 or 4
   /// Text chunk, if the key is not empty: meaning of the image's values.
@@ -46,9 +46,9 @@ class CATENA_EXPORT PngWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Returns round(most x) of a display value, with `most` 65535 or 255. Values outside 0 .. 1 are clamped; NaN gives 0.
-constexpr std::uint32_t quantize(float x, std::uint32_t most) {
-  return x > 0 ? x < 1 ? std::uint32_t(double(most) * double(x) + 0.5) : most : 0;
+/// Returns round(most x) of a display value, with `max_value` 65535 or 255. Values outside 0 .. 1 are clamped; NaN gives 0.
+constexpr std::uint32_t quantize(float x, std::uint32_t max_value) {
+  return x > 0 ? x < 1 ? std::uint32_t(double(max_value) * double(x) + 0.5) : max_value : 0;
 }
 
 }  // namespace catena::render

@@ -52,14 +52,14 @@ Result<const vk::Pipeline*> ComposePass::pipeline(Frame& frame, bool ghost) {
   return &pipeline;
 }
 
-/// All of it without the ghost, then once more what the ghost's area holds.
+/// Composites the image without the ghost, then the ghost's area once more with it.
 Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
   Targets& targets = frame.targets;
   const bool opaque = frame.has(target::opaque_color), volume = frame.has(target::volume);
   const bool ghost = frame.has(target::occluded_overlay) && frame.occluded_area.extent.width > 0 && frame.occluded_area.extent.height > 0;
   const std::array<float, 4>& background = frame.packet.background;
   if (frame.half_resolution_volume) {
-    CATENA_ASSERT(!ghost);  // nothing opaque is drawn with it, so no hand
+    CATENA_ASSERT(!ghost);  // without opaque items there is no cursor, and so no ghost
     return upsample_.record(commands, *frame.half_resolution_volume, opaque ? &targets.opaque_color : nullptr, targets.placeholder,
                             background, frame.half_resolution_area, targets.output);
   }

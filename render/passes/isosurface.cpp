@@ -18,10 +18,10 @@ constexpr std::uint32_t kIsosurfaceFragmentShader[] = {
 #include "spirv/isosurface.frag.inc"
 };
 
-/// The pixels that the bricks with the level can cover.
-VkRect2D surface_area(const CellMap& cells, const ResidentGrid& mirror, const field::Mapping& mapping, const Camera& camera) {
+/// Returns the pixels that the bricks containing the level can cover.
+VkRect2D surface_area(const CellMap& cells, const ResidentGrid& uploaded, const field::Mapping& mapping, const Camera& camera) {
   if (cells.lo == cells.hi) return {};
-  const Vec3 origin(mirror.origin.x, mirror.origin.y, mirror.origin.z);
+  const Vec3 origin(uploaded.origin.x, uploaded.origin.y, uploaded.origin.z);
   std::array<Vec3, 8> corners;
   for (int i = 0; i < 8; ++i) {
     const Vec3 local{(i & 1) ? cells.hi.x : cells.lo.x, (i & 2) ? cells.hi.y : cells.lo.y, (i & 4) ? cells.hi.z : cells.lo.z};
@@ -49,8 +49,8 @@ class IsosurfacePass final : public Pass {
  private:
   struct Surface {
     SurfaceState state;
-    CellMap cells;       // without its texels: they are in the image
-    vk::Image cell_map;  // none: it would be too large, or the state has it
+    CellMap cells;       // without its texels, which are in cell_map
+    vk::Image cell_map;  // empty if the map would be too large, or if the state holds it
     IsosurfaceItem item;
     vk::Buffer uniform;
     Outcome make_cells(vk::Device& device);
@@ -62,9 +62,9 @@ class IsosurfacePass final : public Pass {
   Outcome draw(vk::Commands& commands, Frame& frame);
 
   std::vector<Surface> surfaces_;
-  std::vector<SurfaceCache> still_;  ///< an eye's each
+  std::vector<SurfaceCache> still_;  ///< one per eye
   std::size_t eye_ = 0;
-  std::uint64_t version_ = 0;  ///< counts what prepare() has found new
+  std::uint64_t version_ = 0;  ///< number of changes found by prepare()
   bool keeps_ = false;
 };
 
@@ -102,12 +102,12 @@ Outcome IsosurfacePass::prepare(Frame& frame) {
   std::size_t count = 0;
   for (const IsosurfaceItem& item : frame.packet.isosurfaces) {
     if (!is_opaque(item)) continue;
-    CATENA_TRY(auto mirror, frame.resident_grid(*item.grid));
-    if (!mirror->is_drawable) continue;
+    CATENA_TRY(auto uploaded, frame.resident_grid(*item.grid));
+    if (!uploaded->is_drawable) continue;
     if (count == surfaces_.size()) surfaces_.emplace_back();
     Surface& surface = surfaces_[count++];
-    const bool same = surface.state.map.image && surface.state.resident == mirror && surface.state.level == float(item.level);
-    CATENA_CHECK(surface.state.update(frame.device, *item.grid, std::move(mirror), item.level));
+    const bool same = surface.state.map.image && surface.state.resident == uploaded && surface.state.level == float(item.level);
+    CATENA_CHECK(surface.state.update(frame.device, *item.grid, std::move(uploaded), item.level));
     surface.item = item;
     version_ += !same;
     if (!same) CATENA_CHECK(surface.make_cells(frame.device));
@@ -144,8 +144,8 @@ Outcome IsosurfacePass::record(vk::Commands& commands, Frame& frame) {
 
 Outcome IsosurfacePass::draw(vk::Commands& commands, Frame& frame) {
   for (Surface& surface : surfaces_) {
-    const ResidentGrid& mirror = *surface.state.resident;
-    const VkRect2D area = surface_area(surface.cells, mirror, mirror.source(*surface.item.grid).mapping(), frame.rays.camera);
+    const ResidentGrid& uploaded = *surface.state.resident;
+    const VkRect2D area = surface_area(surface.cells, uploaded, uploaded.source(*surface.item.grid).mapping(), frame.rays.camera);
     if (area.extent.width == 0 || area.extent.height == 0) continue;
     shared::FrameData data = frame.rays.frame_data();
     data.grids[0] = surface_data(frame.rays, surface.state, surface.item);
@@ -153,7 +153,7 @@ Outcome IsosurfacePass::draw(vk::Commands& commands, Frame& frame) {
     const GridBinding bound = surface.state.binding();
     const bool has_cells = frame.settings.skip_empty && surface.cell_map;
     CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, grid_flags({&bound, 1}), has_cells));
-    // without the map of cells its binding is never read; the map of bricks has the right type
+    // without a cell map the shader does not read the binding; the map of bricks has the right type
     std::vector<vk::Binding> bindings{
         {0, vk::DescriptorKind::uniform, &surface.uniform, nullptr, nullptr},
         {1, vk::DescriptorKind::texture, nullptr, has_cells ? &surface.cell_map : &bound.map->image, nullptr}};

@@ -17,11 +17,11 @@ constexpr std::uint32_t kLayersScreenShader[] = {
 constexpr std::uint32_t kLayersMeshShader[] = {
 #include "spirv/layer_mesh.frag.inc"
 };
-constexpr std::uint32_t kLayersRestShader[] = {
+constexpr std::uint32_t kLayerTailShader[] = {
 #include "spirv/layer_tail.frag.inc"
 };
 
-/// Of a pixel: colour and depth of every layer, two ids, the depth buffer, the rest; four to spare.
+/// Bytes per pixel: color and depth of each layer, two ids, the depth buffer, the rest image, and 4 in reserve.
 constexpr std::uint64_t kLayerBytes = 12 * MAX_LAYERS + 32;
 
 using Clear = std::array<float, 4>;
@@ -60,12 +60,12 @@ class LayersPass final : public Pass {
   std::vector<TranslucentMesh> meshes_;
   std::vector<Slice> slices_;
   std::vector<SliceItem> slice_items_;
-  std::uint64_t version_ = 0;  ///< counts what prepare() has found new
+  std::uint64_t version_ = 0;  ///< number of changes found by prepare()
   std::map<std::array<std::uint32_t, 2>, vk::Pipeline> mesh_pipelines_;
   vk::Pipeline rest_pipeline_;
   std::uint32_t count_ = 0;
   std::array<Images, MAX_LAYERS> layers_;
-  std::array<vk::Image, 2> ids_;  // of this layer and the one before
+  std::array<vk::Image, 2> ids_;  // of the current layer and the previous one
   vk::Image depth_buffer_, rest_;
 };
 
@@ -155,7 +155,7 @@ Outcome LayersPass::draw_mesh(vk::Commands& commands, Frame& frame, TranslucentM
   return Done{};
 }
 
-/// In the order of ids: of things at one depth the depth buffer keeps the first, the next layer the next.
+/// Draws in ascending order of ids: of items at equal depth, the depth buffer keeps the first and the next layer peels the next.
 Outcome LayersPass::draw_all(vk::Commands& commands, Frame& frame, const PeelState& peel) {
   std::size_t m = 0, s = 0;
   while (m < meshes_.size() || s < slices_.size()) {
@@ -165,7 +165,7 @@ Outcome LayersPass::draw_all(vk::Commands& commands, Frame& frame, const PeelSta
   return Done{};
 }
 
-/// All that is left, into the last layer.
+/// Blends everything behind the other layers into the last layer.
 Outcome LayersPass::draw_rest(vk::Commands& commands, Frame& frame, const PeelState& peel, Images& last, vk::Image& id) {
   const vk::ColorTarget targets[] = {{&rest_, Clear{0, 0, 0, 1}}, {&last.depth, Clear{NO_DEPTH, 0, 0, 0}}, {&id, Clear{0, 0, 0, 0}}};
   commands.begin_pass(targets, {});
@@ -174,7 +174,7 @@ Outcome LayersPass::draw_rest(vk::Commands& commands, Frame& frame, const PeelSt
   if (!rest_pipeline_) {
     vk::GraphicsInfo info;
     info.vertex = kLayersScreenShader;
-    info.fragment = kLayersRestShader;
+    info.fragment = kLayerTailShader;
     info.layout_bindings = {{0, vk::DescriptorKind::texture}};
     info.colors = {kOpaqueFormat};
     CATENA_TRY(rest_pipeline_, vk::Pipeline::create(frame.device, info));

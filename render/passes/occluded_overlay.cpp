@@ -10,7 +10,7 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kGhostFragmentShader[] = {
+constexpr std::uint32_t kOccludedOverlayFragmentShader[] = {
 #include "spirv/occluded_overlay.frag.inc"
 };
 
@@ -20,7 +20,7 @@ class GhostPass final : public Pass {
     std::unique_ptr<GhostPass> self(new GhostPass);
     vk::GraphicsInfo info;
     set_triangle_stage(info);
-    info.fragment = kGhostFragmentShader;
+    info.fragment = kOccludedOverlayFragmentShader;
     info.layout_bindings.push_back({1, vk::DescriptorKind::texture});
     info.colors = {kOccludedOverlayFormat};
     info.has_depth = true;
@@ -33,7 +33,7 @@ class GhostPass final : public Pass {
     return Done{};
   }
 
-  /// The depth buffer starts anew: what is solid is drawn, and a ghost is hidden by nothing but itself.
+  /// Draws into a cleared depth buffer, so that only the ghost itself occludes the ghost; opaque_id tells where opaque items cover it.
   Outcome record(vk::Commands& commands, Frame& frame) override {
     frame.occluded_area = {};
     if (frame.occluded_index_count == 0) return Done{};

@@ -102,9 +102,9 @@ ResidencyOptions residency_options(const FramePacket& packet, const RenderSettin
   const auto uses = [&](const auto& item) { return item.grid.get() == &grid; };
   const bool surface = std::any_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), uses) ||
                        std::any_of(packet.slices.begin(), packet.slices.end(), uses) ||
-                       grid.interpolation() == field::Interpolation::nearest;  // a label that is rounded is another one
+                       grid.interpolation() == field::Interpolation::nearest;  // a rounded label is another label
   const bool float32 = settings.texel_format == TexelFormat::r32f || (settings.texel_format == TexelFormat::automatic && surface) ||
-                       display_range(grid).has_outliers();  // halves scaled by an outlier of 1e20 hold nothing of values from 0 to 1
+                       display_range(grid).has_outliers();  // half floats scaled to an outlier of 1e20 would lose the values from 0 to 1
   return {float32, settings.layout};
 }
 

@@ -53,7 +53,7 @@ inline constexpr VkFormat kDepthBufferFormat = VK_FORMAT_D32_SFLOAT;
 /// multiplied by the alpha of the volume.
 inline constexpr VkFormat kOccludedOverlayFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 inline constexpr VkFormat kOutputFormat = VK_FORMAT_R8G8B8A8_UNORM;            ///< straight alpha
-inline constexpr VkFormat kFloatOutputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< the same without rounding
+inline constexpr VkFormat kFloatOutputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< straight alpha, without rounding to 8 bits
 
 /// Returns the color formats of a pipeline that renders into target::opaque, in the order of its outputs.
 std::vector<VkFormat> opaque_formats();

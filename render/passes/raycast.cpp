@@ -17,7 +17,7 @@ namespace {
 
 bool is_translucent(const IsosurfaceItem& item) { return item.opacity > 0 && item.opacity < 1; }
 
-/// That rays go through.
+/// Returns the number of translucent isosurfaces, which the volume rays pass through.
 std::size_t surfaces_of(const FramePacket& packet) {
   return std::size_t(std::ranges::count_if(packet.isosurfaces, [](const IsosurfaceItem& item) { return is_translucent(item); }));
 }
@@ -34,7 +34,7 @@ RayScene ray_scene(const Frame& frame) {
           &frame.targets.placeholder};
 }
 
-/// What can be drawn together.
+/// Error: too many volumes, surfaces or layers, or a projection together with other translucent items.
 Outcome check(const FramePacket& packet, std::size_t layers, std::size_t volumes, std::size_t surfaces, std::size_t colors) {
   const std::size_t grids = volumes + surfaces + colors;
   if (volumes > MAX_VOLUMES) return Error{fmt::format("the scene has {} volumes, expected at most {}", volumes, MAX_VOLUMES)};
@@ -85,20 +85,20 @@ class RaycastPass final : public Pass, public RaySampler {
  private:
   RaycastPass() = default;
   bool ends_at_half(const Frame& frame) const;
-  /// A grid that the fast raycast had no memory for; not tried again before another one, or other settings, come.
+  /// A grid for which the fast raycast had too little memory; retried with another grid or other settings.
   struct Refused {
-    std::uint64_t version = 0, most_bytes = 0;
+    std::uint64_t version = 0, permitted_bytes = 0;
     bool gradients = false;
     std::string reason;
   };
   bool prepare_fast(Frame& frame);
-  /// The volumes, or the one that is projected; into the target that is begun.
+  /// Draws the volumes or the projected volume into the current rendering scope.
   Outcome record_exact(vk::Commands& commands, Frame& frame, const CameraRays& rays, const VkRect2D& area);
 
   std::optional<VolumeRaycast> exact_pass_;
   std::optional<ProjectionRaycast> projection_pass_;
   std::optional<FastVolumeRaycast> fast_pass_;
-  const VolumeItem* fast_ = nullptr;  ///< of this frame
+  const VolumeItem* fast_ = nullptr;  ///< the frame's volume, if the fast raycast draws it
   Refused refused_;
   bool wanted_fast_ = false;
   bool any_ = false, projected_ = false;
@@ -113,17 +113,17 @@ bool RaycastPass::ends_at_half(const Frame& frame) const {
 
 PassUse RaycastPass::use(const Frame& frame) const {
   const TargetSet reads = frame.has(target::opaque_depth) ? target::opaque_depth : 0;
-  // layers are not targets: record() waits for them
+  // layers are not targets: LayersPass::record() makes them readable
   return {reads, ends_at_half(frame) ? 0 : target::volume, true};
 }
 
-/// False: there is no memory for it.
+/// Returns false if the memory does not suffice; refused_ then holds the reason.
 bool RaycastPass::prepare_fast(Frame& frame) {
   const VolumeItem& item = frame.packet.volumes.front();
   const FastSettings& settings = *frame.settings.fast;
   const bool gradients = item.is_shaded && settings.smooth_gradients;
   const std::uint64_t version = item.grid->version();
-  if (!refused_.reason.empty() && refused_.version == version && refused_.most_bytes == settings.max_bytes &&
+  if (!refused_.reason.empty() && refused_.version == version && refused_.permitted_bytes == settings.max_bytes &&
       refused_.gradients == gradients)
     return false;
   refused_ = {version, settings.max_bytes, gradients, {}};
@@ -160,21 +160,21 @@ Outcome RaycastPass::prepare(Frame& frame) {
   std::vector<ResidentItem<VolumeItem>> volumes;
   std::vector<ResidentItem<IsosurfaceItem>> surfaces;
   std::size_t colors = 0;
-  const auto mirror = [&](const auto& item, auto& list) -> Outcome {
-    CATENA_TRY(auto mirrored, frame.resident_grid(*item.grid));
-    if (!mirrored->is_drawable) return Done{};
+  const auto add_item = [&](const auto& item, auto& list) -> Outcome {
+    CATENA_TRY(auto grid, frame.resident_grid(*item.grid));
+    if (!grid->is_drawable) return Done{};
     grids_.push_back(item.grid.get());
-    list.push_back({&item, std::move(mirrored), nullptr});
+    list.push_back({&item, std::move(grid), nullptr});
     if (!item.color_by) return Done{};
-    CATENA_TRY(mirrored, frame.resident_grid(*item.color_by->grid));
-    if (!mirrored->is_drawable) return Done{};
-    list.back().color_grid = std::move(mirrored);
+    CATENA_TRY(grid, frame.resident_grid(*item.color_by->grid));
+    if (!grid->is_drawable) return Done{};
+    list.back().color_grid = std::move(grid);
     ++colors;
     return Done{};
   };
-  for (const VolumeItem& item : packet.volumes) CATENA_CHECK(mirror(item, volumes));
+  for (const VolumeItem& item : packet.volumes) CATENA_CHECK(add_item(item, volumes));
   for (const IsosurfaceItem& item : packet.isosurfaces)
-    if (is_translucent(item)) CATENA_CHECK(mirror(item, surfaces));
+    if (is_translucent(item)) CATENA_CHECK(add_item(item, surfaces));
   CATENA_CHECK(check(packet, frame.layers.size(), volumes.size(), surfaces.size(), colors));
   any_ = !volumes.empty() || !surfaces.empty() || !frame.layers.empty();
   projected_ = !volumes.empty() && is_projected(*volumes.front().item);
@@ -251,7 +251,7 @@ Outcome RaycastPass::record_ray_samples(vk::Commands& commands, Frame& frame, st
 }
 
 Outcome RaycastPass::record_half_opacity_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) {
-  constexpr double kHalf = 0.5;  // what is behind does not count
+  constexpr double kHalf = 0.5;  // termination opacity: samples behind half opacity do not change the depth
   const vk::Image* opaque = frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr;
   if (fast_) {
     FastSettings settings = *frame.settings.fast;

@@ -10,7 +10,7 @@
 namespace catena::render {
 namespace {
 
-/// The bytes of an image, by way of a buffer of its own.
+/// Returns `count` elements of an image, copied through a buffer.
 template <class T>
 Result<std::vector<T>> bytes_of(vk::Device& device, vk::Image& image, std::size_t count) {
   const std::size_t bytes = count * sizeof(T);
@@ -23,7 +23,7 @@ Result<std::vector<T>> bytes_of(vk::Device& device, vk::Image& image, std::size_
   return values;
 }
 
-/// One texel of 4 bytes.
+/// Copies one texel of 4 bytes.
 void copy_texel(vk::Commands& commands, vk::Image& from, std::uint32_t x, std::uint32_t y, const vk::Buffer& to, VkDeviceSize offset) {
   commands.transition(from, vk::kTransferRead);
   VkBufferImageCopy region{};
@@ -39,51 +39,51 @@ void copy_texel(vk::Commands& commands, vk::Image& from, std::uint32_t x, std::u
 Result<Image8> Renderer::read_back() {
   Impl& p = *impl_;
   CATENA_ASSERT(p.drawn_targets != 0 && p.targets.output.info().format == kOutputFormat);
-  Image8 picture;
-  picture.width = p.output_image().info().extent.width;
-  picture.height = p.output_image().info().extent.height;
-  CATENA_TRY(picture.rgba,
-             p.reset_on_error(bytes_of<std::uint8_t>(*p.device, p.output_image(), std::size_t(4) * picture.width * picture.height)));
-  return picture;
+  Image8 result;
+  result.width = p.output_image().info().extent.width;
+  result.height = p.output_image().info().extent.height;
+  CATENA_TRY(result.rgba,
+             p.reset_on_error(bytes_of<std::uint8_t>(*p.device, p.output_image(), std::size_t(4) * result.width * result.height)));
+  return result;
 }
 
 Result<ImageF32> Renderer::read_back_float() {
   Impl& p = *impl_;
   CATENA_ASSERT(p.drawn_targets != 0 && p.targets.output.info().format == kFloatOutputFormat);
-  ImageF32 picture;
-  picture.width = p.targets.output.info().extent.width;
-  picture.height = p.targets.output.info().extent.height;
-  CATENA_TRY(picture.rgba, p.reset_on_error(bytes_of<float>(*p.device, p.targets.output, std::size_t(4) * picture.width * picture.height)));
-  return picture;
+  ImageF32 result;
+  result.width = p.targets.output.info().extent.width;
+  result.height = p.targets.output.info().extent.height;
+  CATENA_TRY(result.rgba, p.reset_on_error(bytes_of<float>(*p.device, p.targets.output, std::size_t(4) * result.width * result.height)));
+  return result;
 }
 
 Result<DepthImage> Renderer::read_depth() {
   Impl& p = *impl_;
   CATENA_ASSERT(p.drawn_targets != 0);
-  DepthImage picture;
-  picture.width = p.view_width;
-  picture.height = p.view_height;
-  picture.depth.assign(std::size_t(picture.width) * picture.height, std::numeric_limits<float>::infinity());
-  if ((p.drawn_targets & target::opaque_depth) == 0) return picture;
-  CATENA_TRY(const std::vector<float> relative, p.reset_on_error(bytes_of<float>(*p.device, p.targets.opaque_depth, picture.depth.size())));
+  DepthImage result;
+  result.width = p.view_width;
+  result.height = p.view_height;
+  result.depth.assign(std::size_t(result.width) * result.height, std::numeric_limits<float>::infinity());
+  if ((p.drawn_targets & target::opaque_depth) == 0) return result;
+  CATENA_TRY(const std::vector<float> relative, p.reset_on_error(bytes_of<float>(*p.device, p.targets.opaque_depth, result.depth.size())));
   for (std::size_t i = 0; i < relative.size(); ++i)
-    if (relative[i] < NO_DEPTH) picture.depth[i] = float(double(relative[i]) + p.reference_depth);
-  return picture;
+    if (relative[i] < NO_DEPTH) result.depth[i] = float(double(relative[i]) + p.reference_depth);
+  return result;
 }
 
 Result<IdImage> Renderer::read_ids() {
   Impl& p = *impl_;
   CATENA_ASSERT(p.drawn_targets != 0);
-  IdImage picture;
-  picture.width = p.view_width;
-  picture.height = p.view_height;
-  picture.ids.assign(std::size_t(picture.width) * picture.height, 0);
-  if ((p.drawn_targets & target::opaque_id) == 0) return picture;
-  CATENA_TRY(picture.ids, p.reset_on_error(bytes_of<std::uint32_t>(*p.device, p.targets.opaque_id, picture.ids.size())));
-  return picture;
+  IdImage result;
+  result.width = p.view_width;
+  result.height = p.view_height;
+  result.ids.assign(std::size_t(result.width) * result.height, 0);
+  if ((p.drawn_targets & target::opaque_id) == 0) return result;
+  CATENA_TRY(result.ids, p.reset_on_error(bytes_of<std::uint32_t>(*p.device, p.targets.opaque_id, result.ids.size())));
+  return result;
 }
 
-/// Texels of an R8_UINT image that are 1.
+/// Counts the texels of an R8_UINT image that are 1.
 Result<std::uint64_t> Renderer::Impl::count_marks(vk::Image& marks) {
   const VkExtent3D& size = marks.info().extent;
   CATENA_TRY(const auto bytes, reset_on_error(bytes_of<std::uint8_t>(*device, marks, std::size_t(size.width) * size.height)));
@@ -149,12 +149,12 @@ Result<Image8> Renderer::read_back_window() {
   Impl& p = *impl_;
   CATENA_ASSERT(p.window_painter && p.window_painter->window());
   vk::Image& window = p.window_painter->window();
-  Image8 picture;
-  picture.width = window.info().extent.width;
-  picture.height = window.info().extent.height;
-  CATENA_TRY(picture.rgba, p.reset_on_error(bytes_of<std::uint8_t>(*p.device, window, std::size_t(4) * picture.width * picture.height)));
-  for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255;
-  return picture;
+  Image8 result;
+  result.width = window.info().extent.width;
+  result.height = window.info().extent.height;
+  CATENA_TRY(result.rgba, p.reset_on_error(bytes_of<std::uint8_t>(*p.device, window, std::size_t(4) * result.width * result.height)));
+  for (std::size_t i = 3; i < result.rgba.size(); i += 4) result.rgba[i] = 255;
+  return result;
 }
 
 Result<Image8> Renderer::sample_rays_once(const FramePacket& packet, const RenderSettings& settings, std::uint32_t spacing) {
@@ -162,11 +162,11 @@ Result<Image8> Renderer::sample_rays_once(const FramePacket& packet, const Rende
   Frame frame{*p.device, *p.residency, p.targets, packet, settings, {}};
   CATENA_CHECK(p.prepare(frame));
 
-  // all before the rays, whole; then the rays, into an image of their own
-  Image8 picture;
-  picture.width = (packet.width + spacing - 1) / spacing;
-  picture.height = (packet.height + spacing - 1) / spacing;
-  const std::size_t count = std::size_t(picture.width) * picture.height;
+  // the passes before the raycast are drawn at full resolution, the rays into a separate image
+  Image8 result;
+  result.width = (packet.width + spacing - 1) / spacing;
+  result.height = (packet.height + spacing - 1) / spacing;
+  const std::size_t count = std::size_t(result.width) * result.height;
   vk::Image target;
   std::vector<Pass*> before;
   RaySampler* rays = nullptr;
@@ -179,7 +179,7 @@ Result<Image8> Renderer::sample_rays_once(const FramePacket& packet, const Rende
   if (rays) {
     vk::ImageInfo info;
     info.format = kVolumeFormat;
-    info.extent = {picture.width, picture.height, 1};
+    info.extent = {result.width, result.height, 1};
     info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     CATENA_TRY(target, vk::Image::create(*p.device, info));
     if (frame.has(target::opaque_depth)) commands.transition(p.targets.opaque_depth, vk::kFragmentRead);
@@ -196,18 +196,18 @@ Result<Image8> Renderer::sample_rays_once(const FramePacket& packet, const Rende
   }
 
   // volume over opaque over background
-  picture.rgba.assign(4 * count, 0);
+  result.rgba.assign(4 * count, 0);
   const auto to_byte = [](float x) { return std::uint8_t(std::lround(255 * std::clamp(x, 0.0f, 1.0f))); };
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t pixel = spacing * (i / picture.width * packet.width + i % picture.width);
+    const std::size_t pixel = spacing * (i / result.width * packet.width + i % result.width);
     const float behind = opaque.empty() ? 1 : 1 - imath_half_to_float(opaque[4 * pixel + 3]), through = 1 - volume[4 * i + 3];
     for (std::size_t c = 0; c < 3; ++c) {
       const float sum = behind * packet.background[c] + (opaque.empty() ? 0 : imath_half_to_float(opaque[4 * pixel + c]));
-      picture.rgba[4 * i + c] = to_byte(volume[4 * i + c] + through * sum);
+      result.rgba[4 * i + c] = to_byte(volume[4 * i + c] + through * sum);
     }
-    picture.rgba[4 * i + 3] = to_byte(1 - through * behind);
+    result.rgba[4 * i + 3] = to_byte(1 - through * behind);
   }
-  return picture;
+  return result;
 }
 
 }  // namespace catena::render

@@ -14,16 +14,17 @@
 namespace catena::render {
 namespace {
 
-/// All that a picture can hold, in the order of drawing.
+/// All passes, in drawing order.
 constexpr const PassEntry* kPasses[] = {&kEnvironmentPass,     &kWidgetPass,  &kMeshPass,     &kStreamlinePass,
                                         &kGlyphPass,           &kSpherePass,  &kCursorPass,   &kIsosurfacePass,
                                         &kSurfaceColorPass,    &kSlicePass,   &kLayersPass,   &kRaycastPass,
                                         &kOccludedOverlayPass, &kComposePass, &kVignettePass, &kOverlayPass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
-  const std::uint32_t most = device.limits.maxImageDimension2D;
-  if (packet.width == 0 || packet.height == 0 || packet.width > most || packet.height > most)
-    return Error{fmt::format("a picture of {} x {} pixels cannot be drawn, expected 1 to {} each way", packet.width, packet.height, most)};
+  const std::uint32_t max_size = device.limits.maxImageDimension2D;
+  if (packet.width == 0 || packet.height == 0 || packet.width > max_size || packet.height > max_size)
+    return Error{fmt::format("an image of {} x {} pixels cannot be rendered, expected 1 to {} in each direction", packet.width,
+                             packet.height, max_size)};
   if (!(settings.step_voxels > 0) || !std::isfinite(settings.step_voxels))
     return Error{fmt::format("the ray step is {} voxels, expected a positive number", settings.step_voxels)};
   if (packet.clip_planes.size() > kMaxClipPlanes)
@@ -55,7 +56,7 @@ std::vector<Pass*> Renderer::Impl::active_passes(std::vector<std::string>* names
   return list;
 }
 
-/// With their pipelines; the next picture makes them anew.
+/// Destroys the passes with their pipelines; the next image recreates them.
 void Renderer::Impl::drop_passes() {
   for (auto& pass : passes) {
     if (pass) retired_build_ms += pass->build_ms();
@@ -66,7 +67,7 @@ void Renderer::Impl::drop_passes() {
   drawn_targets = 0;
 }
 
-/// Once more where the budget refused and older frames, or the first of several grids, held what this one needs.
+/// Calls work(), and once more if the memory budget refused an allocation while older frames or the first of several grids held memory.
 template <class Work>
 auto Renderer::Impl::within_budget(const FramePacket& packet, const Work& work) -> decltype(work()) {
   const std::size_t grids = packet.volumes.size() + packet.isosurfaces.size() + packet.slices.size();
@@ -79,7 +80,7 @@ auto Renderer::Impl::within_budget(const FramePacket& packet, const Work& work) 
   return reset_on_error(work());
 }
 
-/// Bytes of the budget that are not for mirrors: the targets, their copy on the way back, layers, and 1 MB of tables and vertices.
+/// Returns the bytes of the budget that resident grids must not use: targets, their readback copy, layers, and 1 MB of tables and vertices.
 std::uint64_t Renderer::Impl::reserved_bytes(const Frame& frame) const {
   TargetSet needed = target::output | target::volume;
   std::uint64_t a_pixel = vk::texel_bytes(targets.output_format);
@@ -93,7 +94,7 @@ std::uint64_t Renderer::Impl::reserved_bytes(const Frame& frame) const {
   return pixels * a_pixel + targets.missing_bytes(frame.packet.width, frame.packet.height, needed) + 1'000'000;
 }
 
-/// Makes the passes that the packet wants and no others, uploads, and fixes the targets and the rays.
+/// Creates the passes that the packet needs, destroys the others, uploads their data, and fixes the rays and the targets.
 Outcome Renderer::Impl::prepare(Frame& frame) {
   targets.output_format = frame.settings.float_image ? kFloatOutputFormat : kOutputFormat;
   residency->begin_frame(reserved_bytes(frame), budget_sharers);
@@ -124,7 +125,8 @@ Outcome Renderer::Impl::prepare(Frame& frame) {
   return targets.ensure(*device, frame.packet.width, frame.packet.height, needed);
 }
 
-/// Neighbours with equal targets share one rendering scope; what is written first is cleared, what is read is moved there before.
+/// Records the passes. Consecutive passes with equal targets share one rendering scope. A target is cleared before its first write and made
+/// readable before a pass that reads it.
 Outcome Renderer::Impl::record(vk::Commands& commands, Frame& frame, const std::vector<Pass*>& list) {
   TargetSet open = 0;
   const auto close = [&] {
@@ -149,7 +151,7 @@ Outcome Renderer::Impl::record(vk::Commands& commands, Frame& frame, const std::
   return Done{};
 }
 
-/// One view, into targets.picture.
+/// Draws one view into targets.output.
 Outcome Renderer::Impl::draw(const FramePacket& packet, const RenderSettings& settings, std::size_t eye, std::size_t eyes) {
   Frame frame{*device, *residency, targets, packet, settings, {}};
   frame.eye_index = eye;
@@ -184,7 +186,7 @@ Outcome Renderer::Impl::draw_ray_depth(Frame& frame) {
   return Done{};
 }
 
-/// One eye after the other (passes upload only what changed since the last); the first comes last, so that its depth and ids stay.
+/// Draws the eyes one after the other (passes upload only changes); the first eye is last, so that its depth and ids remain.
 Outcome Renderer::Impl::draw_eyes(const FramePacket& packet, const RenderSettings& settings) {
   if (!stereo_composer) stereo_composer.emplace(*device);
   CATENA_CHECK(stereo_composer->begin(packet.packing, packet.eyes.size(), packet.width, packet.height));
@@ -264,7 +266,7 @@ bool Renderer::skips_empty_space() const {
 
 std::array<std::uint32_t, 2> Renderer::view_size() const { return {impl_->view_width, impl_->view_height}; }
 
-/// Where mirrors hold what the window needs, they go: the next picture makes them anew in what is left. The picture stays.
+/// Paints the window. If the memory does not suffice, frees the passes and resident grids and tries once more; the rendered image remains.
 Outcome Renderer::Impl::paint(std::uint32_t width, std::uint32_t height, const UiItems& items) {
   CATENA_ASSERT(drawn_targets != 0);
   if (!window_painter) window_painter.emplace(*device);

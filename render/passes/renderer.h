@@ -47,7 +47,7 @@ struct RenderStats {
   std::uint64_t resident_bytes = 0;                 ///< bytes of device images of grid voxels in use
   double residency_ms = 0;                          ///< time spent on building and uploading resident grids
   bool rays_reused = false;                         ///< RenderSettings::reuse_rays avoided most rays of the last image
-  bool surfaces_reused = false;                     ///< the same for all opaque isosurfaces
+  bool surfaces_reused = false;  ///< RenderSettings::reuse_rays avoided the rays of all opaque isosurfaces of the last image
   /// One-line messages about items of the last image that are missing or were rendered in another way than requested, and why.
   std::vector<std::string> warnings;
   std::uint64_t validation_messages = 0;  ///< warnings and errors of the validation layer

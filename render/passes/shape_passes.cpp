@@ -15,10 +15,10 @@ void add_arrow(ShapeMesh& shape, const ArrowItem& arrow) {
   assign_object(shape, first, arrow.id, arrow.is_clipped);
 }
 
-/// Triangles of some of a packet's items, made anew when those differ from what they were made of.
-///   Kind::Items                what is kept to compare with
+/// Pass for triangles of some of a packet's items; rebuilds them when the items change.
+///   Kind::Items                copy of the items, to detect changes
 ///   Kind::of(packet)           the items, or references to them
-///   Kind::add(shape, items)    their triangles
+///   Kind::add(shape, items)    adds their triangles
 template <class Kind>
 class ShapePass final : public Pass {
  public:
@@ -67,12 +67,12 @@ struct Aids {
 
 struct Widgets {
   using Items = WidgetItems;
-  static constexpr int kSides = 10, kBallSides = 20;
+  static constexpr int kSides = 10, kSphereSides = 20;
   static const Items& of(const FramePacket& packet) { return packet.widgets; }
   static void add(ShapeMesh& shape, const Items& items) {
     for (const TubeItem& tube : items.tubes) {
       const std::size_t first = shape.vertices.size();
-      add_tube(shape, tube, tube.points.size() == 1 ? kBallSides : kSides);
+      add_tube(shape, tube, tube.points.size() == 1 ? kSphereSides : kSides);
       assign_object(shape, first, tube.id, tube.is_clipped);
     }
     for (const ArrowItem& arrow : items.arrows) add_arrow(shape, arrow);
@@ -98,7 +98,7 @@ struct GlyphArrows {
   }
 };
 
-/// The others are drawn in layers.
+/// Meshes of opacity 1; translucent meshes are drawn by LayersPass.
 struct OpaqueMeshes {
   using Items = std::vector<MeshItem>;
   static bool has(const MeshItem& item) { return item.opacity >= 1; }
@@ -112,7 +112,7 @@ struct OpaqueMeshes {
   }
 };
 
-/// Hands, those that shine through first, and indicators.
+/// Cursors, those with an occluded overlay first, and indicators.
 class CursorPass final : public Pass {
  public:
   static constexpr int kIndicatorSides = 12;
@@ -211,7 +211,7 @@ class StreamlinePass final : public Pass {
  private:
   explicit StreamlinePass(vk::Device& device) : line_drawer_(device) {}
   TubeDrawer line_drawer_;
-  std::optional<TriangleDrawer> head_drawer_;  ///< once there are any
+  std::optional<TriangleDrawer> head_drawer_;  ///< created with the first arrowheads
   Tubes lines_;
   Triangles heads_;
   std::vector<TubeItem> tubes_;

@@ -13,7 +13,7 @@ namespace catena::render {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kJointTurn = 0.35;  // a corner that turns more than this (radians) gets several rings
+constexpr double kMaxJointTurn = 0.35;  // radians; a corner with a larger turn gets several rings
 
 std::uint32_t add_vertex(ShapeMesh& shape, const Vec3& position, const Vec3& normal, const Color& color) {
   shape.vertices.push_back({position, normal, color, 0});
@@ -29,20 +29,20 @@ Vec3 any_perpendicular(const Vec3& t) {
   return direction(cross(t, axis));
 }
 
-/// The least rotation that takes unit `from` to unit `to` (not opposite), applied to a vector across `from`.
+/// Applies the smallest rotation from unit `from` to unit `to` (not opposite) to a vector v perpendicular to `from`.
 Vec3 transport(const Vec3& v, const Vec3& from, const Vec3& to) {
   const Vec3 sum = from + to;
   const Vec3 w = v - (dot(v, to) / (1 + dot(from, to))) * sum;
   return direction(w - dot(w, to) * to);
 }
 
-Vec3 rotate_about(const Vec3& v, const Vec3& axis, double angle) {  // v across the axis
+Vec3 rotate_about(const Vec3& v, const Vec3& axis, double angle) {  // v perpendicular to axis
   return std::cos(angle) * v + std::sin(angle) * cross(axis, v);
 }
 
 using Ring = TubeRing;
 
-/// `sides` vertices around centre + height * tangent, at `radius`; vertex normals lean by `slope` along the tangent.
+/// Adds `sides` vertices of a circle of `radius` about center + height * tangent, with normals across * radial + along * tangent.
 std::uint32_t add_ring(ShapeMesh& shape, const Ring& ring, double radius, double height, double across, double along, int sides,
                        const Color& color) {
   const Vec3 binormal = cross(ring.tangent, ring.normal);
@@ -55,7 +55,7 @@ std::uint32_t add_ring(ShapeMesh& shape, const Ring& ring, double radius, double
   return first;
 }
 
-/// The wall between two rings, `b` further along the tangent; `shift` turns b's numbering.
+/// Adds the wall between two rings; `b` lies further along the tangent, `shift` offsets its vertex numbers.
 void add_wall(ShapeMesh& shape, std::uint32_t a, std::uint32_t b, int sides, int shift = 0) {
   const auto n = static_cast<std::uint32_t>(sides);
   for (std::uint32_t k = 0; k < n; ++k) {
@@ -65,7 +65,7 @@ void add_wall(ShapeMesh& shape, std::uint32_t a, std::uint32_t b, int sides, int
   }
 }
 
-/// The fan that closes a ring with one vertex, `ahead` of it along the tangent or behind.
+/// Adds the triangles from a ring to an apex, which lies ahead of it along the tangent or behind it.
 void add_fan(ShapeMesh& shape, std::uint32_t ring, std::uint32_t apex, int sides, bool ahead) {
   const auto n = static_cast<std::uint32_t>(sides);
   for (std::uint32_t k = 0; k < n; ++k) {
@@ -76,7 +76,7 @@ void add_fan(ShapeMesh& shape, std::uint32_t ring, std::uint32_t apex, int sides
 
 int cap_steps(int sides) { return std::max(2, sides / 4); }
 
-/// A half sphere on a ring that exists already.
+/// Adds a half sphere onto an existing ring.
 void add_round_cap(ShapeMesh& shape, const Ring& ring, std::uint32_t equator, double radius, int sides, const Color& color, bool ahead) {
   const int steps = cap_steps(sides);
   const double sign = ahead ? 1 : -1;
@@ -95,23 +95,23 @@ struct ColoredPoint {
   Color color;
 };
 
-/// The points of a polyline without those that fall on their predecessor; of a closed one without the repeated end.
+/// Returns the points of a polyline without repeated points, and of a closed one without its repeated end.
 std::vector<ColoredPoint> distinct_points(const TubeItem& tube, bool& closed) {
   CATENA_ASSERT(tube.colors.empty() || tube.colors.size() == tube.points.size());
   std::vector<ColoredPoint> points;
   points.reserve(tube.points.size());
-  const double least = 1e-9 * tube.radius;
+  const double min_radius = 1e-9 * tube.radius;
   for (std::size_t i = 0; i < tube.points.size(); ++i) {
     const Vec3& p = tube.points[i];
     CATENA_ASSERT(is_finite(p));
-    if (points.empty() || norm(p - points.back().p) > least) points.push_back({p, tube.colors.empty() ? tube.color : tube.colors[i]});
+    if (points.empty() || norm(p - points.back().p) > min_radius) points.push_back({p, tube.colors.empty() ? tube.color : tube.colors[i]});
   }
   closed = points.size() > 3 && norm(points.front().p - points.back().p) <= 1e-6 * tube.radius;
   if (closed) points.pop_back();
   return points;
 }
 
-/// One ring a point, across the mean of its two segments; a sharp corner gets rings from the one direction to the other.
+/// Returns one ring per point, perpendicular to the mean of its two segments; a sharp corner gets several, from one direction to the other.
 std::vector<Ring> rings_of(const std::vector<ColoredPoint>& points, bool closed) {
   const std::size_t n = points.size();
   std::vector<Ring> rings;
@@ -122,25 +122,25 @@ std::vector<Ring> rings_of(const std::vector<ColoredPoint>& points, bool closed)
     const bool first = !closed && i == 0, last = !closed && i + 1 == n;
     const Vec3 before = first ? segment(0) : segment(i + n - 1), after = last ? before : segment(i);
     const double turn = std::atan2(norm(cross(before, after)), dot(before, after));
-    if (turn <= kJointTurn) {
+    if (turn <= kMaxJointTurn) {
       rings.push_back({p, direction(before + after), Vec3(0.0), color, 0, 0});
       continue;
     }
     Vec3 axis = direction(cross(before, after));
     if (max_abs(axis) == 0) axis = any_perpendicular(before);
-    const int steps = static_cast<int>(std::ceil(turn / kJointTurn));
+    const int steps = static_cast<int>(std::ceil(turn / kMaxJointTurn));
     for (int k = 0; k <= steps; ++k) rings.push_back({p, direction(rotate_about(before, axis, turn * k / steps)), Vec3(0.0), color, 0, 0});
   }
   return rings;
 }
 
-/// Rings with their normals, transported from ring to ring.
+/// Returns rings with normals, by parallel transport from ring to ring.
 std::vector<Ring> framed_rings(const std::vector<ColoredPoint>& points, bool closed) {
   std::vector<Ring> rings = rings_of(points, closed);
   rings.front().normal = any_perpendicular(rings.front().tangent);
   for (std::size_t i = 1; i < rings.size(); ++i) rings[i].normal = transport(rings[i - 1].normal, rings[i - 1].tangent, rings[i].tangent);
   if (!closed) return rings;
-  // the frame comes back turned by some angle; taken up bit by bit along the line
+  // parallel transport around a closed line rotates the normal; the difference is distributed over the rings
   const Ring &a = rings.front(), &b = rings.back();
   const Vec3 back = transport(b.normal, b.tangent, a.tangent);
   const double angle = std::atan2(dot(cross(back, a.normal), a.tangent), dot(back, a.normal));
@@ -177,7 +177,7 @@ std::vector<TubeRing> tube_rings(const TubeItem& tube, bool& closed) {
     wall.push_back(wall.front());
     return wall;
   }
-  // a half sphere's rings, from its equator or to it
+  // rings of a half sphere, from its equator or to it
   constexpr int steps = 3;
   const auto latitude = [&](TubeRing ring, int i, double sign) {
     const double angle = 0.5 * kPi * i / steps;
@@ -269,7 +269,7 @@ void add_cone(ShapeMesh& shape, const Vec3& base, const Vec3& tip, double radius
   const Ring ring{base, t, any_perpendicular(t), color, radius, 0};
   const double slant = std::sqrt(length * length + radius * radius), across = length / slant, along = radius / slant;
 
-  // the side: the tip once for each facet, so that its normal can be the facet's
+  // the side repeats the tip for each facet, because each facet has its own normal there
   const std::uint32_t side = add_ring(shape, ring, radius, 0, across, along, sides, color), n = static_cast<std::uint32_t>(sides);
   for (std::uint32_t k = 0; k < n; ++k) {
     const std::uint32_t l = side + (k + 1) % n;
@@ -301,7 +301,7 @@ double cursor_arrow_length(double force_n, double size) {
 }
 
 namespace {
-/// Three rings around a place where a link has let go: seen from any side.
+/// Adds three perpendicular rings, visible from any side, that mark a released link.
 void add_rings(ShapeMesh& shape, const Vec3& centre, double radius, double thickness, const Color& color) {
   constexpr int steps = 32;
   for (int axis = 0; axis < 3; ++axis) {
@@ -316,7 +316,7 @@ void add_rings(ShapeMesh& shape, const Vec3& centre, double radius, double thick
     add_tube(shape, ring, 8);
   }
 }
-/// Calm blue, amber, red.
+/// Interpolates blue, amber and red for a force ratio of 0, 0.5 and 1.
 Color strain_color(double strain) {
   const auto share = static_cast<float>(std::clamp(strain, 0.0, 1.0));
   const Color calm{0.35f, 0.72f, 1.0f}, amber{1.0f, 0.75f, 0.2f}, red{1.0f, 0.15f, 0.1f};
@@ -326,7 +326,7 @@ Color strain_color(double strain) {
   return {a.r + t * (b.r - a.r), a.g + t * (b.g - a.g), a.b + t * (b.b - a.b)};
 }
 
-/// The force, from where it acts.
+/// Adds the arrow of the force at its point of application.
 void add_force(ShapeMesh& shape, const CursorItem& cursor, const Vec3& from) {
   const Color lime{0.60f, 0.95f, 0.25f};
   const double length = is_finite(cursor.force_n) ? cursor_arrow_length(norm(cursor.force_n), cursor.radius) : 0;
@@ -336,7 +336,7 @@ void add_force(ShapeMesh& shape, const CursorItem& cursor, const Vec3& from) {
   add_cone(shape, neck, tip, 0.55 * cursor.radius, lime);
 }
 
-/// The hand as a mouse feels it: it is where the chain holds it, and lags behind the probe.
+/// Adds a pseudo-haptic cursor: a ball at the last proxy, with a tether to the probe that lags behind.
 void add_pseudo_haptic(ShapeMesh& shape, const CursorItem& cursor) {
   Vec3 held = cursor.probe, before = cursor.probe;
   const Color color = strain_color(*cursor.force_ratio);
@@ -352,7 +352,7 @@ void add_pseudo_haptic(ShapeMesh& shape, const CursorItem& cursor) {
     if (held != before) add_sphere(shape, held, 0.5 * cursor.radius, link_color(i, true));
     before = held;
   }
-  // white while nothing pushes, and soon of the force's colour: a push along the view hides the tether behind this ball
+  // white without a force; reaches the force color at 1/8 of the maximum, because a force along the view hides the tether behind the ball
   const Color calm{0.95f, 0.95f, 0.95f};
   const auto t = static_cast<float>(std::clamp(8 * *cursor.force_ratio, 0.0, 1.0));
   add_sphere(shape, held, cursor.radius,
@@ -361,7 +361,7 @@ void add_pseudo_haptic(ShapeMesh& shape, const CursorItem& cursor) {
   if (held != cursor.probe) add_sphere(shape, cursor.probe, 0.45 * cursor.radius, {0.6f, 0.62f, 0.66f});
 }
 
-/// From the probe to its foot, which is marked by a cross.
+/// Adds a line from the probe to its foot, and a cross there.
 void add_drop_line(ShapeMesh& shape, const CursorItem& cursor) {
   if (!is_finite(*cursor.foot_point) || *cursor.foot_point == cursor.probe) return;
   const Color grey{0.62f, 0.62f, 0.62f};
@@ -372,7 +372,7 @@ void add_drop_line(ShapeMesh& shape, const CursorItem& cursor) {
     add_cylinder(shape, *cursor.foot_point - reach * arm, *cursor.foot_point + reach * arm, radius, grey);
 }
 
-/// Along the world's axes; dark and thin, to be seen on light and on lines.
+/// Adds a cross along the world axes; dark and thin, to be visible on bright backgrounds and on lines.
 void add_crosshair(ShapeMesh& shape, const CursorItem& cursor) {
   const Color dark{0.05f, 0.05f, 0.08f};
   for (int axis = 0; axis < 3; ++axis) {
@@ -392,7 +392,7 @@ void add_cursor(ShapeMesh& shape, const CursorItem& cursor) {
   const Color white{0.95f, 0.95f, 0.95f};
   add_sphere(shape, cursor.probe, cursor.radius, white);
 
-  // every proxy, joined to the one before; radii fall a little, so that balls in one place do not fight
+  // each proxy, joined to the previous one; decreasing radii avoid z-fighting of balls at one position
   Vec3 before = cursor.probe;
   for (std::size_t i = 0; i < cursor.proxies.size(); ++i) {
     if (!is_finite(cursor.proxies[i])) continue;

@@ -18,9 +18,10 @@ constexpr std::uint32_t kSliceFragmentShader[] = {
 #include "spirv/slice.frag.inc"
 };
 constexpr std::uint32_t kSlice = 1, kColors = 2, kLevels = 4;
-constexpr double kNearer = 4e-6;     ///< of the distance: what a buffer of floats tells apart
-constexpr int kOverSurfaces = 2;     ///< such parts before surfaces in the slice's plane, whose depths are rounded in their own ways
-constexpr double kClipSlack = 1e-3;  ///< of a voxel's smallest edge
+constexpr double kDepthResolution = 4e-6;  ///< share of the distance; resolution of a float depth buffer
+constexpr int kSurfaceDepthBias =
+    2;  ///< depth bias in units of kDepthResolution, before surfaces in the slice's plane, whose depths are rounded differently
+constexpr double kClipSlack = 1e-3;  ///< share of the smallest voxel edge
 
 bool is_opaque(const SliceItem& item) { return item.opacity >= 1; }
 
@@ -29,10 +30,10 @@ bool is_opaque(const SliceItem& item) { return item.opacity >= 1; }
 bool is_translucent(const SliceItem& item) { return item.opacity < 1 && (item.opacity > 0 || !item.contour_levels.empty()); }
 
 Result<bool> Slice::prepare(Frame& frame, const SliceItem& item) {
-  CATENA_TRY(auto mirror, frame.resident_grid(*item.grid));
-  if (!mirror->is_drawable) return false;
-  if (resident_ != mirror) {
-    resident_ = std::move(mirror);
+  CATENA_TRY(auto resident, frame.resident_grid(*item.grid));
+  if (!resident->is_drawable) return false;
+  if (resident_ != resident) {
+    resident_ = std::move(resident);
     CATENA_TRY(map_, make_brick_map(frame.device, *resident_, [](const BrickRange&) { return true; }));
   }
   if (!colors_ || item.colors != item_.colors) {
@@ -85,11 +86,10 @@ Result<const vk::Pipeline*> SliceDrawer::pipeline(std::uint32_t flags, std::uint
 Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice& slice, const PeelState& peel) {
   const SliceItem& item = slice.item_;
   const field::ScalarGrid* grid = item.grid.get();
-  // a plane through the eye is seen edge-on: where a ray meets it, if at all, is rounding
+  // a plane through the camera is seen edge-on: the intersection with a ray is dominated by rounding
   const double away = std::fabs(dot(direction(item.normal), rays.camera.position - item.point));
   if (!rays.camera.orthographic && away < rays.depth_near) return Done{};
 
-  // the frame's data
   shared::FrameData frame = rays.frame_data();
   frame.grids[0] = rays.grid_data(*slice.resident_, grid->mapping());
   frame.grids[0].id = item.id;
@@ -104,12 +104,11 @@ Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice&
   data.level_count = std::uint32_t(item.contour_levels.size());
   data.line_color = {item.line_color.r, item.line_color.g, item.line_color.b};
   data.half_width = 0.5f * item.line_width;
-  data.depth_bias = float(kNearer * (kOverSurfaces + item.stack_order));
+  data.depth_bias = float(kDepthResolution * (kSurfaceDepthBias + item.stack_order));
   data.hidden_label = item.hidden_label ? float(*item.hidden_label) : NAN;
   CATENA_CHECK(vk::write_uniform(*device_, slice.slice_data_, data));
   CATENA_CHECK(vk::write_uniform(*device_, slice.layer_data_, layer_data(rays, item.opacity)));
 
-  // draw
   const GridBinding bound{slice.resident_, &slice.map_, false, true};
   CATENA_TRY(const vk::Pipeline* pipe, pipeline(grid_flags({&bound, 1}), peel.mode, peel.opaque_depth != nullptr));
   std::vector<vk::Binding> bindings{{0, vk::DescriptorKind::uniform, &slice.frame_data_, nullptr, nullptr},
@@ -138,7 +137,7 @@ Outcome prepare_slices(Frame& frame, std::vector<Slice>& slices, bool (*chosen)(
 
 namespace {
 
-/// The opaque ones.
+/// Draws the opaque slices; LayersPass draws the translucent ones.
 class SlicePass final : public Pass {
  public:
   static Result<std::unique_ptr<Pass>> create(vk::Device& device) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// SphereSet of point sets: one instance of a square each (shaders/shared/sphere.h), 24 bytes.
+// Draws the SphereSet of point sets: one instanced square per sphere (shaders/shared/sphere.h), 24 bytes each.
 #include <algorithm>
 #include <cmath>
 
@@ -11,10 +11,10 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kBallVertexShader[] = {
+constexpr std::uint32_t kSphereVertexShader[] = {
 #include "spirv/sphere.vert.inc"
 };
-constexpr std::uint32_t kBallFragmentShader[] = {
+constexpr std::uint32_t kSphereFragmentShader[] = {
 #include "spirv/sphere.frag.inc"
 };
 
@@ -25,13 +25,13 @@ std::uint32_t packed(const Color& c) {
   return share(c.r) | share(c.g) << 8 | share(c.b) << 16;
 }
 
-class BallPass final : public Pass {
+class SpherePass final : public Pass {
  public:
   static Result<std::unique_ptr<Pass>> create(vk::Device& device) {
-    std::unique_ptr<BallPass> self(new BallPass);
+    std::unique_ptr<SpherePass> self(new SpherePass);
     vk::GraphicsInfo info;
-    info.vertex = kBallVertexShader;
-    info.fragment = kBallFragmentShader;
+    info.vertex = kSphereVertexShader;
+    info.fragment = kSphereFragmentShader;
     info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::buffer}};
     info.colors = opaque_formats();
     info.has_depth = true;
@@ -96,6 +96,6 @@ class BallPass final : public Pass {
 
 }  // namespace
 
-const PassEntry kSpherePass{"points", [](const Frame& frame) { return !frame.packet.spheres.empty(); }, BallPass::create};
+const PassEntry kSpherePass{"points", [](const Frame& frame) { return !frame.packet.spheres.empty(); }, SpherePass::create};
 
 }  // namespace catena::render

@@ -8,17 +8,17 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kPackVertexShader[] = {
+constexpr std::uint32_t kStereoVertexShader[] = {
 #include "spirv/fullscreen.vert.inc"
 };
-constexpr std::uint32_t kPackPackShader[] = {
+constexpr std::uint32_t kStereoPackShader[] = {
 #include "spirv/stereo_compose.frag.inc"
 };
-constexpr std::uint32_t kPackAnaglyphShader[] = {
+constexpr std::uint32_t kStereoAnaglyphShader[] = {
 #include "spirv/anaglyph.frag.inc"
 };
 
-constexpr std::uint32_t kAnaglyph = 16;  // beside the patterns of stereo_compose.frag
+constexpr std::uint32_t kAnaglyph = 16;  // pattern of the pipeline besides those of stereo_compose.frag
 
 bool is_anaglyph(Packing packing) { return packing == Packing::anaglyph || packing == Packing::anaglyph_gray; }
 
@@ -53,7 +53,7 @@ shared::AnaglyphData anaglyph_matrices(Packing packing) {
     data.right = rows(none, luminance, luminance);
     return data;
   }
-  // E. Dubois, A projection method to generate anaglyph stereo images, 2001; rows R, G, B
+  // matrices of E. Dubois, A projection method to generate anaglyph stereo images, 2001; rows R, G, B
   data.left = rows({0.4561f, 0.500484f, 0.176381f}, {-0.0400822f, -0.0378246f, -0.0157589f}, {-0.0152161f, -0.0205971f, -0.00546856f});
   data.right = rows({-0.0434706f, -0.0879388f, -0.00155529f}, {0.378476f, 0.73364f, -0.0184503f}, {-0.0721527f, -0.112961f, 1.2264f});
   return data;
@@ -62,10 +62,10 @@ shared::AnaglyphData anaglyph_matrices(Packing packing) {
 Outcome StereoComposer::begin(Packing packing, std::size_t views, std::uint32_t width, std::uint32_t height) {
   if (is_anaglyph(packing) && views != 2) return Error{fmt::format("an anaglyph has {} views, expected 2", views)};
   const PackedSize size = packed_size(packing, views, width, height);
-  const std::uint32_t most = device_->info().limits.maxImageDimension2D;
-  if (size.width == 0 || size.height == 0 || size.width > most || size.height > most)
-    return Error{fmt::format("{} views of {} x {} pixels make a picture of {} x {}, expected 1 to {} each way", views, width, height,
-                             size.width, size.height, most)};
+  const std::uint32_t max_size = device_->info().limits.maxImageDimension2D;
+  if (size.width == 0 || size.height == 0 || size.width > max_size || size.height > max_size)
+    return Error{fmt::format("{} views of {} x {} pixels make an image of {} x {}, expected 1 to {} in each direction", views, width,
+                             height, size.width, size.height, max_size)};
   packing_ = packing;
   size_ = size;
   const std::size_t shown = packing == Packing::single ? 1 : views;
@@ -74,7 +74,7 @@ Outcome StereoComposer::begin(Packing packing, std::size_t views, std::uint32_t 
   return Done{};
 }
 
-void StereoComposer::store_view(std::size_t view, vk::Image& picture) { std::swap(views_.at(view), picture); }
+void StereoComposer::store_view(std::size_t view, vk::Image& image) { std::swap(views_.at(view), image); }
 
 Outcome StereoComposer::record(vk::Commands& commands) {
   const vk::ImageInfo& one = views_.front().info();
@@ -101,14 +101,14 @@ Result<const vk::Pipeline*> StereoComposer::pipeline(std::uint32_t pattern) {
   vk::Pipeline& pipeline = pipelines_[{composed_.info().format, pattern}];
   if (!pipeline) {
     vk::GraphicsInfo info;
-    info.vertex = kPackVertexShader;
+    info.vertex = kStereoVertexShader;
     info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::texture}};
     info.colors = {composed_.info().format};
     if (pattern == kAnaglyph) {
-      info.fragment = kPackAnaglyphShader;
+      info.fragment = kStereoAnaglyphShader;
       info.layout_bindings.push_back({2, vk::DescriptorKind::texture});
     } else {
-      info.fragment = kPackPackShader;
+      info.fragment = kStereoPackShader;
       info.constants = {pattern};
     }
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
@@ -118,7 +118,7 @@ Result<const vk::Pipeline*> StereoComposer::pipeline(std::uint32_t pattern) {
 
 Outcome StereoComposer::record_view(vk::Commands& commands, std::size_t view) {
   CATENA_TRY(const vk::Pipeline* pipe, pipeline(pattern_of(packing_)));
-  // where it goes, and how many of its pixels make one
+  // area of the view in the image, and the number of its pixels per image pixel
   const auto k = std::uint32_t(view), n = std::uint32_t(views_.size());
   VkRect2D area{{0, 0}, {std::uint32_t(size_.width), std::uint32_t(size_.height)}};
   shared::StereoComposeData data{{0, 0}, 1, 1, k, n};

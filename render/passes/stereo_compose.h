@@ -20,7 +20,7 @@ class StereoComposer {
   /// or exceeds the device's image size.
   Outcome begin(Packing packing, std::size_t views, std::uint32_t width, std::uint32_t height);
   /// Swaps the finished image of a view with the image stored for it for the previous packet (or an empty one).
-  void store_view(std::size_t view, vk::Image& picture);
+  void store_view(std::size_t view, vk::Image& image);
   /// To be called after all views are rendered: records the composition into image().
   Outcome record(vk::Commands& commands);
 

@@ -8,10 +8,10 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kStillSurfacesVertexShader[] = {
+constexpr std::uint32_t kSurfaceCacheVertexShader[] = {
 #include "spirv/fullscreen.vert.inc"
 };
-constexpr std::uint32_t kStillSurfacesFragmentShader[] = {
+constexpr std::uint32_t kSurfaceCacheFragmentShader[] = {
 #include "spirv/surface_cache.frag.inc"
 };
 
@@ -21,27 +21,27 @@ bool SurfaceCache::Key::matches(const Key& other) const {
   if (version != other.version || surfaces.size() != other.surfaces.size()) return false;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     shared::FrameData a = surfaces[i], b = other.surfaces[i];
-    // they follow from all that is drawn; the picture's own are taken
+    // near and far depend on everything drawn; the drawn image uses its own
     a.depth_near = b.depth_near = a.depth_far = b.depth_far = 0;
     if (std::memcmp(&a, &b, sizeof(a)) != 0) return false;
   }
   return true;
 }
 
-Outcome SurfaceCache::ensure(vk::Device& device, const VkExtent3D& picture) {
+Outcome SurfaceCache::ensure(vk::Device& device, const VkExtent3D& extent) {
   const VkExtent3D& have = color_.info().extent;
-  if (key_ && have.width == picture.width && have.height == picture.height) return Done{};
+  if (key_ && have.width == extent.width && have.height == extent.height) return Done{};
   key_.reset();
   reused_previous_ = false;
-  CATENA_CHECK(vk::ensure_image(device, color_, kOpaqueFormat, picture.width, picture.height));
-  CATENA_CHECK(vk::ensure_image(device, depth_, kDepthValueFormat, picture.width, picture.height));
-  CATENA_CHECK(vk::ensure_image(device, id_, kIdFormat, picture.width, picture.height));
-  return vk::ensure_image(device, depth_buffer_, kDepthBufferFormat, picture.width, picture.height,
+  CATENA_CHECK(vk::ensure_image(device, color_, kOpaqueFormat, extent.width, extent.height));
+  CATENA_CHECK(vk::ensure_image(device, depth_, kDepthValueFormat, extent.width, extent.height));
+  CATENA_CHECK(vk::ensure_image(device, id_, kIdFormat, extent.width, extent.height));
+  return vk::ensure_image(device, depth_buffer_, kDepthBufferFormat, extent.width, extent.height,
                           VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
 }
 
-Outcome SurfaceCache::update(vk::Commands& commands, Key look, const std::function<Outcome()>& draw) {
-  reused_previous_ = key_ && key_->matches(look);
+Outcome SurfaceCache::update(vk::Commands& commands, Key key, const std::function<Outcome()>& draw) {
+  reused_previous_ = key_ && key_->matches(key);
   if (reused_previous_) return Done{};
   key_.reset();
   const std::array<float, 4> empty{0, 0, 0, 0}, far{NO_DEPTH, 0, 0, 0};
@@ -50,15 +50,15 @@ Outcome SurfaceCache::update(vk::Commands& commands, Key look, const std::functi
   CATENA_CHECK(draw());
   commands.end_pass();
   for (vk::Image* image : {&color_, &depth_, &id_}) commands.transition(*image, vk::kFragmentRead);
-  key_ = std::move(look);
+  key_ = std::move(key);
   return Done{};
 }
 
 Outcome SurfaceCache::draw(vk::Device& device, vk::Commands& commands, const shared::FrameData& frame) {
   if (!pipeline_) {
     vk::GraphicsInfo info;
-    info.vertex = kStillSurfacesVertexShader;
-    info.fragment = kStillSurfacesFragmentShader;
+    info.vertex = kSurfaceCacheVertexShader;
+    info.fragment = kSurfaceCacheFragmentShader;
     info.layout_bindings = {{0, vk::DescriptorKind::uniform},
                             {1, vk::DescriptorKind::texture},
                             {2, vk::DescriptorKind::texture},

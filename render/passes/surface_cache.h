@@ -25,10 +25,10 @@ class SurfaceCache {
   };
 
   /// Allocates the images for the given size. An Error if there is no memory; the cache is empty then.
-  Outcome ensure(vk::Device& device, const VkExtent3D& picture);
+  Outcome ensure(vk::Device& device, const VkExtent3D& extent);
   /// To be called after ensure(), outside a render pass. `draw` renders the surfaces into opaque targets that contain nothing else; it is
-  /// called only if `look` differs from the cached key.
-  Outcome update(vk::Commands& commands, Key look, const std::function<Outcome()>& draw);
+  /// called only if `key` differs from the cached key.
+  Outcome update(vk::Commands& commands, Key key, const std::function<Outcome()>& draw);
   /// Copies the cached surfaces into the image's opaque targets, within a render pass over them. `frame`: frame data of the image.
   Outcome draw(vk::Device& device, vk::Commands& commands, const shared::FrameData& frame);
   /// Returns whether the last update() found the cache valid.

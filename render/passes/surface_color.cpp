@@ -33,8 +33,8 @@ class SurfaceColorPass final : public Pass {
  private:
   struct Surface {
     IsosurfaceItem item;
-    std::shared_ptr<const ResidentGrid> mirror;
-    BrickMap map;  ///< of the surface's own grid
+    std::shared_ptr<const ResidentGrid> resident;
+    BrickMap map;  ///< of the isosurface's own grid
     ColorGrid colors;
     vk::Buffer uniform, table;
   };
@@ -68,16 +68,16 @@ Outcome SurfaceColorPass::prepare(Frame& frame) {
   std::size_t count = 0;
   for (const IsosurfaceItem& item : frame.packet.isosurfaces) {
     if (!is_wanted(item)) continue;
-    CATENA_TRY(auto mirror, frame.resident_grid(*item.grid));
+    CATENA_TRY(auto resident, frame.resident_grid(*item.grid));
     CATENA_TRY(auto colors, frame.resident_grid(*item.color_by->grid));
-    if (!mirror->is_drawable || !colors->is_drawable) continue;
+    if (!resident->is_drawable || !colors->is_drawable) continue;
     if (count == surfaces_.size()) surfaces_.emplace_back();
     Surface& surface = surfaces_[count++];
     surface.item = item;
-    if (surface.mirror != mirror) {
-      surface.mirror = std::move(mirror);
+    if (surface.resident != resident) {
+      surface.resident = std::move(resident);
       CATENA_TRY(surface.map,
-                 make_brick_word_map(frame.device, *surface.mirror, std::vector<std::uint8_t>(surface.mirror->brick_ranges.size())));
+                 make_brick_word_map(frame.device, *surface.resident, std::vector<std::uint8_t>(surface.resident->brick_ranges.size())));
     }
     CATENA_TRY(const bool fresh, surface.colors.update(frame.device, std::move(colors), *item.color_by));
     if (!fresh) continue;
@@ -91,14 +91,14 @@ Outcome SurfaceColorPass::prepare(Frame& frame) {
 Outcome SurfaceColorPass::record(vk::Commands& commands, Frame& frame) {
   for (Surface& surface : surfaces_) {
     const field::ScalarGrid* grid = surface.item.grid.get();
-    const Color& own = surface.item.color;
+    const Color& base = surface.item.color;
     shared::FrameData data = frame.rays.frame_data();
-    data.grids[0] = frame.rays.grid_data(*surface.mirror, grid->mapping());
+    data.grids[0] = frame.rays.grid_data(*surface.resident, grid->mapping());
     data.grids[0].id = surface.item.id;
-    data.grids[0].color = {own.r, own.g, own.b};
+    data.grids[0].color = {base.r, base.g, base.b};
     data.grids[1] = color_data(frame.rays, surface.colors, 0);
     CATENA_CHECK(vk::write_uniform(frame.device, surface.uniform, data));
-    const GridBinding bound[] = {{surface.mirror, &surface.map, true, false}, surface.colors.binding()};
+    const GridBinding bound[] = {{surface.resident, &surface.map, true, false}, surface.colors.binding()};
     CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, grid_flags(bound), surface.colors.lut));
     std::vector<vk::Binding> bindings{{0, vk::DescriptorKind::uniform, &surface.uniform, nullptr, nullptr},
                                       {1, vk::DescriptorKind::buffer, &surface.table, nullptr, nullptr},

@@ -86,7 +86,7 @@ void set_peel_stage(vk::GraphicsInfo& info, std::uint32_t mode, bool has_opaque)
   info.layout_bindings.push_back({kData, vk::DescriptorKind::uniform});
   for (const std::uint32_t binding : {kOpaqueDepth, kPassedDepth, kPassedId})
     info.layout_bindings.push_back({binding, vk::DescriptorKind::texture});
-  CATENA_ASSERT(info.constants.size() == 1);  // constants 1 and 2 are these
+  CATENA_ASSERT(info.constants.size() == 1);  // the appended constants have the ids 1 and 2
   info.constants.insert(info.constants.end(), {mode, has_opaque});
   info.colors = opaque_formats();
   info.has_depth = mode != MODE_TAIL;

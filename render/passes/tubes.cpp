@@ -25,11 +25,11 @@ constexpr std::uint32_t kTubesFragmentShader[] = {
 #include "spirv/mesh.frag.inc"
 };
 
-constexpr std::size_t kMaxRings = 1 << 14;    // of a piece: all pieces share their indices
-constexpr std::size_t kTubesAtOnce = 1 << 9;  // whose rings are made together, on all cores
+constexpr std::size_t kMaxRings = 1 << 14;    // maximum rings of a chunk; all chunks share one index buffer
+constexpr std::size_t kTubesAtOnce = 1 << 9;  // tubes whose rings are made in one parallel loop
 constexpr std::uint32_t kTrianglesAtOnce = 50000;
 
-/// A share of -1..1 as unpackSnorm2x16 reads it.
+/// Packs x in -1..1 for unpackSnorm2x16.
 std::uint32_t packed_share(double x) { return static_cast<std::uint16_t>(std::lround(std::clamp(x, -1.0, 1.0) * 32767)); }
 
 std::uint32_t packed_direction(const Vec3& unit) {
@@ -49,7 +49,7 @@ std::uint32_t packed_color(const Color& c) {
   return share(c.r) | share(c.g) << 10 | share(c.b) << 20;
 }
 
-/// The walls between neighbours of `rings` rings, as add_tube makes them: all round, or across a ribbon.
+/// Returns the indices of the walls between consecutive rings, ordered as in add_tube: all round, or across a ribbon (sides 0).
 std::vector<std::uint32_t> wall_indices(std::size_t rings, std::uint32_t sides) {
   const std::uint32_t walls = sides > 0 ? sides : RIBBON_WALLS;
   std::vector<std::uint32_t> indices;
@@ -64,8 +64,8 @@ std::vector<std::uint32_t> wall_indices(std::size_t rings, std::uint32_t sides) 
   return indices;
 }
 
-/// The rings of one tube. An open tube's tips are points, and so is all that leads from one tube to the next; about a closed one there are
-/// gaps.
+/// Returns the rings of one tube. The ends of an open tube have radius 0, so that the walls to the next tube are degenerate; a closed tube
+/// is enclosed in rings marked RING_GAP.
 std::vector<shared::TubeRingData> packed_rings(const TubeItem& tube, const Vec3& origin) {
   bool closed = false;
   const std::vector<TubeRing> rings = tube_rings(tube, closed);
@@ -84,7 +84,7 @@ std::vector<shared::TubeRingData> packed_rings(const TubeItem& tube, const Vec3&
 
 }  // namespace
 
-/// Collects the rings of all tubes, and puts them on the device piece by piece.
+/// Collects the rings of all tubes and uploads them in chunks.
 class Tubes::Filler {
  public:
   Filler(Tubes& tubes, vk::Device& device) : tubes_(tubes), device_(device) {}
@@ -117,17 +117,17 @@ class Tubes::Filler {
     put(ring, radius);
     if (rings_.size() < kMaxRings) return Done{};
     CATENA_CHECK(flush());
-    // the next piece goes on from the last ring
+    // the next chunk continues from the last ring
     put(ring, radius);
     return Done{};
   }
   void put(const shared::TubeRingData& ring, double radius) {
-    const auto reach = [&](Run& run) {
+    const auto extend_run = [&](Run& run) {
       run.bounds.extend(tubes_.origin_ + Vec3(ring.center), radius);
       run.radius = std::max(run.radius, radius);
     };
-    if (!runs_.empty()) reach(runs_.back());
-    if (rings_.size() % kRunLength == 0) reach(runs_.emplace_back());
+    if (!runs_.empty()) extend_run(runs_.back());
+    if (rings_.size() % kRunLength == 0) extend_run(runs_.emplace_back());
     rings_.push_back(ring);
   }
 
@@ -177,7 +177,7 @@ Result<const vk::Pipeline*> TubeDrawer::pipeline(std::uint32_t sides) {
 Outcome TubeDrawer::draw(vk::Commands& commands, const CameraRays& rays, Tubes& tubes, const std::function<void()>& pause) {
   if (tubes.empty()) return Done{};
   CATENA_CHECK(vk::write_uniform(*device_, tubes.uniform_, rays.mesh_frame_data(tubes.origin_)));
-  std::uint32_t since_pause = 0;  // triangles
+  std::uint32_t since_pause = 0;  // triangles since the last pause
   for (const Tubes::Chunk& piece : tubes.chunks_) {
     const vk::Binding bindings[] = {{0, vk::DescriptorKind::uniform, &tubes.uniform_, nullptr, nullptr},
                                     {1, vk::DescriptorKind::buffer, &piece.rings, nullptr, nullptr}};
@@ -193,10 +193,10 @@ Outcome TubeDrawer::draw(vk::Commands& commands, const CameraRays& rays, Tubes& 
       CATENA_TRY(const vk::Buffer* indices, tubes.indices(*device_, *sides));
       commands.bind(*pipeline, bindings);
       commands.bind_indices(*indices, VK_INDEX_TYPE_UINT32);
-      const std::uint32_t a_wall = 2 * (*sides > 0 ? *sides : RIBBON_WALLS), most = kTrianglesAtOnce / a_wall;
+      const std::uint32_t a_wall = 2 * (*sides > 0 ? *sides : RIBBON_WALLS), max_walls = kTrianglesAtOnce / a_wall;
       const std::uint32_t last = std::min<std::uint32_t>(static_cast<std::uint32_t>(end) * Tubes::kRunLength, piece.count - 1);
-      for (std::uint32_t wall = static_cast<std::uint32_t>(first) * Tubes::kRunLength; wall < last; wall += most) {
-        const std::uint32_t count = std::min(last - wall, most);
+      for (std::uint32_t wall = static_cast<std::uint32_t>(first) * Tubes::kRunLength; wall < last; wall += max_walls) {
+        const std::uint32_t count = std::min(last - wall, max_walls);
         if (since_pause + count * a_wall > kTrianglesAtOnce) {
           pause();
           since_pause = 0;

@@ -22,7 +22,7 @@ constexpr std::uint32_t kUiFragmentShader[] = {
 };
 constexpr VkFormat kWindowFormat = VK_FORMAT_R8G8B8A8_UNORM;
 
-/// The first pixel whose centre lies at or beyond `edge`, at most `count`. Not a number: 0.
+/// Returns the first pixel whose center lies at or beyond `edge`, at most `count`; 0 for NaN.
 std::uint32_t first_beyond(float edge, std::uint32_t count) {
   const double first = std::ceil(double(edge) - 0.5);
   return first > 0 ? std::uint32_t(std::min(first, double(count))) : 0;
@@ -34,15 +34,15 @@ VkRect2D clip_of(const UiDraw& draw, const VkExtent3D& window) {
   return {{std::int32_t(x0), std::int32_t(y0)}, {x1 > x0 ? x1 - x0 : 0, y1 > y0 ? y1 - y0 : 0}};
 }
 
-/// All of the picture over `area` of the window.
-void show_picture(vk::Commands& commands, const vk::Image& picture, const vk::Image& window, const std::array<std::uint32_t, 4>& area) {
+/// Scales the whole image to `area` of the window.
+void blit_image(vk::Commands& commands, const vk::Image& rendered, const vk::Image& window, const std::array<std::uint32_t, 4>& area) {
   const auto side = [](std::uint32_t v) { return std::int32_t(v); };
   VkImageBlit region{};
   region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-  region.srcOffsets[1] = {side(picture.info().extent.width), side(picture.info().extent.height), 1};
+  region.srcOffsets[1] = {side(rendered.info().extent.width), side(rendered.info().extent.height), 1};
   region.dstOffsets[0] = {side(area[0]), side(area[1]), 0};
   region.dstOffsets[1] = {side(area[2]), side(area[3]), 1};
-  vkCmdBlitImage(commands.handle(), picture.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, window.handle(),
+  vkCmdBlitImage(commands.handle(), rendered.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, window.handle(),
                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_LINEAR);
 }
 
@@ -57,34 +57,34 @@ bool indices_lead_inside(const UiItems& items) {
 
 }  // namespace
 
-/// An image of the window's size; what does not depend on the items.
+/// Creates the window's image of this size and the resources that do not depend on the items.
 Outcome WindowPainter::ensure_window(std::uint32_t width, std::uint32_t height) {
-  const std::uint32_t most = device_->info().limits.maxImageDimension2D;
-  if (width == 0 || height == 0 || width > most || height > most)
-    return Error{fmt::format("a window of {} x {} pixels cannot be painted, expected 1 to {} each way", width, height, most)};
+  const std::uint32_t max_size = device_->info().limits.maxImageDimension2D;
+  if (width == 0 || height == 0 || width > max_size || height > max_size)
+    return Error{fmt::format("a window of {} x {} pixels cannot be rendered, expected 1 to {} in each direction", width, height, max_size)};
   const VkExtent3D& have = window_.info().extent;
   if (!window_ || have.width != width || have.height != height) {
     vk::ImageInfo info;
     info.format = kWindowFormat;
     info.extent = {width, height, 1};
     info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-    window_ = vk::Image();  // the old one's memory first
+    window_ = vk::Image();  // frees the old image first
     CATENA_TRY(window_, vk::Image::create(*device_, info));
   }
   return vk::write_uniform(*device_, uniform_, shared::UiData{{0.5f * float(width), 0.5f * float(height)}});
 }
 
 Outcome WindowPainter::retain_texture(const std::shared_ptr<const UiTexture>& texture) {
-  Texture& kept = textures_[texture];
-  kept.last_used = paint_count_;
-  if (kept.image) return Done{};
+  Texture& reused = textures_[texture];
+  reused.last_used = paint_count_;
+  if (reused.image) return Done{};
   CATENA_ASSERT(texture->width > 0 && texture->height > 0 && texture->rgba.size() == std::size_t(4) * texture->width * texture->height);
   vk::ImageInfo info;
   info.format = VK_FORMAT_R8G8B8A8_UNORM;
   info.extent = {texture->width, texture->height, 1};
   info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-  CATENA_TRY(kept.image, vk::Image::create(*device_, info));
-  return vk::upload_planes(*device_, kept.image, 1, [&](std::uint32_t, std::uint32_t, std::byte* out) {
+  CATENA_TRY(reused.image, vk::Image::create(*device_, info));
+  return vk::upload_planes(*device_, reused.image, 1, [&](std::uint32_t, std::uint32_t, std::byte* out) {
     std::memcpy(out, texture->rgba.data(), texture->rgba.size());
   });
 }
@@ -134,13 +134,13 @@ void WindowPainter::record(vk::Commands& commands, const UiItems& items) {
   commands.end_pass();
 }
 
-Outcome WindowPainter::paint(vk::Image& picture, std::uint32_t width, std::uint32_t height, const UiItems& items) {
+Outcome WindowPainter::paint(vk::Image& rendered, std::uint32_t width, std::uint32_t height, const UiItems& items) {
   ++paint_count_;
   CATENA_CHECK(ensure_window(width, height));
   CATENA_CHECK(upload(items));
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device_));
-  commands.transition(picture, vk::kTransferRead);
-  // the window may be smaller by now than when its area was worked out
+  commands.transition(rendered, vk::kTransferRead);
+  // the window may have shrunk since its image area was computed
   const std::array<std::uint32_t, 4> whole{0, 0, width, height};
   std::array<std::uint32_t, 4> area = items.image_area.value_or(whole);
   area = {area[0], area[1], std::min(area[2], width), std::min(area[3], height)};
@@ -151,7 +151,7 @@ Outcome WindowPainter::paint(vk::Image& picture, std::uint32_t width, std::uint3
     commands.end_pass();
   }
   commands.transition(window_, vk::kTransferWrite);
-  show_picture(commands, picture, window_, area);
+  blit_image(commands, rendered, window_, area);
   record(commands, items);
   commands.transition(window_, vk::kTransferRead);
   return commands.finish();

@@ -24,7 +24,7 @@ class WindowPainter {
 
   /// Paints and waits until it is done. An Error for a window of 0 pixels or beyond the device's image size, if memory is short, or if the
   /// device is lost. Indices of the items must be in range.
-  Outcome paint(vk::Image& picture, std::uint32_t width, std::uint32_t height, const UiItems& items);
+  Outcome paint(vk::Image& rendered, std::uint32_t width, std::uint32_t height, const UiItems& items);
   /// Returns the image painted last, in the layout TRANSFER_SRC.
   vk::Image& window() { return window_; }
 

@@ -14,21 +14,24 @@
 namespace catena::render {
 namespace {
 
-constexpr double kDeviations = 3;                     // of the lattice's mean, that an estimate lies above it
-constexpr double kFarTail = 1000, kLeastInTail = 2;   // p999: of so many samples one, of fewer the second
-constexpr double kThinGoal = 6;                       // a thin part may lose that share of the error
-constexpr double kFlickerGoal = 0.5;                  // the flicker, in errors, or in what the picture itself changes by
-constexpr double kTurn = 0.2;                         // degrees a frame, which flicker is measured at
-constexpr double kLookedAt = 4000;                    // pixels, where half a step is tried
-constexpr double kSamples = 6000, kFewSamples = 800;  // covered pixels on the lattice
-constexpr std::uint32_t kSpacings[] = {25, 21, 19, 17, 15, 13, 11, 9, 7, 5, 3, 1};  // pixels; odd, so that no lattice of rays is met alone
-constexpr std::uint32_t kSeenSpacing = 13;                                          // where it is found what is covered
-constexpr std::uint32_t kSparser = 3;   // the lattice that shows at which step rays have converged,
-constexpr double kSparseSamples = 500;  // if it has so many covered pixels
-// steps, voxels: of what is seen, of the fast raycast's rays that what is thin is measured by, and those of the converged picture, which
-// are halved until what is left of its error is less than a share of the goal, or what rounding to 8 bits makes of nothing
-constexpr double kSeenStep = 1, kFineStep = 0.25, kRoughTruthStep = 0.5, kTruthStep = 0.25, kLeastTruthStep = 0.03, kTruthShare = 0.3,
-                 kRoughTruthShare = 0.5;
+constexpr double kDeviations = 3;  // standard deviations of the mean from the estimate to its upper bound
+constexpr double kTailInverse = 1000,
+                 kMinTailSamples = 2;         // tail of the p999: 1 of kTailInverse samples, but at least kMinTailSamples samples
+constexpr double kThinContrastRatio = 6;      // a thin part may lose error / kThinContrastRatio of its contrast
+constexpr double kFlickerGoal = 0.5;          // maximum flicker / max(error goal, flicker of the image itself)
+constexpr double kFlickerRotation_deg = 0.2;  // rotation of the camera between the two frames that flicker is measured on, degrees
+constexpr double kHalfStepSamples = 4000;     // samples of half_step_difference(), in pixels
+constexpr double kFullSamples = 6000, kReducedSamples = 800;  // covered pixels on the sample grid
+constexpr std::uint32_t kSpacings[] = {25, 21, 19, 17, 15, 13,
+                                       11, 9,  7,  5,  3,  1};  // pixels; odd, so that the samples do not fall on one ray grid only
+constexpr std::uint32_t kCoverageSpacing = 13;                  // sample spacing that finds the covered pixels
+constexpr std::uint32_t kSparseFactor = 3;                      // the coarser sample grid on which the reference step is found,
+constexpr double kSparseSamples = 500;                          // if it has at least so many covered pixels
+// Ray steps in voxels: of the coverage; of the fast raycast's reference for thin features; initial steps of the converged reference, for
+// coarse and for other goals, and its minimum. The reference step is halved until its remaining error is below the share of the goal (full,
+// reduced size) or below the error of rounding to 8 bits.
+constexpr double kCoverageStep = 1, kFineStep = 0.25, kCoarseReferenceStep = 0.5, kReferenceStep = 0.25, kMinReferenceStep = 0.03,
+                 kReferenceShare = 0.3, kCoarseReferenceShare = 0.5;
 
 ErrorEstimate compare_over_ground(const Image8& a, const Image8& b) {
   PixelErrors errors = compute_covered_errors(a, b);
@@ -40,36 +43,36 @@ ErrorEstimate compare_over_ground(const Image8& a, const Image8& b) {
     squares += here * here;
   }
   const double mean = sum / count, variance = std::max(0.0, squares / count - mean * mean);
-  // of few samples the largest alone says little of the 99.9 percentile
-  const double tail = std::max(1 / kFarTail, kLeastInTail / count);
+  // of few samples the maximum alone says little about the 99.9 percentile
+  const double tail = std::max(1 / kTailInverse, kMinTailSamples / count);
   return {std::sqrt(mean), std::sqrt(mean + kDeviations * std::sqrt(variance / count)),
           quantile(errors.max_channel, 1 - std::min(1.0, tail))};
 }
 
-/// A picture that lies over the first ground, over the one of that number: the second is white, and then the first was black.
-Image8 over_ground(Image8 picture, std::size_t ground) {
-  if (ground == 0) return picture;
-  for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
-    for (std::size_t c = i; c < i + 3; ++c) picture.rgba[c] = std::uint8_t(std::min(255, picture.rgba[c] + 255 - picture.rgba[i + 3]));
-  return picture;
+/// Moves an image composited over the first background to background `ground`; the second background is white, and then the first is black.
+Image8 over_ground(Image8 rendered, std::size_t ground) {
+  if (ground == 0) return rendered;
+  for (std::size_t i = 0; i < rendered.rgba.size(); i += 4)
+    for (std::size_t c = i; c < i + 3; ++c) rendered.rgba[c] = std::uint8_t(std::min(255, rendered.rgba[c] + 255 - rendered.rgba[i + 3]));
+  return rendered;
 }
 
-/// The same seen by a camera that has gone a little around its target.
+/// Returns the packet with the camera rotated by kFlickerRotation_deg around its target.
 FramePacket orbit_view(const FramePacket& packet) {
   FramePacket out = packet;
-  const Vec3 turn = direction(packet.view.up) * (kTurn * std::numbers::pi / 180);
+  const Vec3 turn = direction(packet.view.up) * (kFlickerRotation_deg * std::numbers::pi / 180);
   out.view.position = packet.view.target + rotate(rotation_from_vector(turn), packet.view.position - packet.view.target);
   return out;
 }
 
-/// The lattice's pixels of a finished picture.
-Image8 on_lattice(const Image8& picture, std::uint32_t spacing) {
+/// Returns the pixels of a rendered image that lie on the sample grid.
+Image8 subsample(const Image8& rendered, std::uint32_t spacing) {
   Image8 out;
-  out.width = (picture.width + spacing - 1) / spacing;
-  out.height = (picture.height + spacing - 1) / spacing;
-  for (std::uint32_t y = 0; y < picture.height; y += spacing)
-    for (std::uint32_t x = 0; x < picture.width; x += spacing)
-      out.rgba.insert(out.rgba.end(), picture.pixel(x, y), picture.pixel(x, y) + 4);
+  out.width = (rendered.width + spacing - 1) / spacing;
+  out.height = (rendered.height + spacing - 1) / spacing;
+  for (std::uint32_t y = 0; y < rendered.height; y += spacing)
+    for (std::uint32_t x = 0; x < rendered.width; x += spacing)
+      out.rgba.insert(out.rgba.end(), rendered.pixel(x, y), rendered.pixel(x, y) + 4);
   return out;
 }
 
@@ -85,13 +88,13 @@ ErrorEstimator::ErrorEstimator(Renderer& renderer, const FramePacket& packet, Es
 }
 
 Outcome ErrorEstimator::begin(double goal, bool moves) {
-  // exact rays come first: what a large grid needs for them and for the fast raycast is not held at once
-  CATENA_TRY(const Image8 seen, renderer_.sample_rays(packet_, converged_level(kSeenStep), kSeenSpacing));
+  // exact rays first, so that a large grid's data for them and for the fast raycast are not held at once
+  CATENA_TRY(const Image8 coverage, renderer_.sample_rays(packet_, converged_level(kCoverageStep), kCoverageSpacing));
   double covered = 0;
-  for (std::size_t i = 3; i < seen.rgba.size(); i += 4) covered += seen.rgba[i] > 0;
-  covered *= double(packet_.width) * packet_.height / (double(seen.rgba.size()) / 4);
+  for (std::size_t i = 3; i < coverage.rgba.size(); i += 4) covered += coverage.rgba[i] > 0;
+  covered *= double(packet_.width) * packet_.height / (double(coverage.rgba.size()) / 4);
   covered_pixels_ = std::max(1.0, covered);
-  const double samples = size_ == EstimatorSize::full ? kSamples : kFewSamples;
+  const double samples = size_ == EstimatorSize::full ? kFullSamples : kReducedSamples;
   for (const std::uint32_t spacing : kSpacings) {
     spacing_ = spacing;
     if (covered / (spacing * spacing) >= samples) break;
@@ -109,29 +112,30 @@ Outcome ErrorEstimator::begin(double goal, bool moves) {
 
 Result<bool> ErrorEstimator::prepare_fast() {
   if (!renderer_.can_draw_fast(packet_)) return false;
-  // it may have no memory for the grid
-  CATENA_CHECK(renderer_.sample_rays(packet_, fast_level(kSeenStep, 1, 0, -1), kSeenSpacing));
+  // the memory may not suffice for the grid
+  CATENA_CHECK(renderer_.sample_rays(packet_, fast_level(kCoverageStep, 1, 0, -1), kCoverageSpacing));
   return uses_fast_raycast_ = renderer_.can_draw_fast(packet_);
 }
 
-/// Opaque things of steep transfer functions want far shorter steps than haze does.
+/// Opaque regions of steep transfer functions require much shorter steps than translucent ones.
 Outcome ErrorEstimator::find_reference(double goal) {
-  const bool sparser = covered_pixels_ / std::pow(kSparser * spacing_, 2) >= kSparseSamples;
-  const std::uint32_t spacing = sparser ? kSparser * spacing_ : spacing_;
-  RenderSettings converged = converged_level(goal < kCoarseErrorGoal ? kTruthStep : kRoughTruthStep);
+  const bool sparser = covered_pixels_ / std::pow(kSparseFactor * spacing_, 2) >= kSparseSamples;
+  const std::uint32_t spacing = sparser ? kSparseFactor * spacing_ : spacing_;
+  RenderSettings converged = converged_level(goal < kCoarseErrorGoal ? kReferenceStep : kCoarseReferenceStep);
   CATENA_TRY(reference_, renderer_.sample_rays(packet_, converged, spacing));
   double before = 0;
   do {
     converged.step_voxels /= 2;
     CATENA_TRY(Image8 finer, renderer_.sample_rays(packet_, converged, spacing));
     const double change = compare(reference_, finer).rmse;
-    // what is left where changes become r times smaller each time: by the root of two where edges leap from pixel to pixel, which opacities
-    // that rise at once make, at least
+    // Remaining error of a geometric series of changes with ratio 1/r: r >= sqrt(2), the ratio where edges of a step in opacity jump from
+    // pixel to pixel; r <= 4.
     reference_error_ = change / (std::clamp(before > 0 ? before / std::max(change, 1e-30) : 2.0, std::numbers::sqrt2, 4.0) - 1);
     before = change;
     reference_ = std::move(finer);
-  } while (reference_error_ > std::max(kMinReportedRmse, (size_ == EstimatorSize::reduced ? kRoughTruthShare : kTruthShare) * goal) &&
-           converged.step_voxels > kLeastTruthStep);
+  } while (reference_error_ >
+               std::max(kMinReportedRmse, (size_ == EstimatorSize::reduced ? kCoarseReferenceShare : kReferenceShare) * goal) &&
+           converged.step_voxels > kMinReferenceStep);
   reference_step_ = converged.step_voxels;
   if (!sparser) return Done{};
   CATENA_TRY(reference_, renderer_.sample_rays(packet_, converged, spacing_));
@@ -139,12 +143,12 @@ Outcome ErrorEstimator::find_reference(double goal) {
 }
 
 Result<double> ErrorEstimator::half_step_difference(const RenderSettings& settings) const {
-  const auto spacing = std::max(1u, std::uint32_t(std::sqrt(double(packet_.width) * packet_.height / kLookedAt)));
+  const auto spacing = std::max(1u, std::uint32_t(std::sqrt(double(packet_.width) * packet_.height / kHalfStepSamples)));
   RenderSettings half = settings;
   half.step_voxels /= 2;
-  CATENA_TRY(const Image8 picture, renderer_.sample_rays(packet_, settings, spacing));
+  CATENA_TRY(const Image8 rendered, renderer_.sample_rays(packet_, settings, spacing));
   CATENA_TRY(const Image8 finer, renderer_.sample_rays(packet_, half, spacing));
-  return compare(picture, finer).rmse;
+  return compare(rendered, finer).rmse;
 }
 
 bool ErrorEstimator::is_shaded() const { return std::ranges::any_of(packet_.volumes, &VolumeItem::is_shaded); }
@@ -184,7 +188,7 @@ std::vector<double> ErrorEstimator::flicker(const Image8& last, const Image8& la
   return each;
 }
 
-/// With what is left of the converged rays' own error, as far as it is more than rounding makes of nothing.
+/// Returns the error of the last samples. The upper bound includes the reference's own error as far as it exceeds the error of rounding.
 ErrorEstimate ErrorEstimator::compare_to_reference() const {
   ErrorEstimate error = compare(last_samples_, reference_);
   error.upper_bound =
@@ -198,30 +202,30 @@ Result<std::array<double, 2>> ErrorEstimator::refined_shares() const {
 }
 
 Result<bool> ErrorEstimator::preserves_thin_features(double e) {
-  CATENA_TRY(const Image8 picture, renderer_.read_back());
+  CATENA_TRY(const Image8 rendered, renderer_.read_back());
   if (fast_reference_.rgba.empty()) {
     CATENA_CHECK(renderer_.draw(packet_, fast_level(kFineStep, 1, 0, -1, is_shaded())));
     CATENA_TRY(fast_reference_, renderer_.read_back());
     ++images_rendered_;
   }
   for (const std::array<float, 3>& ground : backgrounds_) {
-    const ImageError error = measure_error(picture, fast_reference_, ground);
-    if (error.min_thin_retained < 1 - e / kThinGoal || error.p999 > kMaxP999Ratio * e) return false;
+    const ImageError error = measure_error(rendered, fast_reference_, ground);
+    if (error.min_thin_retained < 1 - e / kThinContrastRatio || error.p999 > kMaxP999Ratio * e) return false;
   }
   return true;
 }
 
 bool ErrorEstimator::samples_preserve_thin_features(double e) const {
   for (std::size_t ground = 0; ground < backgrounds_.size(); ++ground)
-    if (measure_error(over_ground(last_samples_, ground), over_ground(reference_, ground)).min_thin_retained < 1 - e / kThinGoal)
+    if (measure_error(over_ground(last_samples_, ground), over_ground(reference_, ground)).min_thin_retained < 1 - e / kThinContrastRatio)
       return false;
   return true;
 }
 
-/// Of the picture that was drawn last.
+/// Returns the samples of the image rendered last.
 Result<Image8> ErrorEstimator::render_samples() {
-  CATENA_TRY(const Image8 picture, renderer_.read_back());
-  return composite_over(on_lattice(picture, spacing_), backgrounds_.front());
+  CATENA_TRY(const Image8 rendered, renderer_.read_back());
+  return composite_over(subsample(rendered, spacing_), backgrounds_.front());
 }
 
 bool ErrorEstimator::is_stable(const Image8& after) const {

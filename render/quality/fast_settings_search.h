@@ -16,7 +16,7 @@ namespace catena::render {
 class FastSettingsSearch {
  public:
   /// `error`: goal for the covered RMSE, 1/255.
-  FastSettingsSearch(ErrorEstimator& lattice, double error, const SearchProgress& progress);
+  FastSettingsSearch(ErrorEstimator& estimator, double error, const SearchProgress& progress);
   /// Returns the best choice; nullopt if no settings meet the goal.
   Result<std::optional<QualityChoice>> find();
 

@@ -9,9 +9,9 @@
 namespace catena::render {
 namespace {
 
-constexpr double kBegun = 0.25;  // of a search, what makes its converged rays
+constexpr double kReferenceProgress = 0.25;  // progress when the reference is rendered
 
-/// The packet as its first eye sees it.
+/// Returns the packet as a single view, from its first eye.
 FramePacket first_eye(const FramePacket& packet) {
   FramePacket one = packet;
   one.view = packet.eyes.front();
@@ -42,26 +42,26 @@ Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& pack
   }
   if (!uses_raycast(packet)) return QualityChoice{balanced_settings(), 0, 0, true, 0};
   const bool has_error = goal.kind == QualityGoal::Kind::error, once = has_error && goal.single_image;
-  ErrorEstimator lattice(renderer, packet, once ? EstimatorSize::reduced : EstimatorSize::full);
-  CATENA_CHECK(lattice.begin(has_error ? goal.value : 0, has_error && !once));
-  const SearchProgress told = [&progress](double done) {
-    if (progress) progress(kBegun + (1 - kBegun) * done);
+  ErrorEstimator estimator(renderer, packet, once ? EstimatorSize::reduced : EstimatorSize::full);
+  CATENA_CHECK(estimator.begin(has_error ? goal.value : 0, has_error && !once));
+  const SearchProgress report = [&progress](double done) {
+    if (progress) progress(kReferenceProgress + (1 - kReferenceProgress) * done);
   };
-  told(0);
-  CATENA_TRY(QualityChoice chosen, once        ? find_settings_for_single_image(lattice, goal.value)
-                                   : has_error ? find_settings_for_error(lattice, goal.value, told)
-                                               : find_settings_for_time(lattice, goal.value, told, timer));
-  chosen.is_empty = lattice.empty();
+  report(0);
+  CATENA_TRY(QualityChoice chosen, once        ? find_settings_for_single_image(estimator, goal.value)
+                                   : has_error ? find_settings_for_error(estimator, goal.value, report)
+                                               : find_settings_for_time(estimator, goal.value, report, timer));
+  chosen.is_empty = estimator.empty();
   return chosen;
 }
 
 Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {
   if (!packet.eyes.empty()) return estimate_rmse(renderer, first_eye(packet), settings);
   if (!uses_raycast(packet)) return 0.0;
-  ErrorEstimator lattice(renderer, packet);
-  // what is coarse is told from a truth that is quicker to have
-  CATENA_CHECK(lattice.begin(settings.fast && settings.fast->step_voxels >= 1 ? kCoarseErrorGoal : 0));
-  CATENA_TRY(const ErrorEstimate error, lattice.estimate_image(settings));
+  ErrorEstimator estimator(renderer, packet);
+  // for coarse settings a reference with a longer step suffices
+  CATENA_CHECK(estimator.begin(settings.fast && settings.fast->step_voxels >= 1 ? kCoarseErrorGoal : 0));
+  CATENA_TRY(const ErrorEstimate error, estimator.estimate_image(settings));
   return error.upper_bound;
 }
 
@@ -72,16 +72,16 @@ Result<double> half_step_difference(Renderer& renderer, const FramePacket& packe
 }
 
 Result<MeasuredSettings> measure_rmse(Renderer& renderer, const FramePacket& packet, const std::vector<RenderSettings>& settings,
-                                      const std::function<bool(double last)>& go_on) {
-  if (!packet.eyes.empty()) return measure_rmse(renderer, first_eye(packet), settings, go_on);
+                                      const std::function<bool(double last)>& should_continue) {
+  if (!packet.eyes.empty()) return measure_rmse(renderer, first_eye(packet), settings, should_continue);
   MeasuredSettings all;
-  ErrorEstimator lattice(renderer, packet);
-  CATENA_CHECK(lattice.begin(kMinReportedRmse));
-  all.reference_rmse = lattice.reference_error();
+  ErrorEstimator estimator(renderer, packet);
+  CATENA_CHECK(estimator.begin(kMinReportedRmse));
+  all.reference_rmse = estimator.reference_error();
   for (const RenderSettings& next : settings) {
-    if (!go_on(all.rmse.empty() ? 0 : all.rmse.back())) break;
-    // rays alone are what an exact picture is made of
-    CATENA_TRY(const ErrorEstimate error, next.fast ? lattice.estimate_image(next) : lattice.estimate_rays(next));
+    if (!should_continue(all.rmse.empty() ? 0 : all.rmse.back())) break;
+    // an exact image consists of rays alone
+    CATENA_TRY(const ErrorEstimate error, next.fast ? estimator.estimate_image(next) : estimator.estimate_rays(next));
     all.rmse.push_back(error.rmse);
   }
   return all;

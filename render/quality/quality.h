@@ -74,10 +74,10 @@ struct MeasuredSettings {
   std::vector<double> rmse;   ///< one per setting: the estimate itself, not its upper bound
   double reference_rmse = 0;  ///< remaining error of the reference
 };
-/// Measures the settings one by one. `go_on` is called before each of them with the error of the previous one (0 for the first); if it
-/// returns false, the remaining settings are left out.
+/// Measures the settings one by one. `should_continue` is called before each of them with the error of the previous one (0 for the first);
+/// if it returns false, the remaining settings are left out.
 Result<MeasuredSettings> measure_rmse(Renderer& renderer, const FramePacket& packet, const std::vector<RenderSettings>& settings,
-                                      const std::function<bool(double last)>& go_on);
+                                      const std::function<bool(double last)>& should_continue);
 
 /// Returns the error of a single setting.
 Result<double> measure_single_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings);

@@ -13,14 +13,15 @@
 namespace catena::render {
 namespace {
 
-constexpr double kRays = 250;             // groups of them through the whole picture
-constexpr double kEvery = 2;              // voxels between the samples here,
-constexpr double kMostSamples = 4096;     // of which a ray has so many at most
-constexpr int kBeside = 3;                // samples in what is empty beside what is seen, in the same brick of 8
-constexpr double kLeastLight = 1 / 256.;  // where a ray ends
-constexpr std::array<double, 2> kTogether[] = {{-1.5, -0.5}, {1.5, -0.5}, {-1.5, 0.5}, {1.5, 0.5}};  // pixels: of 4 x 2 in a vector's lanes
+constexpr double kRayGroups = 250;              // groups of rays through the image
+constexpr double kSampleDistance = 2;           // distance of the samples, voxels
+constexpr double kMaxSamples = 4096;            // maximum samples per ray
+constexpr int kSamplesBeside = 3;               // samples taken in empty space beside visible space, in the same brick of 8
+constexpr double kMinTransmittance = 1 / 256.;  // transmittance at which a ray ends
+constexpr std::array<double, 2> kGroupOffsets[] = {
+    {-1.5, -0.5}, {1.5, -0.5}, {-1.5, 0.5}, {1.5, 0.5}};  // pixels: the corners of the 4 x 2 pixels that are marched together
 
-/// The part of a ray in a box of index space; empty: lo > hi.
+/// Part of a ray in a box of index space; empty if lo > hi.
 struct Part {
   double lo = 0, hi = 1e300;
   void cut(double origin, double along, double from, double to) {
@@ -46,24 +47,24 @@ Part part_of(const Ray& ray, const VolumeItem& item, const FramePacket& packet) 
   return part;
 }
 
-/// What a ray does, by the sample: true where it meets an extinction.
+/// Lists the samples that a ray takes; true: the extinction there is positive. A projection takes all samples.
 void follow(const Ray& ray, const Part& part, double step, const VolumeItem& item, std::vector<bool>& samples) {
   samples.clear();
   const bool ends = item.projection == Projection::composite;
   field::Cursor cursor;
-  double light = 1;
-  int empty = kBeside;  // samples since what was seen last
-  for (double at = part.lo + 0.5 * step; at < part.hi && light > kLeastLight; at += step) {
+  double transmittance = 1;
+  int empty = kSamplesBeside;  // samples since the last visible one
+  for (double at = part.lo + 0.5 * step; at < part.hi && transmittance > kMinTransmittance; at += step) {
     const field::ScalarSample sample = item.grid->sample(ray.origin + at * ray.direction, cursor);
     const double sigma = sample.inside ? table_value(item.transfer, sample.value, 3) : 0;
     if (sigma > 0 || !ends) {
-      samples.insert(samples.end(), std::size_t(std::clamp(empty - kBeside, 0, kBeside)), false);
+      samples.insert(samples.end(), std::size_t(std::clamp(empty - kSamplesBeside, 0, kSamplesBeside)), false);
       samples.push_back(true);
       empty = 0;
-    } else if (++empty <= kBeside) {
+    } else if (++empty <= kSamplesBeside) {
       samples.push_back(false);
     }
-    if (ends) light *= std::exp(-sigma * step);
+    if (ends) transmittance *= std::exp(-sigma * step);
   }
 }
 
@@ -72,7 +73,7 @@ void follow(const Ray& ray, const Part& part, double step, const VolumeItem& ite
 RayPathLength measure_ray_path_length(const FramePacket& packet) {
   Bounds bounds;
   for (const VolumeItem& item : packet.volumes) bounds.extend(field::world_bounds(item.grid->mapping(), item.grid->index_box()));
-  const double width = packet.width, height = packet.height, spacing = std::max(1.0, std::sqrt(width * height / kRays));
+  const double width = packet.width, height = packet.height, spacing = std::max(1.0, std::sqrt(width * height / kRayGroups));
   const Camera camera = make_camera(packet.view, width, height, bounds);
   RayPathLength way;
   double groups = 0;
@@ -81,10 +82,10 @@ RayPathLength measure_ray_path_length(const FramePacket& packet) {
     for (double x = 0.5 * spacing; x < width; x += spacing, ++groups)
       for (const VolumeItem& item : packet.volumes) {
         const double edge = item.grid->mapping().min_voxel_edge(),
-                     every = std::max(kEvery,
-                                      field::world_bounds(item.grid->mapping(), item.grid->index_box()).diagonal() / edge / kMostSamples);
+                     every = std::max(kSampleDistance,
+                                      field::world_bounds(item.grid->mapping(), item.grid->index_box()).diagonal() / edge / kMaxSamples);
         together.clear();
-        for (const auto [right, down] : kTogether) {
+        for (const auto [right, down] : kGroupOffsets) {
           const Ray ray = pixel_ray(camera, x + right, y + down);
           const Part part = part_of(ray, item, packet);
           if (part.lo >= part.hi) continue;

@@ -10,17 +10,18 @@
 namespace catena::render {
 namespace {
 
-constexpr double kFirstGuessMs = 400;  // a unit of cost at a megapixel on two CPU cores
-constexpr double kFinerBelow = 0.7;    // of the budget, likewise for pixels
-constexpr double kUpBelow = 0.85;      // of the budget: a better rung is taken only with some room, or it would come and go
+constexpr double kFirstGuessMs = 400;  // initial guess of the time per unit of cost, at one megapixel on two CPU cores
+constexpr double kFinerBelow = 0.7;    // share of the budget below which the pixels get finer
+constexpr double kUpBelow =
+    0.85;  // share of the budget that a better level may take; the rest is a reserve, so that levels do not alternate
 
-/// The share of pixels whose rays are marched, and what interpolation costs beside them.
+/// The share of pixels with marched rays, and the relative cost of interpolation.
 struct Share {
   double rays, overhead;
 };
 Share share_of(const FastSettings& f) {
   if (f.spacing == 1) return {1, 0.03};
-  // a threshold of 3/255 leaves about a third of what is finer
+  // a threshold of 3/255 refines about a third
   const auto refined = [](double threshold_255) { return threshold_255 < 0 ? 0.0 : 1.5 / (1.5 + threshold_255); };
   const double half = f.spacing == 2 ? 1 : refined(f.refine_half_255), full = refined(f.refine_full_255);
   return {0.1 + 0.2 * half + 0.7 * full * half, 0.02 + (half > 0 ? 0.01 : 0) + (full > 0 ? 0.03 : 0)};
@@ -59,27 +60,27 @@ double relative_cost(const RenderSettings& settings, bool shaded) {
 
 namespace {
 
-/// The fast raycast's rungs: step, spacing, thresholds. TrialResult on a head, a heart, vessels, and noise: what lies on the front of error
-/// against time of most of them. What a threshold refines is the data's own; those that refine nothing more take no longer.
-struct FastRung {
+/// Quality levels of the fast raycast. Chosen on a head, a heart, vessels and noise, as the levels on the front of error against time for
+/// most of them. The share that a threshold refines depends on the data; levels that refine no more than others take no longer.
+struct FastLevel {
   double step;
   std::uint32_t spacing;
   double half, full;
-  bool smooth = true;  // where it is lit
+  bool smooth = true;  // smooth gradients, if shaded
 };
-constexpr FastRung kPlain[] = {{8, 4, -1, -1},  {6, 4, -1, -1},  {4, 4, -1, -1},   {3, 4, -1, -1},  {2, 4, -1, -1},  {1.5, 4, -1, -1},
-                               {1, 4, -1, -1},  {1, 4, 24, -1},  {1, 4, 6, -1},    {2, 2, 0, -1},   {1, 2, 0, -1},   {1, 2, 0, 24},
-                               {1, 2, 0, 12},   {1, 2, 0, 4},    {1, 2, 0, 1.5},   {1, 2, 0, 0.6},  {1.5, 1, 0, -1}, {1, 1, 0, -1},
-                               {0.7, 1, 0, -1}, {0.5, 1, 0, -1}, {0.35, 1, 0, -1}, {0.25, 1, 0, -1}};
-// Light wants short steps more than it wants every pixel. With long ones the gradient of the cell is as good as central differences are,
-// at half the time.
-constexpr FastRung kShaded[] = {{8, 4, -1, -1, false}, {4, 4, -1, -1, false}, {2, 4, -1, -1, false}, {4, 4, -1, -1},   {3, 4, -1, -1},
-                                {2, 4, -1, -1},        {1.5, 4, -1, -1},      {1, 4, -1, -1},        {1, 4, 24, -1},   {2, 2, 0, -1},
-                                {1.5, 2, 0, -1},       {1, 2, 0, -1},         {0.7, 2, 0, -1},       {0.5, 2, 0, -1},  {0.5, 2, 0, 24},
-                                {0.5, 2, 0, 12},       {0.5, 2, 0, 4},        {0.5, 2, 0, 1.5},      {0.7, 1, 0, -1},  {0.5, 1, 0, -1},
-                                {0.35, 1, 0, -1},      {0.25, 1, 0, -1},      {0.18, 1, 0, -1},      {0.125, 1, 0, -1}};
-constexpr double kExactLadder[] = {4, 3, 2, 1.5, 1, 0.7, 0.5, 0.35, 0.25};
-// of exact rays that end the fast ones: lit ones have to be a fourth of the fast raycast's to be as good
+constexpr FastLevel kPlain[] = {{8, 4, -1, -1},  {6, 4, -1, -1},  {4, 4, -1, -1},   {3, 4, -1, -1},  {2, 4, -1, -1},  {1.5, 4, -1, -1},
+                                {1, 4, -1, -1},  {1, 4, 24, -1},  {1, 4, 6, -1},    {2, 2, 0, -1},   {1, 2, 0, -1},   {1, 2, 0, 24},
+                                {1, 2, 0, 12},   {1, 2, 0, 4},    {1, 2, 0, 1.5},   {1, 2, 0, 0.6},  {1.5, 1, 0, -1}, {1, 1, 0, -1},
+                                {0.7, 1, 0, -1}, {0.5, 1, 0, -1}, {0.35, 1, 0, -1}, {0.25, 1, 0, -1}};
+// Shading needs short steps more than full resolution. With long steps, cell gradients are as good as central differences, in half the
+// time.
+constexpr FastLevel kShaded[] = {{8, 4, -1, -1, false}, {4, 4, -1, -1, false}, {2, 4, -1, -1, false}, {4, 4, -1, -1},   {3, 4, -1, -1},
+                                 {2, 4, -1, -1},        {1.5, 4, -1, -1},      {1, 4, -1, -1},        {1, 4, 24, -1},   {2, 2, 0, -1},
+                                 {1.5, 2, 0, -1},       {1, 2, 0, -1},         {0.7, 2, 0, -1},       {0.5, 2, 0, -1},  {0.5, 2, 0, 24},
+                                 {0.5, 2, 0, 12},       {0.5, 2, 0, 4},        {0.5, 2, 0, 1.5},      {0.7, 1, 0, -1},  {0.5, 1, 0, -1},
+                                 {0.35, 1, 0, -1},      {0.25, 1, 0, -1},      {0.18, 1, 0, -1},      {0.125, 1, 0, -1}};
+constexpr double kExactLevelSteps[] = {4, 3, 2, 1.5, 1, 0.7, 0.5, 0.35, 0.25};
+// steps of the exact levels after the fast ones; shaded ones need a fourth of the fast raycast's step to be as good
 constexpr double kLastSteps[] = {0.25, 0.1, 0.05}, kLastShadedSteps[] = {0.0625, 0.03};
 
 }  // namespace
@@ -87,11 +88,11 @@ constexpr double kLastSteps[] = {0.25, 0.1, 0.05}, kLastShadedSteps[] = {0.0625,
 std::vector<RenderSettings> quality_levels(const QualityLevelOptions& kind) {
   std::vector<RenderSettings> all;
   if (kind.can_draw_fast) {
-    for (const FastRung& r : kind.is_shaded ? std::span<const FastRung>(kShaded) : kPlain)
+    for (const FastLevel& r : kind.is_shaded ? std::span<const FastLevel>(kShaded) : kPlain)
       all.push_back(fast_level(r.step, r.spacing, r.half, r.full, kind.is_shaded && r.smooth));
     for (const double step : kind.is_shaded ? std::span<const double>(kLastShadedSteps) : kLastSteps) all.push_back(exact_level(step));
   } else {
-    for (const double step : kExactLadder) all.push_back(exact_level(step));
+    for (const double step : kExactLevelSteps) all.push_back(exact_level(step));
   }
   std::stable_sort(all.begin(), all.end(), [&](const RenderSettings& a, const RenderSettings& b) {
     return relative_cost(a, kind.is_shaded) < relative_cost(b, kind.is_shaded);
@@ -113,21 +114,21 @@ TimeModel::TimeModel(std::vector<double> costs, double first_guess_ms) : unit_ms
   for (const double cost : costs) levels_.push_back({cost});
 }
 
-double TimeModel::correction_factor(std::size_t rung) const {
+double TimeModel::correction_factor(std::size_t level) const {
   for (std::size_t away = 0; away < levels_.size(); ++away) {
     double factor = 0;
-    if (away <= rung && levels_[rung - away].is_measured) factor = levels_[rung - away].factor;
-    if (rung + away < levels_.size() && levels_[rung + away].is_measured) factor = std::max(factor, levels_[rung + away].factor);
+    if (away <= level && levels_[level - away].is_measured) factor = levels_[level - away].factor;
+    if (level + away < levels_.size() && levels_[level + away].is_measured) factor = std::max(factor, levels_[level + away].factor);
     if (factor > 0) return factor;
   }
   return 1;
 }
 
-void TimeModel::add_measurement(std::size_t rung, double ms) {
-  Level& r = levels_[rung];
-  const double ratio = std::clamp(ms / expected_ms(rung), 0.01, 100.0);
+void TimeModel::add_measurement(std::size_t level, double ms) {
+  Level& r = levels_[level];
+  const double ratio = std::clamp(ms / expected_ms(level), 0.01, 100.0);
   const bool counts = r.is_measured || ratio < 1;
-  r.factor = correction_factor(rung);
+  r.factor = correction_factor(level);
   r.is_measured = true;
   if (!counts) return;
   unit_ms_ *= std::sqrt(ratio);
@@ -137,13 +138,13 @@ void TimeModel::add_measurement(std::size_t rung, double ms) {
 Refinement::Refinement(double budget_ms, const QualityLevelOptions& kind) : budget_ms_(budget_ms), times_({}, 0) {
   std::vector<double> costs;
   for (const RenderSettings& settings : quality_levels(kind)) {
-    // finer rays are for files: a window's picture ends before
+    // finer levels are for image files, not for a window
     if (kind.can_draw_fast ? !settings.fast || settings.fast->step_voxels < 0.5 : settings.step_voxels < 0.5) continue;
     levels_.push_back(settings);
     costs.push_back(relative_cost(settings, kind.is_shaded));
   }
   times_ = TimeModel(std::move(costs), kFirstGuessMs);
-  // the last rung of every spacing; without the fast raycast, where the step is half of that of the stop before
+  // stops: the last level of each spacing; without the fast raycast, levels whose step is half of the previous stop's
   double step = 1e9;
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     const bool last = i + 1 == levels_.size();
@@ -162,15 +163,15 @@ std::size_t Refinement::best_within_budget() const {
   return best;
 }
 
-std::size_t Refinement::next_stop(std::size_t rung) const {
-  const auto next = std::upper_bound(stops_.begin(), stops_.end(), rung);
+std::size_t Refinement::next_stop(std::size_t level) const {
+  const auto next = std::upper_bound(stops_.begin(), stops_.end(), level);
   return next == stops_.end() ? levels_.size() - 1 : *next;
 }
 
-RefinementStep Refinement::make_step(std::size_t rung) {
-  last_level_ = rung;
+RefinementStep Refinement::make_step(std::size_t level) {
+  last_level_ = level;
   is_pending_ = true;
-  return {levels_[rung], times_.expected_ms(rung), rung + 1 == levels_.size()};
+  return {levels_[level], times_.expected_ms(level), level + 1 == levels_.size()};
 }
 
 std::optional<RefinementStep> Refinement::next(bool changed) {

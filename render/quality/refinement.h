@@ -50,12 +50,12 @@ class TimeModel {
  public:
   TimeModel(std::vector<double> costs, double first_guess_ms);
   /// Updates the prediction with the measured time of an image of that level.
-  void add_measurement(std::size_t rung, double ms);
+  void add_measurement(std::size_t level, double ms);
   /// Returns the expected time of an image of that level.
-  double expected_ms(std::size_t rung) const { return unit_ms_ * levels_[rung].cost * correction_factor(rung); }
+  double expected_ms(std::size_t level) const { return unit_ms_ * levels_[level].cost * correction_factor(level); }
 
  private:
-  double correction_factor(std::size_t rung) const;
+  double correction_factor(std::size_t level) const;
 
   struct Level {
     double cost = 0, factor = 1;
@@ -95,8 +95,8 @@ class Refinement {
  private:
   std::size_t best_within_budget() const;
   /// Returns the next better stop on the way to the last level, or the last level itself.
-  std::size_t next_stop(std::size_t rung) const;
-  RefinementStep make_step(std::size_t rung);
+  std::size_t next_stop(std::size_t level) const;
+  RefinementStep make_step(std::size_t level);
 
   double budget_ms_;
   std::vector<RenderSettings> levels_;

@@ -11,13 +11,13 @@
 namespace catena::render {
 namespace {
 
-constexpr double kUneven = 1.1;  // of the ideal time: threads wait for each other
+constexpr double kThreadImbalance = 1.1;  // factor on the ideal time, because threads wait for each other
 
-/// Of a driver that draws with the processor: a thread a core, or as many as it is told.
+/// Returns the number of threads of a driver that draws on the CPU: one per core, or LP_NUM_THREADS.
 double drawing_threads() {
   const double cores = std::max(1u, std::thread::hardware_concurrency());
-  const char* told = std::getenv("LP_NUM_THREADS");
-  const double threads = told != nullptr ? std::atof(told) : cores;
+  const char* report = std::getenv("LP_NUM_THREADS");
+  const double threads = report != nullptr ? std::atof(report) : cores;
   return threads >= 1 ? std::min(threads, cores) : cores;
 }
 
@@ -37,7 +37,7 @@ double RenderTimer::now_ns() const {
 
 double RenderTimer::elapsed_ms() const {
   const double ms = 1e-6 * (now_ns() - start_ns_);
-  return source_ == ClockSource::cpu ? kUneven * ms / drawing_threads() : ms;
+  return source_ == ClockSource::cpu ? kThreadImbalance * ms / drawing_threads() : ms;
 }
 
 Result<double> measure_render_ms(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {

@@ -19,13 +19,14 @@ inline constexpr double kPlateauRatio = 0.95;  ///< an error above this fraction
 void set_termination_for(double error, RenderSettings& settings);
 
 /// Returns a choice with the data of the estimator.
-QualityChoice make_choice(const ErrorEstimator& lattice, const RenderSettings& settings, double error, bool reached = true);
+QualityChoice make_choice(const ErrorEstimator& estimator, const RenderSettings& settings, double error, bool reached = true);
 
 /// Searches for the cheapest settings with an error of at most `e`, 1/255.
-Result<QualityChoice> find_settings_for_error(ErrorEstimator& lattice, double e, const SearchProgress& progress);
+Result<QualityChoice> find_settings_for_error(ErrorEstimator& estimator, double e, const SearchProgress& progress);
 /// Searches for settings of an image that is rendered only once; the estimator may be of reduced size.
-Result<QualityChoice> find_settings_for_single_image(ErrorEstimator& lattice, double e);
+Result<QualityChoice> find_settings_for_single_image(ErrorEstimator& estimator, double e);
 /// Searches for the settings with the smallest error within `ms` milliseconds.
-Result<QualityChoice> find_settings_for_time(ErrorEstimator& lattice, double ms, const SearchProgress& progress, const RenderTimeFn& timer);
+Result<QualityChoice> find_settings_for_time(ErrorEstimator& estimator, double ms, const SearchProgress& progress,
+                                             const RenderTimeFn& timer);
 
 }  // namespace catena::render

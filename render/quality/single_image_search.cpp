@@ -14,13 +14,14 @@
 namespace catena::render {
 namespace {
 
-// Work, in samples of unlit exact rays: a sample that is lit; a voxel in the form of fast rays, where processor or GPU draw, and with its
-// gradient so many times that; a picture of fast rays and their search, as a share of that of exact ones of step 1, unlit and lit (a lit
-// fast ray reads its gradient, where an exact one differentiates the cell); and that from which on interpolation is tried.
-constexpr double kLit = 8, kPacking = 4.5, kPackingForGpu = 200, kWithGradient = 2, kFastShare = 0.5, kLitFastShare = 0.3,
-                 kWorthTrying = 4.5e7;
-constexpr std::array<double, 2> kRefine[] = {{1, 3}, {0.4, 1}};  // errors above which every 2nd, every pixel is marched
-constexpr double kFirstExactStep = 1.4, kFirstFastStep = 2;      // voxels
+// Work in units of samples of unshaded exact rays: a shaded sample; packing a voxel for fast rays, with a CPU and with a GPU driver, and
+// its factor with gradients; an image of fast rays with its search, as a share of exact rays of step 1, unshaded and shaded (a shaded fast
+// ray reads its gradient, an exact one differentiates the cell); minimum work for which interpolation is tried.
+constexpr double kShadedSample = 8, kPacking = 4.5, kPackingForGpu = 200, kWithGradient = 2, kFastShare = 0.5, kShadedFastShare = 0.3,
+                 kMinInterpolationWork = 4.5e7;
+constexpr std::array<double, 2> kRefine[] = {
+    {1, 3}, {0.4, 1}};  // refinement thresholds at every 2nd pixel and at every pixel, as shares of the error goal
+constexpr double kFirstExactStep = 1.4, kFirstFastStep = 2;  // voxels
 
 RenderSettings fast_rays(double step, double error, bool smooth) {
   RenderSettings s = fast_level(step, 1, 0, -1, smooth);
@@ -41,7 +42,7 @@ double SingleImageSearch::packing_work() const {
 }
 
 double SingleImageSearch::ray_work(double step) const {
-  return (path_length_.marched + (estimator_.is_shaded() ? kLit - 1 : 0) * path_length_.visible) * (kFixedRayCost + 1 / step);
+  return (path_length_.marched + (estimator_.is_shaded() ? kShadedSample - 1 : 0) * path_length_.visible) * (kFixedRayCost + 1 / step);
 }
 
 template <class MakeSettings>
@@ -69,7 +70,7 @@ Result<std::optional<SingleImageSearch::RayCandidate>> SingleImageSearch::find_l
 }
 
 Result<std::optional<SingleImageSearch::RayCandidate>> SingleImageSearch::find_exact() const {
-  // they are judged by what is finer than they are
+  // the reference must be finer than the tested step
   const auto fine = std::ranges::find_if(kExactSteps, [this](double step) { return step < 2 * estimator_.reference_step(); });
   return find_longest_step({std::begin(kExactSteps), fine}, kFirstExactStep, 1, exact_level);
 }
@@ -104,7 +105,7 @@ Result<std::optional<QualityChoice>> SingleImageSearch::find() {
     return chosen(exact_rays);
   }
   path_length_ = measure_ray_path_length(estimator_.packet());
-  const double packing = packing_work(), fast_work = (estimator_.is_shaded() ? kLitFastShare : kFastShare) * ray_work(1);
+  const double packing = packing_work(), fast_work = (estimator_.is_shaded() ? kShadedFastShare : kFastShare) * ray_work(1);
   const bool exact_first = ray_work(kExactSteps[0]) <= packing + fast_work;
   if (exact_first) {
     CATENA_TRY(exact_rays, find_exact());
@@ -121,9 +122,9 @@ Result<std::optional<QualityChoice>> SingleImageSearch::find() {
     }
     return chosen(exact_rays);
   }
-  if (fast_work > kWorthTrying) {
-    CATENA_TRY(const std::optional<QualityChoice> picture, find_interpolated(*rays));
-    if (picture) return picture;
+  if (fast_work > kMinInterpolationWork) {
+    CATENA_TRY(const std::optional<QualityChoice> image, find_interpolated(*rays));
+    if (image) return image;
   }
   return chosen(rays);
 }

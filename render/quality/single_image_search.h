@@ -26,7 +26,7 @@ namespace catena::render {
 class SingleImageSearch {
  public:
   /// `error`: goal for the covered RMSE, 1/255.
-  SingleImageSearch(ErrorEstimator& lattice, double error) : estimator_(lattice), error_(error) {}
+  SingleImageSearch(ErrorEstimator& estimator, double error) : estimator_(estimator), error_(error) {}
   /// Returns the choice; nullopt if no rays meet the goal.
   Result<std::optional<QualityChoice>> find();
 

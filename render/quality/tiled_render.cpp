@@ -13,7 +13,7 @@
 namespace catena::render {
 namespace {
 
-/// The samples of one drawn tile.
+/// Samples of one rendered tile.
 struct Samples {
   Image8 bytes;
   ImageF32 floats;
@@ -23,8 +23,8 @@ struct Samples {
 
 std::uint8_t to_byte(float x) { return std::uint8_t(std::lround(255 * std::clamp(x, 0.0f, 1.0f))); }
 
-/// Puts a tile's pixels in their place; its samples are the pixels.
-void place(const Samples& from, const TileArea& area, const BandChannels& wants, Band& to) {
+/// Copies a tile's pixels to their place in the band, for one sample per pixel.
+void copy_tile(const Samples& from, const TileArea& area, const BandChannels& requested, Band& to) {
   const std::uint32_t dx = area.x - area.render_x, dy = area.y - area.render_y;
   for (std::uint32_t y = 0; y < area.height; ++y) {
     const std::size_t source = std::size_t(y + dy) * area.render_width + dx, target = std::size_t(y) * to.width + area.x;
@@ -32,19 +32,19 @@ void place(const Samples& from, const TileArea& area, const BandChannels& wants,
       std::copy_n(values.begin() + std::ptrdiff_t(channels * source), channels * area.width,
                   out.begin() + std::ptrdiff_t(channels * target));
     };
-    if (wants.bytes) copy(from.bytes.rgba, to.bytes, 4);
-    if (wants.floats) copy(from.floats.rgba, to.floats, 4);
-    if (wants.depth) copy(from.depth.depth, to.depth, 1);
-    if (wants.ids) copy(from.ids.ids, to.ids, 1);
+    if (requested.bytes) copy(from.bytes.rgba, to.bytes, 4);
+    if (requested.floats) copy(from.floats.rgba, to.floats, 4);
+    if (requested.depth) copy(from.depth.depth, to.depth, 1);
+    if (requested.ids) copy(from.ids.ids, to.ids, 1);
   }
 }
 
-/// The mean of n x n straight-alpha samples, premultiplied and back.
-std::array<float, 4> mean_of(const ImageF32& picture, std::uint32_t x, std::uint32_t y, std::uint32_t n) {
+/// Returns the mean of n x n straight-alpha samples, averaged with premultiplied alpha.
+std::array<float, 4> mean_of(const ImageF32& image, std::uint32_t x, std::uint32_t y, std::uint32_t n) {
   double sum[4] = {};
   for (std::uint32_t j = 0; j < n; ++j)
     for (std::uint32_t i = 0; i < n; ++i) {
-      const float* p = picture.pixel(x + i, y + j);
+      const float* p = image.pixel(x + i, y + j);
       for (int c = 0; c < 3; ++c) sum[c] += double(p[c]) * double(p[3]);
       sum[3] += double(p[3]);
     }
@@ -52,20 +52,20 @@ std::array<float, 4> mean_of(const ImageF32& picture, std::uint32_t x, std::uint
   return {float(sum[0] / sum[3]), float(sum[1] / sum[3]), float(sum[2] / sum[3]), float(sum[3] / (n * n))};
 }
 
-/// The same for n x n samples a pixel.
-void filter(const Samples& from, const TileArea& area, std::uint32_t n, const BandChannels& wants, Band& to) {
+/// Filters a tile's n x n samples per pixel into the band.
+void filter(const Samples& from, const TileArea& area, std::uint32_t n, const BandChannels& requested, Band& to) {
   for (std::uint32_t y = 0; y < area.height / n; ++y)
     for (std::uint32_t x = 0; x < area.width / n; ++x) {
       const std::uint32_t sx = x * n + area.x - area.render_x, sy = y * n + area.y - area.render_y;
       const std::size_t target = std::size_t(y) * to.width + area.x / n + x;
-      if (wants.bytes || wants.floats) {
+      if (requested.bytes || requested.floats) {
         const std::array<float, 4> mean = mean_of(from.floats, sx, sy, n);
         for (std::size_t c = 0; c < 4; ++c) {
-          if (wants.floats) to.floats[4 * target + c] = mean[c];
-          if (wants.bytes) to.bytes[4 * target + c] = to_byte(mean[c]);
+          if (requested.floats) to.floats[4 * target + c] = mean[c];
+          if (requested.bytes) to.bytes[4 * target + c] = to_byte(mean[c]);
         }
       }
-      if (!wants.depth && !wants.ids) continue;
+      if (!requested.depth && !requested.ids) continue;
       float nearest = std::numeric_limits<float>::infinity();
       std::size_t at = std::size_t(sy) * area.render_width + sx;
       for (std::uint32_t j = 0; j < n; ++j)
@@ -75,34 +75,34 @@ void filter(const Samples& from, const TileArea& area, std::uint32_t n, const Ba
           nearest = from.depth.depth[sample];
           at = sample;
         }
-      if (wants.depth) to.depth[target] = nearest;
-      if (wants.ids) to.ids[target] = from.ids.ids[at];
+      if (requested.depth) to.depth[target] = nearest;
+      if (requested.ids) to.ids[target] = from.ids.ids[at];
     }
 }
 
-void resize(Band& band, const BandChannels& wants) {
+void resize(Band& band, const BandChannels& requested) {
   const std::size_t pixels = std::size_t(band.width) * band.height;
-  if (wants.bytes) band.bytes.resize(4 * pixels);
-  if (wants.floats) band.floats.resize(4 * pixels);
-  if (wants.depth) band.depth.resize(pixels);
-  if (wants.ids) band.ids.resize(pixels);
+  if (requested.bytes) band.bytes.resize(4 * pixels);
+  if (requested.floats) band.floats.resize(4 * pixels);
+  if (requested.depth) band.depth.resize(pixels);
+  if (requested.ids) band.ids.resize(pixels);
 }
 
-Result<Samples> read(Renderer& renderer, const BandChannels& wants, bool floats, bool filtered) {
+Result<Samples> read(Renderer& renderer, const BandChannels& requested, bool floats, bool filtered) {
   Samples samples;
   if (floats) {
     CATENA_TRY(samples.floats, renderer.read_back_float());
-    if (wants.bytes && !filtered) {
+    if (requested.bytes && !filtered) {
       samples.bytes.rgba.resize(samples.floats.rgba.size());
       std::transform(samples.floats.rgba.begin(), samples.floats.rgba.end(), samples.bytes.rgba.begin(), to_byte);
     }
-  } else if (wants.bytes) {
+  } else if (requested.bytes) {
     CATENA_TRY(samples.bytes, renderer.read_back());
   }
-  if (wants.depth || (wants.ids && filtered)) {
+  if (requested.depth || (requested.ids && filtered)) {
     CATENA_TRY(samples.depth, renderer.read_depth());
   }
-  if (wants.ids) {
+  if (requested.ids) {
     CATENA_TRY(samples.ids, renderer.read_ids());
   }
   return samples;
@@ -117,33 +117,33 @@ Outcome draw_timed(Renderer& renderer, const FramePacket& packet, const RenderSe
   return Done{};
 }
 
-/// The packed picture of several eyes, in one piece: one band.
-Result<RenderTimes> draw_packed(Renderer& renderer, const FramePacket& packet, const RenderSettings& given, const BandChannels& wants,
-                                const std::function<Outcome(const Band&)>& take) {
-  CATENA_ASSERT(!wants.depth && !wants.ids);
-  RenderSettings settings = given;
-  settings.float_image = wants.floats;
+/// Renders the packed image of several eyes in one piece, as one band.
+Result<RenderTimes> draw_packed(Renderer& renderer, const FramePacket& packet, const RenderSettings& base_settings,
+                                const BandChannels& requested, const std::function<Outcome(const Band&)>& on_band) {
+  CATENA_ASSERT(!requested.depth && !requested.ids);
+  RenderSettings settings = base_settings;
+  settings.float_image = requested.floats;
   RenderTimes times;
   CATENA_CHECK(draw_timed(renderer, packet, settings, times));
-  if (!take) return times;
-  CATENA_TRY(Samples samples, read(renderer, wants, settings.float_image, false));
+  if (!on_band) return times;
+  CATENA_TRY(Samples samples, read(renderer, requested, settings.float_image, false));
   const PackedSize size = packed_size(packet.packing, packet.eyes.size(), packet.width, packet.height);
   Band band{
       std::uint32_t(size.width), 0, std::uint32_t(size.height), std::move(samples.bytes.rgba), std::move(samples.floats.rgba), {}, {}};
-  CATENA_CHECK(take({band.width, 0, 0, {}, {}, {}, {}}));
-  CATENA_CHECK(take(band));
+  CATENA_CHECK(on_band({band.width, 0, 0, {}, {}, {}, {}}));
+  CATENA_CHECK(on_band(band));
   return times;
 }
 
 }  // namespace
 
-Result<RenderTimes> render_tiled(Renderer& renderer, const FramePacket& whole, const RenderSettings& given, const TilePlan& plan,
-                                 const BandChannels& wants, const std::function<Outcome(const Band&)>& take) {
+Result<RenderTimes> render_tiled(Renderer& renderer, const FramePacket& whole, const RenderSettings& base_settings, const TilePlan& plan,
+                                 const BandChannels& requested, const std::function<Outcome(const Band&)>& on_band) {
   if (!whole.eyes.empty() && whole.packing != Packing::single) {
     CATENA_ASSERT(plan.count() == 1 && plan.antialias == 1);
-    return draw_packed(renderer, whole, given, wants, take);
+    return draw_packed(renderer, whole, base_settings, requested, on_band);
   }
-  // a single eye is a view like any other
+  // a single eye is rendered as an ordinary view
   std::optional<FramePacket> one;
   if (!whole.eyes.empty()) {
     one = whole;
@@ -153,28 +153,28 @@ Result<RenderTimes> render_tiled(Renderer& renderer, const FramePacket& whole, c
   const FramePacket& packet = one ? *one : whole;
   CATENA_ASSERT(packet.width == plan.width && packet.height == plan.height);
   const std::uint32_t n = plan.antialias;
-  RenderSettings settings = given;
-  settings.float_image = wants.floats || (wants.bytes && n > 1);
+  RenderSettings settings = base_settings;
+  settings.float_image = requested.floats || (requested.bytes && n > 1);
   RenderTimes times;
   Band band;
   band.width = plan.width;
   for (std::uint32_t row = 0; row < plan.rows(); ++row) {
     band.y = plan.area(0, row).y / n;
     band.height = plan.area(0, row).height / n;
-    if (take) resize(band, wants);
+    if (on_band) resize(band, requested);
     for (std::uint32_t column = 0; column < plan.columns(); ++column) {
       const TileArea area = plan.area(column, row);
       CATENA_CHECK(draw_timed(renderer, plan.count() == 1 && n == 1 ? packet : make_tile_packet(packet, plan, area), settings, times));
-      if (!take) continue;
-      CATENA_TRY(const Samples samples, read(renderer, wants, settings.float_image, n > 1));
+      if (!on_band) continue;
+      CATENA_TRY(const Samples samples, read(renderer, requested, settings.float_image, n > 1));
       if (n == 1) {
-        place(samples, area, wants, band);
+        copy_tile(samples, area, requested, band);
       } else {
-        filter(samples, area, n, wants, band);
+        filter(samples, area, n, requested, band);
       }
-      CATENA_CHECK(take({band.width, band.y, 0, {}, {}, {}, {}}));
+      CATENA_CHECK(on_band({band.width, band.y, 0, {}, {}, {}, {}}));
     }
-    if (take) CATENA_CHECK(take(band));
+    if (on_band) CATENA_CHECK(on_band(band));
   }
   return times;
 }

@@ -36,9 +36,9 @@ struct RenderTimes {
   double render_ms = 0;  ///< time measured by RenderTimer
 };
 
-/// Renders the image and passes it to `take` band by band. An Error is the renderer's or the one returned by `take`, which is also called
-/// with a band of height 0 after every tile: returning an Error ends the work. Without `take` nothing is read back.
+/// Renders the image and passes it to `on_band` band by band. An Error is the renderer's or the one returned by `on_band`, which is also
+/// called with a band of height 0 after every tile: returning an Error ends the work. Without `on_band` nothing is read back.
 Result<RenderTimes> render_tiled(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings, const TilePlan& plan,
-                                 const BandChannels& wants, const std::function<Outcome(const Band&)>& take);
+                                 const BandChannels& requested, const std::function<Outcome(const Band&)>& on_band);
 
 }  // namespace catena::render

@@ -11,18 +11,18 @@
 namespace catena::render {
 namespace {
 
-constexpr double kRoom = 0.8, kLeastRoom = 0.25, kAfterLate = 0.9;
-constexpr int kRecovery = 90;                                                              // frames
-constexpr double kRegain = (kRoom - kLeastRoom) / kRecovery, kLeastRegain = kRegain / 22;  // a frame
-constexpr double kForgotten = 0.97;                                                        // of the room where frames came late
-constexpr double kBeyond = 1.035;                                                          // twice in 20 frames
-constexpr int kUntilHalf = 8, kUntilFull = 30;                                             // frames
-constexpr double kFullBelow = 0.7;                                                         // of the budget
+constexpr double kMaxHeadroom = 0.8, kMinHeadroom = 0.25, kLateFactor = 0.9;
+constexpr int kRecoveryFrames = 90;  // on-time frames at the maximum headroom before the full gain returns
+constexpr double kMaxGain = (kMaxHeadroom - kMinHeadroom) / kRecoveryFrames, kMinGain = kMaxGain / 22;  // gain of the headroom per frame
+constexpr double kLateHeadroomDecay = 0.97;       // decay of late_headroom_, per late frame
+constexpr double kGainGrowth = 1.035;             // factor of the gain per frame above late_headroom_; doubles in 20 frames
+constexpr int kSlowFrames = 8, kFastFrames = 30;  // frames until the rate changes
+constexpr double kFullRateShare = 0.7;            // share of the budget
 
 }  // namespace
 
 XrFramePacing::XrFramePacing(const QualityLevelOptions& kind)
-    : level_options_(kind), refinement_(1, kind), headroom_(kRoom), headroom_gain_(kRegain), late_headroom_(kRoom) {}
+    : level_options_(kind), refinement_(1, kind), headroom_(kMaxHeadroom), headroom_gain_(kMaxGain), late_headroom_(kMaxHeadroom) {}
 
 void XrFramePacing::set_level_options(const QualityLevelOptions& kind) {
   if (kind == level_options_) return;
@@ -48,30 +48,32 @@ void XrFramePacing::count_frame(double period_ms, std::int64_t shown_ns) {
   last_shown_ns_ = shown_ns;
 }
 
-/// A stall says nothing of the room that a picture can have, and what comes late while the room grows does: of several late frames in a row
-/// the first one counts.
+/// Updates the headroom. Of several late frames in a row only the first changes late_headroom_ and the gain: a stall tells nothing about
+/// the headroom, a late frame during its growth does.
 void XrFramePacing::update_headroom(bool late) {
   if (late && !was_late_) {
-    late_headroom_ = std::max(headroom_, kForgotten * late_headroom_);
-    headroom_gain_ = on_time_frames_ >= kRecovery ? kRegain : std::max(kLeastRegain, headroom_gain_ / 2);
+    late_headroom_ = std::max(headroom_, kLateHeadroomDecay * late_headroom_);
+    headroom_gain_ = on_time_frames_ >= kRecoveryFrames ? kMaxGain : std::max(kMinGain, headroom_gain_ / 2);
   }
   was_late_ = late;
-  gain_multiplier_ = late || headroom_ <= late_headroom_ ? 1 : kBeyond * gain_multiplier_;
-  headroom_gain_ = gain_multiplier_ * headroom_gain_ < kRegain ? headroom_gain_ : kRegain;
-  headroom_ = late ? std::max(kLeastRoom, kAfterLate * headroom_) : std::min(kRoom, headroom_ + gain_multiplier_ * headroom_gain_);
-  on_time_frames_ = late || headroom_ < kRoom ? 0 : on_time_frames_ + 1;
+  gain_multiplier_ = late || headroom_ <= late_headroom_ ? 1 : kGainGrowth * gain_multiplier_;
+  headroom_gain_ = gain_multiplier_ * headroom_gain_ < kMaxGain ? headroom_gain_ : kMaxGain;
+  headroom_ =
+      late ? std::max(kMinHeadroom, kLateFactor * headroom_) : std::min(kMaxHeadroom, headroom_ + gain_multiplier_ * headroom_gain_);
+  on_time_frames_ = late || headroom_ < kMaxHeadroom ? 0 : on_time_frames_ + 1;
 }
 
 void XrFramePacing::choose_rate(double coarsest_ms) {
   const bool fits = coarsest_ms <= budget_ms_;
-  slow_in_a_row_ = fits || rendered_frames_ < kUntilHalf ? 0 : slow_in_a_row_ + 1;
-  fast_in_a_row_ = coarsest_ms <= kFullBelow * budget_ms_ ? fast_in_a_row_ + 1 : 0;
-  if (!is_half_rate_ && slow_in_a_row_ >= kUntilHalf) {
+  slow_in_a_row_ = fits || rendered_frames_ < kSlowFrames ? 0 : slow_in_a_row_ + 1;
+  fast_in_a_row_ = coarsest_ms <= kFullRateShare * budget_ms_ ? fast_in_a_row_ + 1 : 0;
+  if (!is_half_rate_ && slow_in_a_row_ >= kSlowFrames) {
     is_half_rate_ = true;
     if (!std::exchange(has_reported_, true))
-      message_ = fmt::format("the coarsest picture takes {:.1f} ms of the {:.1f} ms that the headset leaves it: every 2nd frame is drawn",
-                             coarsest_ms, budget_ms_);
-  } else if (is_half_rate_ && fast_in_a_row_ >= kUntilFull) {
+      message_ =
+          fmt::format("the coarsest image takes {:.1f} ms, more than the {:.1f} ms available per frame: the headset runs at half rate",
+                      coarsest_ms, budget_ms_);
+  } else if (is_half_rate_ && fast_in_a_row_ >= kFastFrames) {
     is_half_rate_ = false;
   }
 }

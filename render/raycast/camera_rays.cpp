@@ -10,7 +10,7 @@ glm::vec3 narrow(const Vec3& v) { return glm::vec3(v); }
 
 glm::vec3 color_of(const Color& c) { return {c.r, c.g, c.b}; }
 
-/// Unit, in the world.
+/// Returns the unit direction to a light, in world coordinates.
 Vec3 towards(const Camera& c, const LightItem& light) {
   const Vec3 d = direction(light.direction);
   return light.camera_relative ? d.x * c.right + d.y * c.up + d.z * c.back : d;
@@ -40,7 +40,7 @@ CameraRays CameraRays::make(const FramePacket& packet, const Bounds& bounds, con
   double farthest = 0;
   for (int i = 0; i < 8; ++i) farthest = std::max(farthest, rays.view_depth(bounds.corner(i)));
   const double scale = std::max(farthest, bounds.diagonal());
-  // reversed float depth keeps its relative precision at any distance: near may be tiny
+  // reversed float depth keeps its relative precision at any distance, so that near may be tiny
   rays.depth_near = rays.camera.orthographic ? 0 : std::max(1e-6 * scale, 1e-30);
   rays.depth_far = farthest + 1e-3 * scale + 1e-30;
   return rays;
@@ -70,11 +70,11 @@ shared::FrameData CameraRays::frame_data() const {
   return f;
 }
 
-shared::GridData CameraRays::grid_data(const ResidentGrid& mirror, const field::Mapping& whole) const {
-  const field::Mapping& mapping = mirror.downsampled ? mirror.downsampled->mapping() : whole;
+shared::GridData CameraRays::grid_data(const ResidentGrid& resident, const field::Mapping& whole) const {
+  const field::Mapping& mapping = resident.downsampled ? resident.downsampled->mapping() : whole;
   const Mat3& inverse = mapping.index_from_world_linear;
-  const Vec3 origin(mirror.origin.x, mirror.origin.y, mirror.origin.z);
-  // one pixel to the right and down, in index space at depth 1 (perspective) or anywhere (orthographic)
+  const Vec3 origin(resident.origin.x, resident.origin.y, resident.origin.z);
+  // steps of one pixel to the right and down, in index space: at depth 1 (perspective) or at any depth (orthographic)
   const Vec3 x = inverse * (camera.right * (camera.half_width / (0.5 * camera.width)));
   const Vec3 y = inverse * (camera.up * (-camera.half_height / (0.5 * camera.height)));
   const Vec3 z = inverse * forward;
@@ -91,22 +91,22 @@ shared::GridData CameraRays::grid_data(const ResidentGrid& mirror, const field::
     g.direction_x = narrow(x);
     g.direction_y = narrow(y);
   }
-  g.lo = narrow(mirror.box_lo);
-  g.hi = narrow(mirror.box_hi);
-  g.domain_lo = mirror.downsampled ? narrow(mirror.domain_lo) : g.lo;
-  g.domain_hi = mirror.downsampled ? narrow(mirror.domain_hi) : g.hi;
-  const VkExtent3D extent = mirror.values.info().extent;
+  g.lo = narrow(resident.box_lo);
+  g.hi = narrow(resident.box_hi);
+  g.domain_lo = resident.downsampled ? narrow(resident.domain_lo) : g.lo;
+  g.domain_hi = resident.downsampled ? narrow(resident.domain_hi) : g.hi;
+  const VkExtent3D extent = resident.values.info().extent;
   g.texel = {1.0f / float(extent.width), 1.0f / float(extent.height), 1.0f / float(extent.depth)};
   g.world_gradient = glm::mat3(glm::transpose(inverse));
-  g.value_offset = mirror.offset;
-  g.value_scale = mirror.scale;
-  g.nearest = mirror.nearest ? 1 : 0;
+  g.value_offset = resident.offset;
+  g.value_scale = resident.scale;
+  g.nearest = resident.nearest ? 1 : 0;
   return g;
 }
 
 shared::MeshFrameData CameraRays::mesh_frame_data(const Vec3& origin) const {
   shared::MeshFrameData m{};
-  // columns of the matrix whose rows are right, up, forward
+  // columns of the matrix with rows right, up, forward
   for (int i = 0; i < 3; ++i) m.view_from_world[i] = {float(camera.right[i]), float(camera.up[i]), float(forward[i])};
   const Vec3 from_eye = origin - camera.position;
   m.offset = {float(dot(from_eye, camera.right)), float(dot(from_eye, camera.up)), float(dot(from_eye, forward))};

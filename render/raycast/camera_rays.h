@@ -34,9 +34,9 @@ struct CameraRays {
   double view_depth(const Vec3& world) const { return dot(world - camera.position, forward); }
   /// Returns the per-image shader data, without grids.
   shared::FrameData frame_data() const;
-  /// Returns the shader data of a grid: mapping of the rays to the index space of `mirror`, whose source grid has the mapping `whole`. The
-  /// caller adds table, level, color, id and whether it is clipped.
-  shared::GridData grid_data(const ResidentGrid& mirror, const field::Mapping& whole) const;
+  /// Returns the shader data of a grid: mapping of the rays to the index space of `resident`, whose source grid has the mapping `whole`.
+  /// The caller adds table, level, color, id and whether it is clipped.
+  shared::GridData grid_data(const ResidentGrid& resident, const field::Mapping& whole) const;
   /// Returns the per-image shader data of a mesh whose vertices are relative to `origin`.
   shared::MeshFrameData mesh_frame_data(const Vec3& origin) const;
   /// Returns the coefficients of the signed distance from a plane along a pixel's ray.

@@ -31,15 +31,15 @@ class DirtyTiles {
   explicit DirtyTiles(vk::Device& device) : device_(&device) {}
   /// Analyzes the opaque depth of an image: fills opaque_tiles() and compares the hashes of successive images.
   Outcome analyze(vk::Commands& commands, const vk::Image& opaque_depth);
-  /// To be called after analyze(): fills dirty_tiles() with the tiles that are at most `reach` tiles from a changed one (0: only these).
-  Outcome find_dirty(vk::Commands& commands, int reach);
+  /// To be called after analyze(): fills dirty_tiles() with the tiles that are at most `distance` tiles from a changed one (0: only these).
+  Outcome find_dirty(vk::Commands& commands, int distance);
   /// Returns a mask of 4 x 4 pixel blocks, R8_UINT: 1 where something opaque is visible.
   vk::Image& opaque_tiles() { return opaque_tiles_; }
   /// Returns a mask of 16 x 16 pixel tiles, R8_UINT: 1 where rays must be re-marched.
   vk::Image& dirty_tiles() { return dirty_tiles_; }
 
  private:
-  Outcome find_tiles(vk::Commands& commands, int reach, vk::Image& before, vk::Image& now, vk::Image& target);
+  Outcome find_tiles(vk::Commands& commands, int distance, vk::Image& before, vk::Image& now, vk::Image& target);
 
   vk::Device* device_;
   vk::Image opaque_tiles_, near_dirty_, dirty_tiles_;

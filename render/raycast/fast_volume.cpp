@@ -18,16 +18,16 @@ namespace {
 constexpr std::uint32_t kUpsampleShader[] = {
 #include "spirv/upsample.comp.inc"
 };
-constexpr std::uint32_t kGroupX = 16, kGroupY = 4;  // as in the shaders
+constexpr std::uint32_t kGroupX = 16, kGroupY = 4;  // work group size, as in the shaders
 
 }  // namespace
 
-UpsampleDispatch make_upsample_dispatch(const VkRect2D& area, const VkExtent3D& picture) {
+UpsampleDispatch make_upsample_dispatch(const VkRect2D& area, const VkExtent3D& image_size) {
   UpsampleDispatch groups;
   groups.data.first_x = std::uint32_t(area.offset.x) / 2;
   groups.data.first_y = std::uint32_t(area.offset.y) / 2;
-  groups.data.width = picture.width;
-  groups.data.height = picture.height;
+  groups.data.width = image_size.width;
+  groups.data.height = image_size.height;
   const auto points = [](std::int32_t first, std::uint32_t extent) {
     return extent == 0 ? 0 : (std::uint32_t(first) % 2 + extent + 1) / 2;
   };
@@ -36,8 +36,8 @@ UpsampleDispatch make_upsample_dispatch(const VkRect2D& area, const VkExtent3D& 
   return groups;
 }
 
-Outcome Upsampler::record(vk::Commands& commands, vk::Image& half_lattice, vk::Image* opaque, const vk::Image& none,
-                          const std::array<float, 4>& background, const VkRect2D& area, vk::Image& picture) {
+Outcome Upsampler::record(vk::Commands& commands, vk::Image& half_grid, vk::Image* opaque, const vk::Image& none,
+                          const std::array<float, 4>& background, const VkRect2D& area, vk::Image& image_size) {
   vk::Pipeline& pipeline = pipelines_[opaque ? 1 : 0];
   if (!pipeline) {
     vk::ComputeInfo info;
@@ -49,30 +49,30 @@ Outcome Upsampler::record(vk::Commands& commands, vk::Image& half_lattice, vk::I
     info.constants = {opaque ? 1u : 0u};
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   }
-  const VkExtent3D& size = picture.info().extent;
+  const VkExtent3D& size = image_size.info().extent;
   VkRect2D pixels = area;
   if (opaque) {
     pixels = {{0, 0}, {size.width, size.height}};
     commands.transition(*opaque, vk::kFragmentRead);
   } else {
-    // beyond the area there is the background
-    const bool seen = background[3] > 0;
-    const vk::ColorTarget target{&picture, seen ? background : std::array<float, 4>{0, 0, 0, 0}};
+    // outside the area, only the background is visible
+    const bool is_opaque = background[3] > 0;
+    const vk::ColorTarget target{&image_size, is_opaque ? background : std::array<float, 4>{0, 0, 0, 0}};
     commands.begin_pass({&target, 1}, {});
     commands.end_pass();
   }
   UpsampleDispatch groups = make_upsample_dispatch(pixels, size);
   groups.data.background = {background[0], background[1], background[2], background[3]};
   CATENA_CHECK(vk::write_uniform(*device_, uniform_, groups.data));
-  commands.transition(half_lattice, vk::kFragmentRead);
-  commands.transition(picture, vk::kComputeWrite);
+  commands.transition(half_grid, vk::kFragmentRead);
+  commands.transition(image_size, vk::kComputeWrite);
   const vk::Binding bindings[] = {{0, vk::DescriptorKind::uniform, &uniform_, nullptr, nullptr},
                                   {1, vk::DescriptorKind::texture, nullptr, opaque ? opaque : &none, nullptr},
-                                  {2, vk::DescriptorKind::texture, nullptr, &half_lattice, nullptr},
-                                  {3, vk::DescriptorKind::storage_image, nullptr, &picture, nullptr}};
+                                  {2, vk::DescriptorKind::texture, nullptr, &half_grid, nullptr},
+                                  {3, vk::DescriptorKind::storage_image, nullptr, &image_size, nullptr}};
   commands.bind(pipeline, bindings);
   if (groups.x > 0 && groups.y > 0) commands.dispatch(groups.x, groups.y, 1);
-  commands.transition(picture, vk::kTransferRead);
+  commands.transition(image_size, vk::kTransferRead);
   return Done{};
 }
 
@@ -94,19 +94,20 @@ constexpr std::uint32_t kFastVolumeMarkShader[] = {
 #include "spirv/volume_blocks.frag.inc"
 };
 
-/// How far, in tiles of 16 pixels, what is opaque is felt by the lattices of a spacing: rays near it are marched, and interpolated between.
-constexpr int kReach[] = {0, 1, 3, 0, 6};
-constexpr double kLeapAbove = 0.15;  // share of plain bricks from which asking for leaps pays
+/// Distance, in tiles of 16 pixels, at which an opaque item affects a ray grid, by spacing: rays near it are marched and interpolated
+/// between.
+constexpr int kOpaqueReach[] = {0, 1, 3, 0, 6};
+constexpr double kMinSkippableShare = 0.15;  // share of homogeneous bricks from which skipping them pays
 constexpr std::uint32_t kBlock = 4, kTileBlocks = 4;
-constexpr double kNever = 1e9;  // an error that interpolation never makes
-constexpr VkFormat kLatticeFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+constexpr double kNoRefinement = 1e9;  // an error threshold that interpolation never exceeds
+constexpr VkFormat kRayGridFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 
-/// A coarse lattice has an apron of two texels before the picture's first ray and of four behind its last.
-std::uint32_t lattice_size(std::uint32_t pixels, std::uint32_t spacing) {
+/// Returns the size of a ray grid. A coarse one has a margin of two texels before the image's first ray and of four after its last.
+std::uint32_t ray_grid_size(std::uint32_t pixels, std::uint32_t spacing) {
   return spacing == 1 ? pixels : (pixels - 1 + spacing - 1) / spacing + 1 + COARSE_APRON + 4;
 }
 
-/// Where the eye looks, in pixels, and the tangents that a pixel covers, by the fovea's.
+/// Gaze position in pixels, and the tangents that a pixel covers / tangent of the fovea.
 struct Gaze {
   decltype(shared::RayGridData::gaze) at{}, per_fovea{};
 };
@@ -119,8 +120,8 @@ Gaze gaze_of(const FastSettings& settings, const Camera& camera) {
            float(2 * camera.half_height / (camera.height * settings.fovea_tangent))}};
 }
 
-/// The texels of a lattice that the pixels of an area need.
-VkRect2D lattice_area(const VkRect2D& area, std::uint32_t spacing, const VkExtent3D& extent) {
+/// Returns the texels of a ray grid that the pixels of an area read.
+VkRect2D ray_grid_area(const VkRect2D& area, std::uint32_t spacing, const VkExtent3D& extent) {
   if (spacing == 1) return area;
   constexpr std::int32_t margin = 4, apron = COARSE_APRON;
   const auto s = std::int32_t(spacing);
@@ -145,8 +146,8 @@ Result<FastVolumeRaycast> FastVolumeRaycast::create(vk::Device& device) {
 }
 
 Outcome FastVolumeRaycast::ensure(RayGrid& level, std::uint32_t spacing, const VkExtent3D& target) {
-  const std::uint32_t width = lattice_size(target.width, spacing), height = lattice_size(target.height, spacing);
-  if (spacing > 1) CATENA_CHECK(vk::ensure_image(*device_, level.color, kLatticeFormat, width, height));
+  const std::uint32_t width = ray_grid_size(target.width, spacing), height = ray_grid_size(target.height, spacing);
+  if (spacing > 1) CATENA_CHECK(vk::ensure_image(*device_, level.color, kRayGridFormat, width, height));
   return vk::ensure_image(*device_, level.marks, VK_FORMAT_R8_UINT, (width + kBlock - 1) / kBlock, (height + kBlock - 1) / kBlock,
                           VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
 }
@@ -162,8 +163,8 @@ Result<const vk::Pipeline*> FastVolumeRaycast::pipeline(const Constants& constan
                             {6, vk::DescriptorKind::texture}, {7, vk::DescriptorKind::texture}, {8, vk::DescriptorKind::sampled},
                             {9, vk::DescriptorKind::texture}};
     info.constants.assign(constants.begin(), constants.end());
-    // every pixel goes to the volume target, coarser lattices to their own
-    info.colors = {constants[4] & 2u ? kVolumeFormat : kLatticeFormat};
+    // full resolution goes to the volume target, coarser ray grids to their own images
+    info.colors = {constants[4] & 2u ? kVolumeFormat : kRayGridFormat};
     info.constants[4] &= 1u;
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   }
@@ -194,7 +195,7 @@ Outcome FastVolumeRaycast::mark(vk::Commands& commands, RayGrid& level, vk::Imag
   return Done{};
 }
 
-/// The frame's data; grid 0 counts from the origin of what is packed.
+/// Writes the frame's data; grid 0 is relative to the origin of the packed grid.
 Result<shared::FrameData> FastVolumeRaycast::write_frame(const CameraRays& rays, const FastSettings& settings) {
   shared::FrameData frame = rays.frame_data();
   frame.grids[0] = rays.grid_data(resources_.local_geometry(), resources_.item().grid->mapping());
@@ -206,7 +207,7 @@ Result<shared::FrameData> FastVolumeRaycast::write_frame(const CameraRays& rays,
   return frame;
 }
 
-bool FastVolumeRaycast::skips_empty_space() const { return resources_.skippable_share() > kLeapAbove; }
+bool FastVolumeRaycast::skips_empty_space() const { return resources_.skippable_share() > kMinSkippableShare; }
 
 Outcome FastVolumeRaycast::draw(vk::Commands& commands, RayGrid& level, const DrawParams& draw) {
   const bool leaps = draw.skips_empty && this->skips_empty_space();
@@ -274,40 +275,40 @@ Outcome FastVolumeRaycast::interpolate(vk::Commands& commands, vk::Image& half, 
 }
 
 Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, const VkRect2D& area,
-                                  const VkExtent3D& picture, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none,
+                                  const VkExtent3D& image_size, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none,
                                   bool keep) {
   CATENA_ASSERT(settings.spacing == 1 || settings.spacing == 2 || settings.spacing == 4);
   CATENA_ASSERT(target || (settings.ends_at_half_resolution() && !opaque_depth));
   CATENA_TRY(const shared::FrameData frame, write_frame(rays, settings));
-  EyeState& own = eye_state();
+  EyeState& eye = eye_state();
   const ReuseState now{settings,
                        {frame, resources_.version(), 0, target, target ? target->handle() : VK_NULL_HANDLE, area, opaque_depth != nullptr}};
-  const bool same = keep && target && own.reuse && own.reuse->state.matches(now.state);
-  const bool still = reused_previous_ = same && own.reuse->settings == settings;
-  const bool first_is_marched = same && !opaque_depth && settings.spacing > 1 && own.reuse->settings.marches_same_rays(settings);
-  own.reuse.reset();
+  const bool same = keep && target && eye.reuse && eye.reuse->state.matches(now.state);
+  const bool reuses = reused_previous_ = same && eye.reuse->settings == settings;
+  const bool first_is_marched = same && !opaque_depth && settings.spacing > 1 && eye.reuse->settings.marches_same_rays(settings);
+  eye.reuse.reset();
   marched_half_ = marched_full_ = false;
   commands.transition(placeholder_tiles_, vk::kShaderRead);
   if (opaque_depth) {
-    if (!own.opaque_tiles) own.opaque_tiles.emplace(*device_);
-    CATENA_CHECK(own.opaque_tiles->analyze(commands, *opaque_depth));
-    if (still) CATENA_CHECK(own.opaque_tiles->find_dirty(commands, kReach[settings.spacing]));
+    if (!eye.opaque_tiles) eye.opaque_tiles.emplace(*device_);
+    CATENA_CHECK(eye.opaque_tiles->analyze(commands, *opaque_depth));
+    if (reuses) CATENA_CHECK(eye.opaque_tiles->find_dirty(commands, kOpaqueReach[settings.spacing]));
   }
-  if (still && !opaque_depth) {
-    own.reuse = now;
+  if (reuses && !opaque_depth) {
+    eye.reuse = now;
     return Done{};
   }
 
-  // from the coarsest lattice to every pixel
+  // from the coarsest ray grid to full resolution
   const Gaze gaze = gaze_of(settings, rays.camera);
   vk::Image* coarser = nullptr;
   const std::uint32_t finest = target ? 1 : 2;
   for (std::uint32_t spacing = settings.spacing; spacing >= finest; spacing /= 2) {
-    RayGrid& level = spacing == 4 ? own.quarter : spacing == 2 ? own.half : own.full;
-    CATENA_CHECK(ensure(level, spacing, picture));
+    RayGrid& level = spacing == 4 ? eye.quarter : spacing == 2 ? eye.half : eye.full;
+    CATENA_CHECK(ensure(level, spacing, image_size));
     vk::Image& image = spacing == 1 ? *target : level.color;
     double refine_255 = spacing == 2 ? settings.refine_half_255 : settings.refine_full_255;
-    if (opaque_depth && refine_255 < 0) refine_255 = kNever;
+    if (opaque_depth && refine_255 < 0) refine_255 = kNoRefinement;
     const bool marches = !coarser || refine_255 >= 0;
     const VkExtent3D from = coarser ? coarser->info().extent : VkExtent3D{1, 1, 1};
     const float apron = spacing == 1 ? 0.0f : float(COARSE_APRON);
@@ -315,7 +316,7 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
     const bool refines = coarser && spacing == 1;
     const shared::RayGridData data{float(spacing), apron,       float(refine_255 / 255),     gaze.at,    gaze.per_fovea,
                                    from.width,     from.height, resources_.gradient_nodes(), size.width, size.height,
-                                   refines,        still};
+                                   refines,        reuses};
     CATENA_CHECK(vk::write_uniform(*device_, level.data, data));
     if (coarser && marches) {
       (spacing == 2 ? marched_half_ : marched_full_) = true;
@@ -323,18 +324,18 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
     } else {
       commands.transition(level.marks, vk::kFragmentRead);
     }
-    // most of the last step is interpolation: all of it first, then what is marked
-    if (refines) CATENA_CHECK(interpolate(commands, *coarser, image, area, still));
+    // most pixels at full resolution are interpolated: first all of them, then the marked tiles are drawn
+    if (refines) CATENA_CHECK(interpolate(commands, *coarser, image, area, reuses));
     if (refines && !marches) break;
-    const Tiles tiles = still ? Tiles::dirty : refines ? Tiles::marked : Tiles::all;
+    const Tiles tiles = reuses ? Tiles::dirty : refines ? Tiles::marked : Tiles::all;
     if (coarser || !first_is_marched)
       CATENA_CHECK(draw(commands, level,
                         {&image, coarser, marches, tiles, shading(settings), settings.skip_empty,
-                         lattice_area(area, spacing, image.info().extent), opaque_depth, &none}));
+                         ray_grid_area(area, spacing, image.info().extent), opaque_depth, &none}));
     if (spacing > 1) commands.transition(image, vk::kFragmentRead);
     coarser = &image;
   }
-  if (target) own.reuse = now;
+  if (target) eye.reuse = now;
   return Done{};
 }
 
@@ -352,19 +353,19 @@ Outcome FastVolumeRaycast::record_half_opacity_depth(vk::Commands& commands, con
                         {.target = &target, .opaque_depth = opaque_depth, .placeholder = &none, .half_opacity_depth = true});
 }
 
-/// Rays alone, of a lattice that nothing refines.
+/// Draws rays of a single ray grid, without refinement.
 Outcome FastVolumeRaycast::record_samples(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings,
-                                          std::uint32_t spacing, DrawParams wanted) {
-  CATENA_ASSERT(wanted.target->info().format == kVolumeFormat);
+                                          std::uint32_t spacing, DrawParams params) {
+  CATENA_ASSERT(params.target->info().format == kVolumeFormat);
   CATENA_CHECK(write_frame(rays, settings));
   CATENA_CHECK(vk::ensure_image(*device_, sample_grid_.marks, VK_FORMAT_R8_UINT, 1, 1));
   commands.transition(sample_grid_.marks, vk::kFragmentRead);
   CATENA_CHECK(vk::write_uniform(*device_, sample_grid_.data,
                                  shared::RayGridData{float(spacing), 0, 0, {}, {}, 1, 1, resources_.gradient_nodes(), 0, 0, 0, 0}));
-  const VkExtent3D& extent = wanted.target->info().extent;
-  wanted.skips_empty = settings.skip_empty;
-  wanted.area = {{0, 0}, {extent.width, extent.height}};
-  return draw(commands, sample_grid_, wanted);
+  const VkExtent3D& extent = params.target->info().extent;
+  params.skips_empty = settings.skip_empty;
+  params.area = {{0, 0}, {extent.width, extent.height}};
+  return draw(commands, sample_grid_, params);
 }
 
 }  // namespace catena::render

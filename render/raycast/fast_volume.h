@@ -40,7 +40,7 @@ class FastVolumeRaycast {
   /// always marched and `target` is required. `keep`: content of `target` and of the ray grids from the last call is reused where the
   /// result would be identical to the bit.
   Outcome record(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, const VkRect2D& area,
-                 const VkExtent3D& picture, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none, bool keep = false);
+                 const VkExtent3D& image_size, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none, bool keep = false);
   /// Returns whether the last call reused most of its previous result.
   bool reused_previous() const { return reused_previous_; }
   /// Returns the mask of the tiles that the last call re-marched, if it reused the others; null: nothing was reused, or there was nothing
@@ -100,7 +100,7 @@ class FastVolumeRaycast {
     bool half_opacity_depth = false;
   };
   Outcome record_samples(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
-                         DrawParams wanted);
+                         DrawParams params);
   Outcome draw(vk::Commands& commands, RayGrid& level, const DrawParams& draw);
   Outcome interpolate(vk::Commands& commands, vk::Image& half, vk::Image& target, const VkRect2D& area, bool keep);
   struct ReuseState {
@@ -138,17 +138,17 @@ struct UpsampleDispatch {
   std::uint32_t x = 0, y = 0;
 };
 /// Returns the dispatch that covers `area`.
-UpsampleDispatch make_upsample_dispatch(const VkRect2D& area, const VkExtent3D& picture);
+UpsampleDispatch make_upsample_dispatch(const VkRect2D& area, const VkExtent3D& image_size);
 
 /// Interpolates a volume at every 2nd pixel to the finished image and composites it over the opaque objects and the background: replaces
 /// the pass `compose` for the fast raycast.
 class Upsampler {
  public:
   explicit Upsampler(vk::Device& device) : device_(&device) {}
-  /// Renders into `picture`. `opaque` null: nothing opaque, `none` is bound instead. `area`: pixels that the volume may cover. Transitions
+  /// Renders into `image`. `opaque` null: nothing opaque, `none` is bound instead. `area`: pixels that the volume may cover. Transitions
   /// the images to their layouts.
-  Outcome record(vk::Commands& commands, vk::Image& half_lattice, vk::Image* opaque, const vk::Image& none,
-                 const std::array<float, 4>& background, const VkRect2D& area, vk::Image& picture);
+  Outcome record(vk::Commands& commands, vk::Image& half_grid, vk::Image* opaque, const vk::Image& none,
+                 const std::array<float, 4>& background, const VkRect2D& area, vk::Image& image);
 
  private:
   vk::Device* device_;

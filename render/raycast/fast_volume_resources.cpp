@@ -21,7 +21,7 @@ ValueInterval active_values(const VolumeItem& item) {
   const double background = item.grid->background();
   const field::GridStats& stats = item.grid->stats();
   ValueInterval values{std::min(stats.min, background), std::max(stats.max, background)};
-  // outliers look as the end of the display range does, unless the function has points among them
+  // outliers look like the end of the display range, unless the transfer function varies among them
   const DisplayRange& shown = display_range(*item.grid);
   const auto changing = [&](double from, double to) { return active_interval(item.transfer, {from, to}, false); };
   if (shown.below.count > 0) {
@@ -35,7 +35,7 @@ ValueInterval active_values(const VolumeItem& item) {
   return active_interval(item.transfer, values, item.is_shaded);
 }
 
-constexpr double kMostChanged = 0.03;  // by rounding to codes (quantization_change)
+constexpr double kMaxChange = 0.03;  // maximum mean change by quantization to codes (quantization_change)
 
 bool shows_values(const VolumeItem& item) {
   struct Answer {
@@ -46,7 +46,7 @@ bool shows_values(const VolumeItem& item) {
   thread_local Answer last;
   if (last.version == item.grid->version() && last.transfer == item.transfer && last.shade == item.is_shaded) return last.shows;
   const double changed = quantization_change(item.transfer, active_values(item), sample_values(*item.grid), item.grid->domain_length());
-  last = {item.grid->version(), item.transfer, item.is_shaded, changed <= kMostChanged};
+  last = {item.grid->version(), item.transfer, item.is_shaded, changed <= kMaxChange};
   return last.shows;
 }
 
@@ -96,11 +96,11 @@ Outcome FastVolumeResources::pack_dense(bool gradients, bool other_range) {
   return upload_table(table);
 }
 
-Outcome FastVolumeResources::pack_bricks(bool other_range, std::uint64_t most_bytes) {
+Outcome FastVolumeResources::pack_bricks(bool other_range, std::uint64_t permitted_bytes) {
   packed_ = {};
   map_ = {};
   gradients_ = {};
-  // of bricks they are few, so that all that is lit has them
+  // gradients of bricks are small, so that every shaded volume has them
   const bool gradients = item_.is_shaded, scans = !bricks_ || other_range || (gradients && !this->gradients());
   if (scans) {
     bricks_.reset();
@@ -111,13 +111,13 @@ Outcome FastVolumeResources::pack_bricks(bool other_range, std::uint64_t most_by
   PackedAtlas& atlas = bricks_->atlas;
   const CodeScale codes(scan.range, false);
   const PreintegratedTable table = make_preintegrated(item_.transfer, codes.lo, codes.per_code, item_.is_shaded);
-  bool kept = false;
+  bool remapped = false;
   if (!scans) {
-    CATENA_TRY(kept, remap_atlas(*device_, atlas, scan, table.appearance));
+    CATENA_TRY(remapped, remap_atlas(*device_, atlas, scan, table.appearance));
   }
-  if (!kept) {
+  if (!remapped) {
     atlas = {};
-    CATENA_TRY(atlas, make_packed_atlas(*device_, *item_.grid, scan, codes, table.appearance, most_bytes));
+    CATENA_TRY(atlas, make_packed_atlas(*device_, *item_.grid, scan, codes, table.appearance, permitted_bytes));
   }
   return upload_table(table);
 }
@@ -137,11 +137,11 @@ float FastVolumeResources::gradient_nodes() const { return bricks_ ? float(brick
 
 ResidentGrid FastVolumeResources::local_geometry() const {
   const auto wide = [](const field::Index3& i) { return Vec3(i.x, i.y, i.z); };
-  ResidentGrid place;
-  place.origin = bricks_ ? bricks_->scan.origin : packed_.origin;
-  if (bricks_) place.box_lo = wide(bricks_->scan.box_lo);
-  place.box_hi = bricks_ ? wide(bricks_->scan.box_hi) : wide(packed_.size) - Vec3(1.0);
-  return place;
+  ResidentGrid layout;
+  layout.origin = bricks_ ? bricks_->scan.origin : packed_.origin;
+  if (bricks_) layout.box_lo = wide(bricks_->scan.box_lo);
+  layout.box_hi = bricks_ ? wide(bricks_->scan.box_hi) : wide(packed_.size) - Vec3(1.0);
+  return layout;
 }
 
 }  // namespace catena::render

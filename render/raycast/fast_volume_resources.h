@@ -23,8 +23,8 @@ class FastVolumeResources {
   /// Returns whether 256 codes resolve all features of the transfer function and represent the values with a small error. Caches the last
   /// result per thread.
   static bool can_quantize(const VolumeItem& item);
-  /// Packs what changed. An Error if it takes more than `settings.max_bytes`, or more than `left` bytes in addition to what it holds; the
-  /// content is not usable then.
+  /// Packs what changed. An Error if it takes more than `settings.permitted_bytes`, or more than `left` bytes in addition to what it holds;
+  /// the content is not usable then.
   Outcome prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left);
 
   const VolumeItem& item() const { return item_; }
@@ -49,7 +49,7 @@ class FastVolumeResources {
 
  private:
   Outcome pack_dense(bool gradients, bool other_range);
-  Outcome pack_bricks(bool other_range, std::uint64_t most_bytes);
+  Outcome pack_bricks(bool other_range, std::uint64_t permitted_bytes);
   Outcome upload_table(const PreintegratedTable& table);
 
   vk::Device* device_;

@@ -44,16 +44,16 @@ void add_grid_bindings(std::vector<vk::Binding>& bindings, std::span<const GridB
     const vk::Sampler& sampler = g.resident->nearest ? g.resident->point_sampler : linear;
     bindings.push_back({kValues + i, vk::DescriptorKind::sampled, nullptr, &g.resident->values, &sampler});
     bindings.push_back({kMaps + i, vk::DescriptorKind::texture, nullptr, &g.map->image, nullptr});
-    // without a mask the binding is never read; the map has the right type
+    // without a mask the shader does not read the binding; the map has the right type
     bindings.push_back({kMasks + i, vk::DescriptorKind::texture, nullptr, g.resident->masked ? &g.resident->mask : &g.map->image, nullptr});
   }
 }
 
-Outcome SurfaceState::update(vk::Device& device, const field::ScalarGrid& grid, std::shared_ptr<const ResidentGrid> next_mirror,
+Outcome SurfaceState::update(vk::Device& device, const field::ScalarGrid& grid, std::shared_ptr<const ResidentGrid> next_resident,
                              double next_level) {
   const auto rounded = float(next_level);
-  if (resident == next_mirror && level == rounded && map.image) return Done{};
-  resident = std::move(next_mirror);
+  if (resident == next_resident && level == rounded && map.image) return Done{};
+  resident = std::move(next_resident);
   level = rounded;
   if (resident->cubic) {
     map = {};
@@ -76,9 +76,9 @@ shared::GridData surface_data(const CameraRays& rays, const SurfaceState& state,
   return data;
 }
 
-BrickRange value_range(const ResidentGrid& mirror) {
+BrickRange value_range(const ResidentGrid& grid) {
   BrickRange all;
-  for (const BrickRange& r : mirror.brick_ranges) {
+  for (const BrickRange& r : grid.brick_ranges) {
     if (r.empty()) continue;
     all = all.empty() ? r : BrickRange{std::min(all.min, r.min), std::max(all.max, r.max)};
   }
@@ -99,14 +99,14 @@ shared::TableData table_data(const TransferLut& lut, std::uint32_t start) {
   return {start, lut.last_index(), std::uint32_t(lut.control_points.size()), per_linear, lut.lo, lut.entries_per_unit, first, last};
 }
 
-Result<bool> ColorGrid::update(vk::Device& device, std::shared_ptr<const ResidentGrid> next_mirror, const ColorSource& next) {
-  const bool same_grid = resident == next_mirror && map.image;
+Result<bool> ColorGrid::update(vk::Device& device, std::shared_ptr<const ResidentGrid> next_resident, const ColorSource& next) {
+  const bool same_grid = resident == next_resident && map.image;
   if (same_grid && source.colors == next.colors && source.is_categorical == next.is_categorical &&
       source.spread_labels == next.spread_labels && source.linear_below == next.linear_below)
     return false;
-  resident = std::move(next_mirror);
+  resident = std::move(next_resident);
   source = next;
-  // alpha says where there is a colour: of labels everywhere but at 0
+  // alpha marks values that have a color: of labels all but 0
   TransferTable table{next.colors, {}, {}, 0, next.is_categorical, next.linear_below};
   if (next.is_categorical) table.extinctions = {{-0.5, 1}, {-0.5, 0}, {0.5, 0}, {0.5, 1}};
   lut = make_transfer_lut(table, value_range(*resident), 1);

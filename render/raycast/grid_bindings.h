@@ -15,7 +15,7 @@
 
 namespace catena::render {
 
-/// One grid as it is bound to a shader.
+/// Grid with its brick map, to be bound to a shader.
 struct GridBinding {
   std::shared_ptr<const ResidentGrid> resident;
   const BrickMap* map = nullptr;
@@ -42,7 +42,7 @@ struct SurfaceState {
   BrickMap map;
   CellMap cells;  ///< cubic grids only, without texels: they are merged into `map`
   /// Rebuilds the map if the resident grid or the level changed. `grid`: source of the resident grid.
-  Outcome update(vk::Device& device, const field::ScalarGrid& grid, std::shared_ptr<const ResidentGrid> next_mirror, double next_level);
+  Outcome update(vk::Device& device, const field::ScalarGrid& grid, std::shared_ptr<const ResidentGrid> next_resident, double next_level);
   GridBinding binding() const { return {resident, &map, true, true}; }
 };
 /// Returns the shader data: ray mapping, level, color and opacity.
@@ -56,14 +56,14 @@ struct ColorGrid {
   BrickMap map;
 
   /// Updates to a grid and source; returns whether anything changed.
-  Result<bool> update(vk::Device& device, std::shared_ptr<const ResidentGrid> next_mirror, const ColorSource& next);
+  Result<bool> update(vk::Device& device, std::shared_ptr<const ResidentGrid> next_resident, const ColorSource& next);
   GridBinding binding() const { return {resident, &map, false, false}; }
 };
 /// Returns the shader data; the color table begins at entry `start` of the table buffer.
 shared::GridData color_data(const CameraRays& rays, const ColorGrid& colors, std::uint32_t start);
 
 /// Returns the minimum and maximum of all valid cells of a resident grid; 0, 0 if there is none.
-BrickRange value_range(const ResidentGrid& mirror);
+BrickRange value_range(const ResidentGrid& grid);
 /// Returns the specialization constant TABLES (shaders/lib/tables.glsl) for one table; for several tables, combine the bits.
 std::uint32_t table_flags(const TransferLut& lut);
 /// Appends TABLES to the specialization constants of a pipeline with one table.

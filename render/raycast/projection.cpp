@@ -17,17 +17,17 @@ constexpr std::uint32_t kProjectionFragmentShader[] = {
 };
 constexpr int kBoundCodes = 254;
 
-/// Of -value for a minimum.
+/// Returns the range of the signed value: -value for a minimum projection, value otherwise.
 BrickRange signed_range(const BrickRange& r, Projection projection) {
   return projection == Projection::minimum ? BrickRange{-r.max, -r.min} : r;
 }
 
-/// 0: no valid cell; 1 + n: no signed value is above the least one plus n / kBoundCodes of their range.
-std::vector<std::uint8_t> bounds_of_bricks(const ResidentGrid& mirror, const BrickRange& all, Projection projection) {
-  std::vector<std::uint8_t> codes(mirror.brick_ranges.size());
+/// Returns a code per brick. 0: no valid cell. 1 + n: its signed values are at most all.min + n / kBoundCodes of the range `all`.
+std::vector<std::uint8_t> bounds_of_bricks(const ResidentGrid& resident, const BrickRange& all, Projection projection) {
+  std::vector<std::uint8_t> codes(resident.brick_ranges.size());
   const double per_value = all.max > all.min ? kBoundCodes / (double(all.max) - all.min) : 0;
   for (std::size_t i = 0; i < codes.size(); ++i) {
-    const BrickRange& r = mirror.brick_ranges[i];
+    const BrickRange& r = resident.brick_ranges[i];
     if (r.empty()) continue;
     const double n = std::ceil((double(signed_range(r, projection).max) - all.min) * per_value);
     codes[i] = std::uint8_t(1 + std::clamp(n, 0.0, double(kBoundCodes)));
@@ -44,11 +44,11 @@ Result<ProjectionRaycast> ProjectionRaycast::create(vk::Device& device) {
   return self;
 }
 
-Outcome ProjectionRaycast::prepare(const VolumeItem& item, std::shared_ptr<const ResidentGrid> mirror) {
-  const bool same_bounds = map_.image && resident_ == mirror && item_.projection == item.projection;
+Outcome ProjectionRaycast::prepare(const VolumeItem& item, std::shared_ptr<const ResidentGrid> resident) {
+  const bool same_bounds = map_.image && resident_ == resident && item_.projection == item.projection;
   const bool same = same_bounds && item_.transfer == item.transfer;
   item_ = item;
-  resident_ = std::move(mirror);
+  resident_ = std::move(resident);
   if (same) return Done{};
   const BrickRange range = value_range(*resident_);
   opacity_length_ = item.transfer.opacity_length > 0 ? item.transfer.opacity_length : item.grid->mapping().min_voxel_edge();

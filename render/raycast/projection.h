@@ -16,8 +16,8 @@ namespace catena::render {
 class ProjectionRaycast {
  public:
   static Result<ProjectionRaycast> create(vk::Device& device);
-  /// Uploads what changed. `mirror`: GPU copy of the item's grid.
-  Outcome prepare(const VolumeItem& item, std::shared_ptr<const ResidentGrid> mirror);
+  /// Uploads changed data. `resident`: resident grid of the item.
+  Outcome prepare(const VolumeItem& item, std::shared_ptr<const ResidentGrid> resident);
   /// Records the rays within a render pass over the volume target.
   Outcome record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area, const RayScene& scene);
 

@@ -19,7 +19,7 @@ struct FastSettings {
   std::uint32_t spacing = 1;  ///< pixels between the rays of the first ray grid: 1, 2 or 4
   /// Spacing 4: every 2nd pixel is marched where the expected interpolation error exceeds this threshold, 1/255; < 0: nowhere.
   double refine_half_255 = 0;
-  double refine_full_255 = -1;  ///< the same for every pixel
+  double refine_full_255 = -1;  ///< like refine_half_255, for the refinement to every pixel
   /// Shading by central differences, as in the exact raycast, for 8 more bytes per voxel; false: by the gradient of the cell.
   bool smooth_gradients = false;
   /// A ray ends when its transmittance falls below this; the remainder is extrapolated from what it has accumulated.
@@ -46,7 +46,7 @@ struct FastSettings {
 /// Storage format of a voxel on the device. automatic: see RenderSettings::texel_format.
 enum class TexelFormat { automatic, r16f, r32f };
 
-/// How one image is rendered; the packet defines its content.
+/// Settings of one image's rendering; the packet defines its content.
 struct RenderSettings {
   double step_voxels = 1;          ///< ray step, in smallest voxel edges
   double termination = 1.0 / 512;  ///< a ray ends when its transmittance falls below this

@@ -13,10 +13,10 @@ namespace catena::render {
 namespace {
 
 constexpr std::uint32_t kEntries = 4096;
-constexpr double kMostLooks = 7000;      // that are numbered, so that rays leap over plain parts
-constexpr double kMostLabels = 1 << 18;  // with an entry each
-/// Of an interval: how far from its ends rounding may put a value into the next one.
-constexpr double kRoundedPlace = 1.0 / 256;
+constexpr double kMaxEntryIds = 7000;   // maximum number of distinct entries that are numbered, for skipping homogeneous bricks
+constexpr double kMaxLabels = 1 << 18;  // maximum number of labels with an entry each
+/// Share of an interval within which rounding may move a value into the adjacent interval.
+constexpr double kPositionRounding = 1.0 / 256;
 
 float nearest_below(double value) {
   const auto f = float(value);
@@ -27,7 +27,7 @@ float nearest_above(double value) {
   return double(f) < value ? std::nextafter(f, HUGE_VALF) : f;
 }
 
-/// The floats between which the function is linear at every float: its points, or their neighbours where they are no floats.
+/// Returns the function's points as floats, or the adjacent floats of a point that is none; the function is linear between them.
 std::vector<float> float_points(const TransferTable& table, double lo, double hi) {
   std::vector<float> values;
   for (const double value : control_values_between(table, lo, hi))
@@ -43,7 +43,7 @@ glm::vec4 look_of(const TransferTable& table, double value) {
   return look;
 }
 
-/// How many times the allowed error of frequent values rare ones may have.
+/// Factor of the allowed error for rare values, relative to frequent ones.
 struct Allowance {
   double sigma = 1, color = 1;
 };
@@ -56,48 +56,48 @@ bool errs(const glm::vec4& exact, const glm::vec4& read, bool colors_alone, doub
   return false;
 }
 
-/// The place of a value among the samples, in double precision.
-double place_of(const TransferLut& lut, double value) {
+/// Returns the fractional sample index of a value, in double precision.
+double index_of(const TransferLut& lut, double value) {
   return std::clamp((symlog(value, lut.linear_below) - double(lut.lo)) * double(lut.entries_per_unit), 0.0, double(lut.last_index()));
 }
 
-std::size_t interval_of(const TransferLut& lut, double place) {
-  return std::size_t(std::clamp(std::floor(place), 0.0, double(lut.last_index()) - 1));
+std::size_t interval_of(const TransferLut& lut, double coordinate) {
+  return std::size_t(std::clamp(std::floor(coordinate), 0.0, double(lut.last_index()) - 1));
 }
 
-/// Of each interval, by how many of the values lie in it.
+/// Returns the allowance of each interval by the count of values in it.
 std::vector<Allowance> allowances(const TransferLut& lut, std::span<const float> values) {
-  constexpr double kMostSigma = 16, kMostColor = 4;
+  constexpr double kMaxSigmaWeight = 16, kMaxColorWeight = 4;
   std::vector<Allowance> all(lut.last_index());
   if (values.empty()) return all;
   std::vector<std::uint32_t> counts(lut.last_index(), 1);
   for (const float value : values)
-    if (std::isfinite(value)) ++counts[interval_of(lut, place_of(lut, value))];
+    if (std::isfinite(value)) ++counts[interval_of(lut, index_of(lut, value))];
   for (std::size_t i = 0; i < all.size(); ++i) {
     const double rare = kRareValueShare * double(values.size()) / counts[i];
-    all[i] = {std::clamp(rare, 1.0, kMostSigma), std::clamp(rare, 1.0, kMostColor)};
+    all[i] = {std::clamp(rare, 1.0, kMaxSigmaWeight), std::clamp(rare, 1.0, kMaxColorWeight)};
   }
   return all;
 }
 
-/// Marks the intervals in which the samples err at a point.
+/// Marks the intervals whose interpolated samples err at a point of the function, by a negative alpha; returns whether any is marked.
 bool mark_intervals(TransferLut& lut, bool colors_alone, double length, std::span<const float> values) {
   std::vector<std::uint8_t> marked(lut.last_index());
   const std::vector<Allowance> allowed = allowances(lut, values);
   for (std::size_t i = 0; i < lut.control_values.size(); ++i) {
-    const double place = place_of(lut, lut.control_values[i]);
-    const std::size_t cell = interval_of(lut, place);
-    const auto f = float(place - double(cell));
+    const double coordinate = index_of(lut, lut.control_values[i]);
+    const std::size_t cell = interval_of(lut, coordinate);
+    const auto f = float(coordinate - double(cell));
     const glm::vec4 read = lut.entries[cell] * (1 - f) + lut.entries[cell + 1] * f;
     if (!errs(lut.control_points[i], read, colors_alone, length, allowed[cell])) continue;
-    for (const double side : {-kRoundedPlace, kRoundedPlace}) marked[interval_of(lut, place + side)] = 1;
+    for (const double side : {-kPositionRounding, kPositionRounding}) marked[interval_of(lut, coordinate + side)] = 1;
   }
   for (std::size_t i = 0; i < marked.size(); ++i)
     if (marked[i] != 0) lut.entries[i].a = -lut.entries[i].a;
   return std::ranges::find(marked, 1) != marked.end();
 }
 
-/// Counts what is visible and what is equal, among the points or the samples.
+/// Counts visible entries and runs of equal entries, among the control points or the samples.
 void number_looks(TransferLut& lut) {
   const std::vector<glm::vec4>& all = lut.has_control_points() ? lut.control_points : lut.entries;
   lut.visible_prefix.resize(all.size() + 1);
@@ -131,7 +131,7 @@ std::vector<double> control_values_between(const TransferTable& table, double lo
 }
 
 TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& range, double length, std::span<const float> values) {
-  // the values where anything changes
+  // the range of values in which the function varies
   double lo = range.min, hi = range.max, first = HUGE_VAL, last = -HUGE_VAL;
   for (const auto& p : table.colors) first = std::min(first, p[0]), last = std::max(last, p[0]);
   for (const auto& p : table.extinctions) first = std::min(first, p[0]), last = std::max(last, p[0]);
@@ -141,7 +141,7 @@ TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& rang
   }
   std::uint32_t count = kEntries;
   const double first_label = std::floor(lo + 0.5), labels = std::ceil(hi - 0.5) - first_label + 1;
-  const bool each_label = table.is_categorical && labels >= 2 && labels <= kMostLabels;
+  const bool each_label = table.is_categorical && labels >= 2 && labels <= kMaxLabels;
   if (each_label) {
     count = std::uint32_t(labels);
     lo = first_label;
@@ -149,9 +149,9 @@ TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& rang
   }
   TransferLut lut;
   lut.linear_below = each_label ? 0 : table.linear_below;
-  // of one sign the scale is the same but for a constant, whose digits a float would lack for the rest
+  // a range of one sign: the scale differs only by a constant, which would cost a float's precision
   if (lut.linear_below > 0 && (lo > 0 || hi < 0)) lut.linear_below = std::max(lut.linear_below, std::min(std::fabs(lo), std::fabs(hi)));
-  // over less than a factor of about 1.6 a logarithm in floats tells fewer values apart than the values themselves
+  // over less than a factor of about 1.6, a float logarithm resolves fewer values than the values themselves
   if (lut.has_nonlinear_scale() && symlog(hi, lut.linear_below) - symlog(lo, lut.linear_below) < 0.5) lut.linear_below = 0;
   const double from = symlog(lo, lut.linear_below), to = symlog(hi, lut.linear_below);
   lut.lo = float(from);
@@ -207,16 +207,16 @@ bool TransferLut::any_visible(const BrickRange& range) const {
 
 std::uint16_t TransferLut::appearance(const BrickRange& range) const {
   if (!any_visible(range)) return 1;
-  if (double(run_ids.size()) > kMostLooks) return 0;
+  if (double(run_ids.size()) > kMaxEntryIds) return 0;
   const auto from = std::size_t(std::floor(index(range.min))), to = std::size_t(std::ceil(index(range.max)));
   if (run_ids[from] == run_ids[to]) return std::uint16_t(2 + run_ids[from]);
-  // one value between two different entries
+  // a single value between two different entries
   constexpr float parts = 8;
-  static_assert(2 + kMostLooks + parts * kMostLooks < 65536 && kEntries < kMostLooks);
-  const float place = sample_index(range.min);
-  const bool marked = std::signbit(entries[std::min(std::size_t(place), std::size_t(last_index()) - 1)].a);
+  static_assert(2 + kMaxEntryIds + parts * kMaxEntryIds < 65536 && kEntries < kMaxEntryIds);
+  const float coordinate = sample_index(range.min);
+  const bool marked = std::signbit(entries[std::min(std::size_t(coordinate), std::size_t(last_index()) - 1)].a);
   if (range.min != range.max || marked) return 0;
-  return std::uint16_t(2 + run_ids.size() + std::size_t(std::lround(parts * place)));
+  return std::uint16_t(2 + run_ids.size() + std::size_t(std::lround(parts * coordinate)));
 }
 
 }  // namespace catena::render

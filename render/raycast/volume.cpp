@@ -33,10 +33,10 @@ constexpr std::uint32_t kVolumeLayersShader[] = {
 constexpr std::uint32_t kVolumeTilesShader[] = {
 #include "spirv/dirty_tile_quads.vert.inc"
 };
-constexpr std::uint32_t kLayers = 27;                         // bindings of their colours; those of their depths follow
+constexpr std::uint32_t kLayers = 27;                         // first binding of the layers' colors; their depths follow
 constexpr std::uint32_t kChanged = kLayers + 2 * MAX_LAYERS;  // as in dirty_tile_quads.vert
 
-/// Below this share of active bricks a ray asks the brick map before it samples; above, asking costs more than it saves.
+/// Share of active bricks below which a ray reads the brick map before it samples; above, reading costs more than it saves.
 constexpr double kSkipBelow = 0.95;
 
 bool same(const TransferTable& a, const TransferTable& b) {
@@ -44,7 +44,7 @@ bool same(const TransferTable& a, const TransferTable& b) {
          a.is_categorical == b.is_categorical && a.linear_below == b.linear_below;
 }
 
-/// The colour and sigma of a volume follow from its value alone.
+/// Returns whether color and extinction depend on the value alone.
 bool is_plain_where_its_value_is(const VolumeItem& item) {
   return !item.is_shaded && !item.color_by && item.transfer.gradient_factors.empty();
 }
@@ -187,7 +187,7 @@ std::vector<vk::Binding> VolumeRaycast::bindings(const PipelineKey& kind, std::s
 }
 
 VolumeRaycast::DrawState VolumeRaycast::make_draw_state(const CameraRays& rays, const RaySettings& settings, const RayScene& scene) const {
-  // volumes, surfaces, the grids that colour them
+  // volumes, surfaces, grids that color them
   DrawState out{{.has_opaque = scene.opaque_depth != nullptr,
                  .volumes = std::uint32_t(volumes_.size()),
                  .surfaces = std::uint32_t(surfaces_.size()),
@@ -206,8 +206,8 @@ VolumeRaycast::DrawState VolumeRaycast::make_draw_state(const CameraRays& rays, 
     data.grids[bound.size()] = volume_data(rays, volume);
     if (!volume.factors.entries.empty()) kind.modes |= 1u << (2 * bound.size());
     kind.tables |= table_flags(volume.lut) | table_flags(volume.factors);
-    const double own = volume.item.grid->mapping().min_voxel_edge();
-    edge = edge > 0 ? std::min(edge, own) : own;
+    const double voxel_edge = volume.item.grid->mapping().min_voxel_edge();
+    edge = edge > 0 ? std::min(edge, voxel_edge) : voxel_edge;
     const bool skips = settings.skip_empty && double(volume.map.active_count) < kSkipBelow * double(volume.map.total_count);
     bound.push_back({volume.resident, &volume.map, volume.item.is_shaded, skips});
   }
@@ -250,32 +250,32 @@ Outcome VolumeRaycast::record_half_opacity_depth(vk::Commands& commands, const C
                                                  const VkRect2D& area, const RayScene& scene) {
   DrawState found = make_draw_state(rays, settings, scene);
   found.key.half_opacity_depth = true;
-  found.key.fog = found.key.jitter = 0;  // no colour, no grain
+  found.key.fog = found.key.jitter = 0;  // depth has no color and no noise
   return draw(commands, found, area, scene);
 }
 
 Outcome VolumeRaycast::record_into(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
                                    const RayScene& scene, vk::Image& target, bool keep) {
   DrawState now = make_draw_state(rays, settings, scene);
-  EyeState& own = eye_state();
+  EyeState& eye = eye_state();
   const ReuseState next{
       now.key, {now.frame, appearance_version_, scene.layers_version, &target, target.handle(), area, scene.opaque_depth != nullptr}};
-  const bool still = reused_previous_ = keep && own.reuse && own.reuse->key == next.key && own.reuse->state.matches(next.state);
-  own.reuse.reset();
+  const bool reuses = reused_previous_ = keep && eye.reuse && eye.reuse->key == next.key && eye.reuse->state.matches(next.state);
+  eye.reuse.reset();
   if (scene.opaque_depth) {
-    if (!own.opaque_tiles) own.opaque_tiles.emplace(*device_);
-    CATENA_CHECK(own.opaque_tiles->analyze(commands, *scene.opaque_depth));
-    if (still) CATENA_CHECK(own.opaque_tiles->find_dirty(commands, 0));
+    if (!eye.opaque_tiles) eye.opaque_tiles.emplace(*device_);
+    CATENA_CHECK(eye.opaque_tiles->analyze(commands, *scene.opaque_depth));
+    if (reuses) CATENA_CHECK(eye.opaque_tiles->find_dirty(commands, 0));
   }
-  if (!still || scene.opaque_depth) {
-    now.key.dirty_only = still;
+  if (!reuses || scene.opaque_depth) {
+    now.key.dirty_only = reuses;
     vk::ColorTarget color{&target, std::array<float, 4>{0, 0, 0, 0}};
-    if (still) color.clear.reset();
+    if (reuses) color.clear.reset();
     commands.begin_pass({&color, 1}, {});
     CATENA_CHECK(draw(commands, now, area, scene));
     commands.end_pass();
   }
-  own.reuse = next;
+  eye.reuse = next;
   return Done{};
 }
 

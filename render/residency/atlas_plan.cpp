@@ -17,10 +17,10 @@ Index3 AtlasPlan::first_voxel(std::size_t brick) const {
           origin.z + kBrickSize * int(brick / bx / by)};
 }
 
-/// A brick's voxels are those of its block and of the seven that the apron touches.
+/// A brick is constant if its block and the seven blocks that its apron touches have one value.
 AtlasPlan plan_atlas(const field::ScalarGrid& grid, const Index3& first, const std::array<std::int32_t, 3>& bricks) {
   const auto [bx, by, bz] = bricks;
-  // constant blocks, one more an axis for the aprons
+  // blocks of one value; one more per axis for the aprons
   const int cx = bx + 1, cy = by + 1;
   std::vector<std::uint8_t> constant(std::size_t(cx) * cy * (bz + 1));
   std::vector<float> value(constant.size());

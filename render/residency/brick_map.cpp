@@ -10,15 +10,15 @@ namespace catena::render {
 
 namespace {
 
-/// One texel a brick.
+/// Creates an image of one texel per brick.
 Result<vk::Image> make_image(vk::Device& device, const std::array<std::int32_t, 3>& bricks, VkFormat format) {
   return vk::Image::create(device, vk::volume_image_info(format, std::size_t(bricks[0]), std::size_t(bricks[1]), std::size_t(bricks[2])));
 }
 
 }  // namespace
 
-// Chamfer distance of the largest coordinate to the nearest brick of another kind, for all kinds at once: two sweeps over the 13
-// neighbours that come before (after) a brick. OutwardSide the grid nothing is of another kind.
+// Chebyshev distance to the nearest brick of another kind, for all kinds at once; kind 0: 0. Computed by two sweeps over the 13 neighbors
+// before (after) a brick. Bricks outside the grid count as the same kind.
 std::vector<std::uint8_t> homogeneous_distances(const std::array<std::int32_t, 3>& bricks, const std::vector<std::uint16_t>& kind) {
   const auto [nx, ny, nz] = bricks;
   std::vector<std::uint8_t> distance(kind.size());
@@ -49,49 +49,49 @@ std::vector<std::uint8_t> empty_distances(const std::array<std::int32_t, 3>& bri
   return homogeneous_distances(bricks, kind);
 }
 
-Result<BrickMap> make_brick_word_map(vk::Device& device, const ResidentGrid& mirror, std::span<const std::uint8_t> high) {
-  CATENA_ASSERT(mirror.is_drawable && high.size() == mirror.brick_ranges.size());
+Result<BrickMap> make_brick_word_map(vk::Device& device, const ResidentGrid& resident, std::span<const std::uint8_t> high) {
+  CATENA_ASSERT(resident.is_drawable && high.size() == resident.brick_ranges.size());
   BrickMap map;
   map.total_count = map.active_count = high.size();
-  CATENA_TRY(map.image, make_image(device, mirror.bricks, VK_FORMAT_R32_UINT));
-  const std::size_t plane = std::size_t(mirror.bricks[0]) * mirror.bricks[1];
+  CATENA_TRY(map.image, make_image(device, resident.bricks, VK_FORMAT_R32_UINT));
+  const std::size_t plane = std::size_t(resident.bricks[0]) * resident.bricks[1];
   CATENA_CHECK(vk::upload_planes(device, map.image, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
     std::vector<std::uint32_t> words(plane * count);
     for (std::size_t i = 0; i < words.size(); ++i) {
       const std::size_t brick = first * plane + i;
-      words[i] = (mirror.atlas ? mirror.brick_slots[brick] : 0u) | std::uint32_t(high[brick]) << 24;
+      words[i] = (resident.atlas ? resident.brick_slots[brick] : 0u) | std::uint32_t(high[brick]) << 24;
     }
     std::memcpy(out, words.data(), words.size() * sizeof(std::uint32_t));
   }));
   return map;
 }
 
-Result<BrickMap> make_brick_map(vk::Device& device, const ResidentGrid& mirror, const std::function<bool(const BrickRange&)>& is_active) {
-  std::vector<std::uint8_t> active(mirror.brick_ranges.size());
-  std::transform(mirror.brick_ranges.begin(), mirror.brick_ranges.end(), active.begin(),
+Result<BrickMap> make_brick_map(vk::Device& device, const ResidentGrid& resident, const std::function<bool(const BrickRange&)>& is_active) {
+  std::vector<std::uint8_t> active(resident.brick_ranges.size());
+  std::transform(resident.brick_ranges.begin(), resident.brick_ranges.end(), active.begin(),
                  [&](const BrickRange& r) { return !r.empty() && is_active(r); });
-  CATENA_TRY(BrickMap map, make_brick_word_map(device, mirror, empty_distances(mirror.bricks, active)));
+  CATENA_TRY(BrickMap map, make_brick_word_map(device, resident, empty_distances(resident.bricks, active)));
   map.active_count = std::uint64_t(std::count(active.begin(), active.end(), 1));
   return map;
 }
 
-Result<BrickMap> make_skip_map(vk::Device& device, const ResidentGrid& mirror,
+Result<BrickMap> make_skip_map(vk::Device& device, const ResidentGrid& resident,
                                const std::function<std::uint16_t(const BrickRange&)>& kind) {
-  std::vector<std::uint16_t> kinds(mirror.brick_ranges.size());
-  std::transform(mirror.brick_ranges.begin(), mirror.brick_ranges.end(), kinds.begin(), [&](const BrickRange& r) -> std::uint16_t {
+  std::vector<std::uint16_t> kinds(resident.brick_ranges.size());
+  std::transform(resident.brick_ranges.begin(), resident.brick_ranges.end(), kinds.begin(), [&](const BrickRange& r) -> std::uint16_t {
     const std::uint16_t k = r.empty() ? std::uint16_t(1) : kind(r);
-    return mirror.masked && k > 1 ? 0 : k;
+    return resident.masked && k > 1 ? 0 : k;
   });
-  std::vector<std::uint8_t> high = homogeneous_distances(mirror.bricks, kinds);
+  std::vector<std::uint8_t> high = homogeneous_distances(resident.bricks, kinds);
   for (std::size_t i = 0; i < high.size(); ++i) high[i] = std::uint8_t(std::min<int>(high[i], 127) | (kinds[i] > 1 ? 128 : 0));
-  CATENA_TRY(BrickMap map, make_brick_word_map(device, mirror, high));
+  CATENA_TRY(BrickMap map, make_brick_word_map(device, resident, high));
   map.active_count = std::uint64_t(std::count(kinds.begin(), kinds.end(), 0));
   return map;
 }
 
-Result<HomogeneousMap> make_homogeneous_map(vk::Device& device, const PackedVolume& packed, const CodeAppearance& looks) {
+Result<HomogeneousMap> make_homogeneous_map(vk::Device& device, const PackedVolume& packed, const CodeAppearance& appearance) {
   std::vector<std::uint16_t> kind(packed.ranges.size());
-  std::transform(packed.ranges.begin(), packed.ranges.end(), kind.begin(), [&](const CodeRange& r) { return looks.classify(r); });
+  std::transform(packed.ranges.begin(), packed.ranges.end(), kind.begin(), [&](const CodeRange& r) { return appearance.classify(r); });
   const std::vector<std::uint8_t> distance = homogeneous_distances(packed.bricks, kind);
   HomogeneousMap map;
   map.skippable_share =

@@ -32,13 +32,14 @@ struct BrickMap {
 };
 
 /// Builds the map of active bricks. `is_active` is called once for each brick with a valid cell; others are inactive.
-Result<BrickMap> make_brick_map(vk::Device& device, const ResidentGrid& mirror, const std::function<bool(const BrickRange&)>& is_active);
+Result<BrickMap> make_brick_map(vk::Device& device, const ResidentGrid& resident, const std::function<bool(const BrickRange&)>& is_active);
 
 /// Builds the map of a volume. `kind` is called for each brick with a valid cell: 0 varies, 1 empty, other numbers homogeneous, equal if
 /// the appearance is equal. Bricks that are not completely valid count as varying instead of homogeneous: with a mask, all of them.
-Result<BrickMap> make_skip_map(vk::Device& device, const ResidentGrid& mirror, const std::function<std::uint16_t(const BrickRange&)>& kind);
+Result<BrickMap> make_skip_map(vk::Device& device, const ResidentGrid& resident,
+                               const std::function<std::uint16_t(const BrickRange&)>& kind);
 /// Builds the map with the given bits 24..31, by brick.
-Result<BrickMap> make_brick_word_map(vk::Device& device, const ResidentGrid& mirror, std::span<const std::uint8_t> high);
+Result<BrickMap> make_brick_word_map(vk::Device& device, const ResidentGrid& resident, std::span<const std::uint8_t> high);
 
 /// Map of homogeneous bricks of a packed volume: one byte per brick of 4^3 cells, in an image R8_UINT. 0: the transfer function varies in
 /// the brick. d > 0: the brick is homogeneous (empty, or of one color and extinction), and so, with the same appearance, are all bricks
@@ -49,7 +50,7 @@ struct HomogeneousMap {
   double skippable_share = 0;  ///< share of bricks with d > 0
 };
 
-/// Builds the map. `looks`: appearance of the codes.
-Result<HomogeneousMap> make_homogeneous_map(vk::Device& device, const PackedVolume& packed, const CodeAppearance& looks);
+/// Builds the map. `appearance`: appearance of the codes.
+Result<HomogeneousMap> make_homogeneous_map(vk::Device& device, const PackedVolume& packed, const CodeAppearance& appearance);
 
 }  // namespace catena::render

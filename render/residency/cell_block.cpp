@@ -26,18 +26,18 @@ void CellBlock::read(const field::ScalarGrid& grid, const Index3& origin, const 
       }
 }
 
-BrickRange CellBlock::compute_range(const Index3& first, const Index3& end, int reach) const {
-  float least = std::numeric_limits<float>::infinity(), greatest = -least;
-  const auto take = [&](const Index3& from, const Index3& to) {
+BrickRange CellBlock::compute_range(const Index3& first, const Index3& end, int margin) const {
+  float min_value = std::numeric_limits<float>::infinity(), max_value = -min_value;
+  const auto include_range = [&](const Index3& from, const Index3& to) {
     for (int z = from.z; z <= to.z; ++z)
       for (int y = from.y; y <= to.y; ++y)
         for (int x = from.x; x <= to.x; ++x) {
           const float v = values[voxel_index(x, y, z)];
-          least = std::min(least, v);
-          greatest = std::max(greatest, v);
+          min_value = std::min(min_value, v);
+          max_value = std::max(max_value, v);
         }
   };
-  // most bricks are all valid, or not at all
+  // fast path: in most bricks all cells are valid, or none
   std::size_t some = 0, count = 0;
   if (!valid.empty()) {
     for (int z = first.z; z < end.z; ++z)
@@ -45,14 +45,15 @@ BrickRange CellBlock::compute_range(const Index3& first, const Index3& end, int 
         for (int x = first.x; x < end.x; ++x, ++count) some += valid[voxel_index(x, y, z)] != 0;
   }
   if (some == count) {
-    take({first.x - reach, first.y - reach, first.z - reach}, {end.x + reach, end.y + reach, end.z + reach});
+    include_range({first.x - margin, first.y - margin, first.z - margin}, {end.x + margin, end.y + margin, end.z + margin});
   } else if (some > 0) {
     for (int z = first.z; z < end.z; ++z)
       for (int y = first.y; y < end.y; ++y)
         for (int x = first.x; x < end.x; ++x)
-          if (valid[voxel_index(x, y, z)]) take({x - reach, y - reach, z - reach}, {x + 1 + reach, y + 1 + reach, z + 1 + reach});
+          if (valid[voxel_index(x, y, z)])
+            include_range({x - margin, y - margin, z - margin}, {x + 1 + margin, y + 1 + margin, z + 1 + margin});
   }
-  return least <= greatest ? BrickRange{least, greatest} : BrickRange{};
+  return min_value <= max_value ? BrickRange{min_value, max_value} : BrickRange{};
 }
 
 BrickRange widen_for_cubic(const BrickRange& r) {

@@ -18,9 +18,9 @@ struct CellBlock {
   /// Reads the voxels from `origin` on. `masked`: some cells may be invalid.
   void read(const field::ScalarGrid& grid, const field::Index3& origin, const field::Index3& size, bool masked);
   std::size_t voxel_index(int x, int y, int z) const { return (std::size_t(z) * voxels.y + y) * voxels.x + x; }
-  /// Returns the range over the corners of valid cells with base from `first` to before `end`, and over the voxels within `reach` of the
+  /// Returns the range over the corners of valid cells with base from `first` to before `end`, and over the voxels within `margin` of the
   /// corners.
-  BrickRange compute_range(const field::Index3& first, const field::Index3& end, int reach) const;
+  BrickRange compute_range(const field::Index3& first, const field::Index3& end, int margin) const;
 };
 
 /// Returns the range of a cubic interpolant of samples in the range `r`.

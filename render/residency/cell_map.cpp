@@ -18,9 +18,10 @@ namespace {
 constexpr int kCellBrick = 4, kBlocks = kBrickSize / 2;
 constexpr std::size_t kVoxels = std::size_t(kPaddedBrickSize) * kPaddedBrickSize * kPaddedBrickSize;
 constexpr std::size_t kCubicVoxels = std::size_t(kCubicSamples) * kCubicSamples * kCubicSamples;
-constexpr float kCubicRounding = 1e-5f;  // of the brick's range: more than the shader's
+constexpr float kCubicRounding = 1e-5f;  // share of the brick's range; exceeds the rounding error of the shader
 
-/// Where the corners of a brick of 8^3 cells lie, nine bits a row of voxels; `slack` widens the level.
+/// Signs of the corners of a brick of 8^3 cells relative to the level, nine bits per row of voxels; `slack` widens the level to an
+/// interval.
 struct Rows {
   std::array<std::uint32_t, kPaddedBrickSize * kPaddedBrickSize> above{}, clearly_above{};
 
@@ -37,7 +38,7 @@ struct Rows {
       clearly_above[row] = c;
     }
   }
-  /// Eight bits: the cells of the row at (y, z) with corners on both sides.
+  /// Returns the cells of the row (y, z), eight bits, that have corners on both sides of the level.
   std::uint32_t crossed(int y, int z) const {
     std::uint32_t some = 0, all = ~0u;
     for (const int row :
@@ -51,16 +52,17 @@ struct Rows {
 
 class CellMapBuilder {
  public:
-  CellMapBuilder(const field::ScalarGrid& grid, const ResidentGrid& mirror, float level) : grid_(grid), mirror_(mirror), level_(level) {
-    halves_ = mirror.values.info().format == VK_FORMAT_R16_SFLOAT;
-    if (halves_ && mirror.offset != 0) slack_ = 1e-6f * (std::fabs(mirror.offset) + std::fabs(mirror.scale));
+  CellMapBuilder(const field::ScalarGrid& grid, const ResidentGrid& resident, float level)
+      : grid_(grid), resident_(resident), level_(level) {
+    halves_ = resident.values.info().format == VK_FORMAT_R16_SFLOAT;
+    if (halves_ && resident.offset != 0) slack_ = 1e-6f * (std::fabs(resident.offset) + std::fabs(resident.scale));
   }
 
   void build(CellMap& map) const {
-    const auto [bx, by, bz] = mirror_.bricks;
+    const auto [bx, by, bz] = resident_.bricks;
     parallel_for(std::size_t(by) * bz, 1, [&, bx = bx, by = by](std::size_t begin, std::size_t end) {
-      std::vector<float> values(mirror_.cubic ? kCubicVoxels : kVoxels);
-      std::vector<std::uint8_t> valid(mirror_.masked ? kVoxels : 0);
+      std::vector<float> values(resident_.cubic ? kCubicVoxels : kVoxels);
+      std::vector<std::uint8_t> valid(resident_.masked ? kVoxels : 0);
       for (std::size_t line = begin; line < end; ++line)
         for (int x = 0; x < bx; ++x) brick(map, {x, int(line % by), int(line / by)}, values, valid);
     });
@@ -68,35 +70,35 @@ class CellMapBuilder {
 
  private:
   void brick(CellMap& map, const field::Index3& at, std::vector<float>& values, std::vector<std::uint8_t>& valid) const {
-    const BrickRange& range = mirror_.brick_ranges[mirror_.brick_index(at.x, at.y, at.z)];
+    const BrickRange& range = resident_.brick_ranges[resident_.brick_index(at.x, at.y, at.z)];
     if (range.empty() || range.min - slack_ > level_ || range.max + slack_ < level_) return;
     const field::Index3 first{kBrickSize * at.x, kBrickSize * at.y, kBrickSize * at.z};
-    const field::Index3 origin{mirror_.origin.x + first.x, mirror_.origin.y + first.y, mirror_.origin.z + first.z};
-    if (mirror_.cubic)
+    const field::Index3 origin{resident_.origin.x + first.x, resident_.origin.y + first.y, resident_.origin.z + first.z};
+    if (resident_.cubic)
       grid_.read_block({origin.x - 1, origin.y - 1, origin.z - 1}, {kCubicSamples, kCubicSamples, kCubicSamples}, values);
     else
       grid_.read_block(origin, {kPaddedBrickSize, kPaddedBrickSize, kPaddedBrickSize}, values);
     if (halves_)
       for (float& v : values)
-        v = mirror_.offset + mirror_.scale * imath_half_to_float(imath_float_to_half((v - mirror_.offset) / mirror_.scale));
+        v = resident_.offset + resident_.scale * imath_half_to_float(imath_float_to_half((v - resident_.offset) / resident_.scale));
     if (!valid.empty()) grid_.read_cell_validity(origin, {kPaddedBrickSize, kPaddedBrickSize, kPaddedBrickSize}, valid);
     Rows rows;
     std::array<std::uint8_t, kBrickSize * kBrickSize> cubic_rows{};
-    if (mirror_.cubic)
+    if (resident_.cubic)
       cubic_rows = find_cubic_cells(values, level_, slack_ + kCubicRounding * (range.max - range.min));
     else
       rows.compare(values, level_, slack_);
-    // the domain's cells of this brick
+    // the brick's cells inside the domain
     std::array<int, 3> lo{}, hi{};
     for (int axis = 0; axis < 3; ++axis) {
       const int begin = axis == 0 ? first.x : axis == 1 ? first.y : first.z;
-      lo[axis] = std::max(0, int(std::lround(mirror_.box_lo[axis])) - begin);
-      hi[axis] = std::min(kBrickSize, int(std::lround(mirror_.box_hi[axis])) - begin);
+      lo[axis] = std::max(0, int(std::lround(resident_.box_lo[axis])) - begin);
+      hi[axis] = std::min(kBrickSize, int(std::lround(resident_.box_hi[axis])) - begin);
     }
     const std::uint32_t in_x = hi[0] > lo[0] ? (0xffu >> (kBrickSize - hi[0])) & (0xffu << lo[0]) : 0u;
     for (int z = lo[2]; z < hi[2]; ++z)
       for (int y = lo[1]; y < hi[1]; ++y) {
-        std::uint32_t cells = (mirror_.cubic ? cubic_rows[y + kBrickSize * z] : rows.crossed(y, z)) & in_x;
+        std::uint32_t cells = (resident_.cubic ? cubic_rows[y + kBrickSize * z] : rows.crossed(y, z)) & in_x;
         if (!valid.empty() && cells) cells &= valid_cells(values, valid, y, z);
         for (int x = 0; cells; ++x, cells >>= 2) {
           const std::size_t block = map.block_index(kBlocks * at.x + x, kBlocks * at.y + y / 2, kBlocks * at.z + z / 2);
@@ -105,12 +107,13 @@ class CellMapBuilder {
       }
   }
 
-  /// What is not finite is masked; where ghosts stand in its place the cells say so themselves.
+  /// Returns the valid cells of the row (y, z), eight bits. A cell with a corner that is not finite is invalid; a cubic grid has finite
+  /// ghosts at such corners, so that only the grid's own validity counts.
   std::uint32_t valid_cells(const std::vector<float>& values, const std::vector<std::uint8_t>& valid, int y, int z) const {
     std::uint32_t cells = 0;
     for (int x = 0; x < kBrickSize; ++x) {
       bool is_valid = valid[(std::size_t(z) * kPaddedBrickSize + y) * kPaddedBrickSize + x] != 0;
-      for (int c = 0; c < 8 && is_valid && !mirror_.cubic; ++c)
+      for (int c = 0; c < 8 && is_valid && !resident_.cubic; ++c)
         is_valid =
             std::isfinite(values[(std::size_t(z + (c >> 2)) * kPaddedBrickSize + y + (c >> 1 & 1)) * kPaddedBrickSize + x + (c & 1)]);
       cells |= std::uint32_t(is_valid) << x;
@@ -119,18 +122,18 @@ class CellMapBuilder {
   }
 
   const field::ScalarGrid& grid_;
-  const ResidentGrid& mirror_;
+  const ResidentGrid& resident_;
   float level_, slack_ = 0;
   bool halves_ = false;
 };
 
-/// Distances, the number of cells and what encloses their bricks.
-void finish(CellMap& map, const ResidentGrid& mirror) {
+/// Adds the distances to active bricks, the number of cells, and the bounds of the active bricks.
+void finish(CellMap& map, const ResidentGrid& resident) {
   std::array<std::int32_t, 3> bricks{};
   for (int axis = 0; axis < 3; ++axis) bricks[axis] = map.blocks[axis] / 2;
   const auto [bx, by, bz] = bricks;
   std::vector<std::uint8_t> active(std::size_t(bx) * by * bz);
-  std::array<int, 3> least{bx, by, bz}, most{-1, -1, -1};
+  std::array<int, 3> min_block{bx, by, bz}, max_block{-1, -1, -1};
   for (std::size_t i = 0; i < active.size(); ++i) {
     const std::array<int, 3> at{int(i % bx), int(i / bx % by), int(i / bx / by)};
     int cells = 0;
@@ -140,8 +143,8 @@ void finish(CellMap& map, const ResidentGrid& mirror) {
     active[i] = 1;
     map.cell_count += std::uint64_t(cells);
     for (int axis = 0; axis < 3; ++axis) {
-      least[axis] = std::min(least[axis], at[axis]);
-      most[axis] = std::max(most[axis], at[axis]);
+      min_block[axis] = std::min(min_block[axis], at[axis]);
+      max_block[axis] = std::max(max_block[axis], at[axis]);
     }
   }
   const std::vector<std::uint8_t> distance = empty_distances(bricks, active);
@@ -155,28 +158,28 @@ void finish(CellMap& map, const ResidentGrid& mirror) {
   });
   if (map.cell_count == 0) return;
   for (int axis = 0; axis < 3; ++axis) {
-    map.lo[axis] = std::max(mirror.box_lo[axis], double(kCellBrick * least[axis]));
-    map.hi[axis] = std::min(mirror.box_hi[axis], double(kCellBrick * (most[axis] + 1)));
+    map.lo[axis] = std::max(resident.box_lo[axis], double(kCellBrick * min_block[axis]));
+    map.hi[axis] = std::min(resident.box_hi[axis], double(kCellBrick * (max_block[axis] + 1)));
   }
 }
 
 }  // namespace
 
-CellMap make_cell_map(const field::ScalarGrid& grid, const ResidentGrid& mirror, float level, std::uint64_t most_texels) {
-  CATENA_ASSERT(mirror.is_drawable);
+CellMap make_cell_map(const field::ScalarGrid& grid, const ResidentGrid& resident, float level, std::uint64_t max_texels) {
+  CATENA_ASSERT(resident.is_drawable);
   CellMap map;
   std::uint64_t count = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    map.blocks[axis] = kBlocks * mirror.bricks[axis];
+    map.blocks[axis] = kBlocks * resident.bricks[axis];
     count *= std::uint64_t(map.blocks[axis]);
   }
-  map.lo = mirror.box_lo;
-  map.hi = mirror.box_hi;
-  if (count > most_texels) return map;
+  map.lo = resident.box_lo;
+  map.hi = resident.box_hi;
+  if (count > max_texels) return map;
   map.texels.assign(count, 0);
   map.lo = map.hi = Vec3(0.0);
-  CellMapBuilder(grid, mirror, level).build(map);
-  finish(map, mirror);
+  CellMapBuilder(grid, resident, level).build(map);
+  finish(map, resident);
   return map;
 }
 

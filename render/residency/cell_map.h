@@ -23,8 +23,8 @@ struct CellMap {
   std::size_t block_index(int x, int y, int z) const { return (std::size_t(z) * blocks[1] + y) * blocks[0] + x; }
 };
 
-/// Builds the map; `mirror` was made from `grid`. If it would exceed `most_texels` texels, it has none, and lo, hi are the domain.
-CellMap make_cell_map(const field::ScalarGrid& grid, const ResidentGrid& mirror, float level, std::uint64_t most_texels = 32 << 20);
+/// Builds the map; `resident` was made from `grid`. If it would exceed `max_texels` texels, it has none, and lo, hi are the domain.
+CellMap make_cell_map(const field::ScalarGrid& grid, const ResidentGrid& resident, float level, std::uint64_t max_texels = 32 << 20);
 
 /// Uploads the texels as an R16_UINT image.
 Result<vk::Image> upload_cell_map(vk::Device& device, const CellMap& map);

@@ -7,9 +7,9 @@
 namespace catena::render {
 namespace {
 
-constexpr int kControls = 3 * kBrickSize + 1;  // an axis: three a cell, and the last one
+constexpr int kControls = 3 * kBrickSize + 1;  // control points per axis: three per cell, and the last one
 
-/// A row of samples to its control points; `step` floats from one to the next, in both.
+/// Converts a row of samples into Bezier control points of a cubic per cell; `step`: stride of both arrays, in floats.
 void to_controls(const float* sample, float* control, std::size_t step) {
   for (int cell = 0; cell < kBrickSize; ++cell) {
     const float a = sample[cell * step], b = sample[(cell + 1) * step], c = sample[(cell + 2) * step], d = sample[(cell + 3) * step];

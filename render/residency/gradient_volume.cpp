@@ -24,9 +24,9 @@ BlockGradient block_gradient(const VoxelBlock& block, int x, int y, int z) {
 }
 
 void write_gradient(const BlockGradient& g, double per_code, std::byte* out) {
-  constexpr float kLongest = 6e4f;  // of half floats, with room for rounding
+  constexpr float kMaxGradient = 6e4f;  // maximum of a half float, with a margin for rounding
   const double codes = per_code > 0 ? 1 / per_code : 0, length = codes * double(g.length());
-  const double scale = length > double(kLongest) ? codes * (double(kLongest) / length) : codes;
+  const double scale = length > double(kMaxGradient) ? codes * (double(kMaxGradient) / length) : codes;
   const auto half = [scale](float a) { return imath_float_to_half(float(double(a) * scale)); };
   const std::uint16_t texel[4] = {half(g.x), half(g.y), half(g.z), 0};
   std::memcpy(out, texel, kGradientBytes);

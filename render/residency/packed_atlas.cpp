@@ -20,15 +20,15 @@ namespace {
 
 using field::Index3;
 
-constexpr double kMostBricks = 1 << 24;
+constexpr double kMaxBricks = 1 << 24;
 constexpr std::size_t kWordsX = kBrickSize, kWordsY = kPaddedBrickSize, kWordsZ = kPaddedBrickSize;
-constexpr double kRough = 0.01;
+constexpr double kRoughnessTolerance = 0.01;
 constexpr std::uint32_t kWithoutSlot = 1u << 31;
 
-/// The voxels of a brick, and of `margin` layers around it, that the grid has.
+/// The grid's voxels of a brick and of `margin` layers around it.
 struct BrickBlock {
   VoxelBlock block;
-  Index3 offset;  ///< of the brick's first voxel in the block; below 0 where the grid begins within the brick
+  Index3 offset;  ///< index of the brick's first voxel in the block; negative if the grid begins within the brick
 
   void read(const field::ScalarGrid& grid, const BrickScan& scan, const Index3& brick, int margin) {
     const auto along = [&](int b, int lo, int hi, int& from, int& count, int& at) {
@@ -43,7 +43,7 @@ struct BrickBlock {
     along(brick.z, scan.box_lo.z, scan.box_hi.z, from.z, count.z, offset.z);
     block.read(grid, {scan.origin.x + from.x, scan.origin.y + from.y, scan.origin.z + from.z}, count, false);
   }
-  /// The voxels x0 .. x1 of the brick that the block has along an axis.
+  /// First and last voxel of the brick that the block contains, along an axis.
   static int first(int offset) { return std::max(0, -offset); }
   static int last(int offset, int size) { return std::min(kBrickSize, size - 1 - offset); }
 };
@@ -53,7 +53,7 @@ Index3 brick_at(const std::array<std::int32_t, 3>& bricks, std::size_t i) {
   return {std::int32_t(i % bx), std::int32_t(i / bx % by), std::int32_t(i / bx / by)};
 }
 
-/// Bricks whose 9^3 voxels are one value without a tree leaf.
+/// Finds bricks whose 9^3 voxels are one value without a leaf of the tree.
 class ConstantBricks {
  public:
   ConstantBricks(const field::ScalarGrid& grid, const BrickScan& scan) : wide_{scan.bricks[0] + 1, scan.bricks[1] + 1, scan.bricks[2] + 1} {
@@ -84,7 +84,7 @@ class ConstantBricks {
   std::vector<float> value_;
 };
 
-/// What every second gradient tells about those between.
+/// Error of interpolating each gradient from its neighbors, with gradients at every second voxel.
 struct GradientSums {
   double errors = 0, pairs = 0;
 
@@ -108,13 +108,13 @@ struct GradientSums {
 
 }  // namespace
 
-Error memory_limit_error(std::uint64_t needed, std::uint64_t most) {
-  return Error{fmt::format("it takes {} MiB on the device, at most {} are allowed", needed >> 20, most >> 20)};
+Error memory_limit_error(std::uint64_t needed, std::uint64_t limit) {
+  return Error{fmt::format("it takes {} MiB on the device, at most {} are allowed", needed >> 20, limit >> 20)};
 }
 
 bool can_pack_as_bricks(const field::ScalarGrid& grid) {
   const Vec3 n = grid.index_box().hi - grid.index_box().lo + Vec3(1.0), bricks = n / double(kBrickSize) + Vec3(2.0);
-  return grid.stats().active_voxels > 0 && std::min({n.x, n.y, n.z}) >= 2 && bricks.x * bricks.y * bricks.z <= kMostBricks &&
+  return grid.stats().active_voxels > 0 && std::min({n.x, n.y, n.z}) >= 2 && bricks.x * bricks.y * bricks.z <= kMaxBricks &&
          !has_invalid_cells(grid);
 }
 
@@ -159,7 +159,7 @@ BrickScan scan_bricks(const field::ScalarGrid& grid, const ValueInterval& active
           }
       if (r.max <= float(active.min) || r.min >= float(active.max)) continue;
       if (r.min < float(range.min) || r.max > float(range.max)) widen_to_cells(range, block, active);
-      // a third of the bricks tells enough
+      // a third of the bricks suffices for the estimate
       if (gradients && (at.x + at.y + at.z) % 3 == 0) means[i / row].add(block, o);
     }
     const std::scoped_lock held(lock);
@@ -190,24 +190,24 @@ std::vector<CodeRange> code_ranges(const BrickScan& scan, const CodeScale& codes
   return ranges;
 }
 
-/// Which bricks have to be kept.
+/// Returns which bricks must be stored.
 std::vector<std::uint8_t> needed(const BrickScan& scan, const std::vector<CodeRange>& ranges, const std::vector<std::uint16_t>& kinds) {
   const auto [bx, by, bz] = scan.bricks;
-  std::vector<std::uint8_t> keep(kinds.size());
+  std::vector<std::uint8_t> retain(kinds.size());
   parallel_for(kinds.size(), 4096, [&, bx = bx, by = by, bz = bz](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Index3 b = brick_at(scan.bricks, i);
       bool needs = kinds[i] != 1;
-      // what a ray meets on its way into a brick that varies
+      // a ray samples the neighbors of a varying brick on its way into it
       for (int c = 0; c < 27 && !needs; ++c) {
         const int x = b.x + c % 3 - 1, y = b.y + c / 3 % 3 - 1, z = b.z + c / 9 - 1;
         if (x < 0 || y < 0 || z < 0 || x >= bx || y >= by || z >= bz) continue;
         needs = kinds[(std::size_t(z) * std::size_t(by) + std::size_t(y)) * std::size_t(bx) + std::size_t(x)] != 1;
       }
-      keep[i] = needs && ranges[i].min != ranges[i].max;
+      retain[i] = needs && ranges[i].min != ranges[i].max;
     }
   });
-  return keep;
+  return retain;
 }
 
 Result<vk::Image> make_map(vk::Device& device, const BrickScan& scan, const PackedAtlas& atlas, const std::vector<CodeRange>& ranges,
@@ -227,16 +227,16 @@ Result<vk::Image> make_map(vk::Device& device, const BrickScan& scan, const Pack
   return map;
 }
 
-/// What a transfer function asks of a scan's bricks.
+/// Requirements of a transfer function on the bricks of a scan.
 struct BrickNeeds {
   std::vector<CodeRange> ranges;
   std::vector<std::uint16_t> kinds;  ///< CodeAppearance::kind
-  std::vector<std::uint8_t> keep;
+  std::vector<std::uint8_t> retain;
 
-  BrickNeeds(const BrickScan& scan, const CodeScale& codes, const CodeAppearance& looks)
+  BrickNeeds(const BrickScan& scan, const CodeScale& codes, const CodeAppearance& appearance)
       : ranges(code_ranges(scan, codes)), kinds(ranges.size()) {
-    std::transform(ranges.begin(), ranges.end(), kinds.begin(), [&](const CodeRange& r) { return looks.classify(r); });
-    keep = needed(scan, ranges, kinds);
+    std::transform(ranges.begin(), ranges.end(), kinds.begin(), [&](const CodeRange& r) { return appearance.classify(r); });
+    retain = needed(scan, ranges, kinds);
   }
 };
 
@@ -245,13 +245,13 @@ struct BrickSource {
   const BrickScan& scan;
 };
 
-/// Slots in three dimensions for what is kept.
+/// Assignment of the stored bricks to slots in three dimensions.
 struct SlotPlan {
   std::vector<std::size_t> brick_of_slot;
   std::array<std::size_t, 3> slots{};
 
-  /// Writes all slots of an image, `nx` x `ny` x `nz` texels of `texel` bytes each: write(the brick's voxels and
-  /// `margin` layers around them, its first texel, bytes a row, a plane).
+  /// Writes all slots of an image; a slot has n[0] x n[1] x n[2] texels of `texel` bytes. Calls write(the brick's voxels with `margin`
+  /// layers around them, its first texel, bytes per row, bytes per plane).
   template <class Write>
   Outcome upload(vk::Device& device, vk::Image& image, std::array<std::size_t, 3> n, std::size_t texel, const BrickSource& source,
                  int margin, const Write& write) const {
@@ -301,7 +301,7 @@ Outcome upload_gradients(vk::Device& device, const BrickSource& source, const Sl
       [&](const BrickBlock& brick, std::byte* out, std::size_t line, std::size_t plane) {
         const VoxelBlock& block = brick.block;
         const Index3 o = brick.offset;
-        // beyond the grid's ends the end's gradient holds
+        // beyond the grid's end the gradient at the end is repeated
         const auto voxel = [apart](std::size_t node, int offset, int size) {
           return offset + std::clamp(int(node * apart), BrickBlock::first(offset), BrickBlock::last(offset, size));
         };
@@ -316,28 +316,28 @@ Outcome upload_gradients(vk::Device& device, const BrickSource& source, const Sl
 }  // namespace
 
 Result<PackedAtlas> make_packed_atlas(vk::Device& device, const field::ScalarGrid& grid, const BrickScan& scan, const CodeScale& codes,
-                                      const CodeAppearance& looks, std::uint64_t most_bytes) {
-  const BrickNeeds needs(scan, codes, looks);
-  const std::vector<std::uint8_t>& keep = needs.keep;
+                                      const CodeAppearance& appearance, std::uint64_t max_bytes) {
+  const BrickNeeds needs(scan, codes, appearance);
+  const std::vector<std::uint8_t>& retain = needs.retain;
   PackedAtlas atlas;
   atlas.codes = codes;
-  atlas.stored_count = std::uint64_t(std::count(keep.begin(), keep.end(), 1));
+  atlas.stored_count = std::uint64_t(std::count(retain.begin(), retain.end(), 1));
   const auto bytes_with = [&](std::uint64_t nodes) {
     return atlas.stored_count * (2 * kWordsX * kWordsY * kWordsZ + kGradientBytes * nodes * nodes * nodes);
   };
   if (scan.with_gradients)
     atlas.gradient_nodes =
-        scan.gradient_roughness > kRough && bytes_with(kPaddedBrickSize) <= most_bytes ? kPaddedBrickSize : kBrickSize / 2 + 1;
+        scan.gradient_roughness > kRoughnessTolerance && bytes_with(kPaddedBrickSize) <= max_bytes ? kPaddedBrickSize : kBrickSize / 2 + 1;
   const std::uint64_t bytes = bytes_with(atlas.gradient_nodes);
-  if (bytes > most_bytes) return memory_limit_error(bytes, most_bytes);
+  if (bytes > max_bytes) return memory_limit_error(bytes, max_bytes);
 
   SlotPlan plan;
   const auto slots = assign_brick_slots(device, atlas.stored_count, kPaddedBrickSize);
   if (!slots) return Error{"it has to keep " + slots.error().message};
   std::copy(slots->slots_per_axis.begin(), slots->slots_per_axis.end(), plan.slots.begin());
-  atlas.slots.assign(keep.size(), PackedAtlas::kNotStored);
-  for (std::size_t i = 0; i < keep.size(); ++i) {
-    if (!keep[i]) continue;
+  atlas.slots.assign(retain.size(), PackedAtlas::kNotStored);
+  for (std::size_t i = 0; i < retain.size(); ++i) {
+    if (!retain[i]) continue;
     atlas.slots[i] = slots->pack_slot(plan.brick_of_slot.size());
     plan.brick_of_slot.push_back(i);
   }
@@ -347,11 +347,11 @@ Result<PackedAtlas> make_packed_atlas(vk::Device& device, const field::ScalarGri
   return atlas;
 }
 
-Result<bool> remap_atlas(vk::Device& device, PackedAtlas& atlas, const BrickScan& scan, const CodeAppearance& looks) {
-  const BrickNeeds needs(scan, atlas.codes, looks);
-  const std::vector<std::uint8_t>& keep = needs.keep;
-  for (std::size_t i = 0; i < keep.size(); ++i)
-    if (keep[i] && atlas.slots[i] == PackedAtlas::kNotStored) return false;
+Result<bool> remap_atlas(vk::Device& device, PackedAtlas& atlas, const BrickScan& scan, const CodeAppearance& appearance) {
+  const BrickNeeds needs(scan, atlas.codes, appearance);
+  const std::vector<std::uint8_t>& retain = needs.retain;
+  for (std::size_t i = 0; i < retain.size(); ++i)
+    if (retain[i] && atlas.slots[i] == PackedAtlas::kNotStored) return false;
   CATENA_TRY(atlas.map, make_map(device, scan, atlas, needs.ranges, needs.kinds));
   return true;
 }

@@ -50,13 +50,13 @@ bool can_pack_as_bricks(const field::ScalarGrid& grid);
 BrickScan scan_bricks(const field::ScalarGrid& grid, const ValueInterval& active, bool gradients);
 
 /// Returns the error of packing that needs more memory than permitted, bytes.
-Error memory_limit_error(std::uint64_t needed, std::uint64_t most);
+Error memory_limit_error(std::uint64_t needed, std::uint64_t limit);
 
-/// Packs the bricks. An Error if that takes more than `most_bytes` of device memory.
+/// Packs the bricks. An Error if that takes more than `max_bytes` of device memory.
 Result<PackedAtlas> make_packed_atlas(vk::Device& device, const field::ScalarGrid& grid, const BrickScan& scan, const CodeScale& codes,
-                                      const CodeAppearance& looks, std::uint64_t most_bytes);
+                                      const CodeAppearance& appearance, std::uint64_t max_bytes);
 
 /// Rebuilds the map for another transfer function of the same codes. Returns false if that needs bricks that are not stored.
-Result<bool> remap_atlas(vk::Device& device, PackedAtlas& atlas, const BrickScan& scan, const CodeAppearance& looks);
+Result<bool> remap_atlas(vk::Device& device, PackedAtlas& atlas, const BrickScan& scan, const CodeAppearance& appearance);
 
 }  // namespace catena::render

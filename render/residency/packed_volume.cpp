@@ -16,7 +16,7 @@ namespace catena::render {
 namespace {
 
 using field::Index3;
-constexpr double kMaxVoxels = 64.0 * 1024 * 1024;  // 256 MiB of words; above, bricks serve better
+constexpr double kMaxVoxels = 64.0 * 1024 * 1024;  // 256 MiB of words; larger grids are packed as bricks
 
 ValueInterval range_to_encode(const field::ScalarGrid& grid, const ValueInterval& active) {
   ValueInterval range = active;
@@ -70,26 +70,26 @@ void find_ranges(PackedVolume& packed, const std::vector<std::uint8_t>& codes) {
   packed.ranges.assign(bx * by * bz, CodeRange{});
   const bool masked = packed.codes.has_mask;
   parallel_for(by * bz, 16, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint8_t> least(row), greatest(row), holes(row);
+    std::vector<std::uint8_t> min_codes(row), max_codes(row), holes(row);
     for (std::size_t line = begin; line < end; ++line) {
       const int y0 = kSmallBrickSize * int(line % by), z0 = kSmallBrickSize * int(line / by);
-      std::fill(least.begin(), least.end(), std::uint8_t(255));
-      std::fill(greatest.begin(), greatest.end(), std::uint8_t(0));
+      std::fill(min_codes.begin(), min_codes.end(), std::uint8_t(255));
+      std::fill(max_codes.begin(), max_codes.end(), std::uint8_t(0));
       std::fill(holes.begin(), holes.end(), std::uint8_t(0));
       for (int z = z0; z <= std::min(z0 + kSmallBrickSize, n.z - 1); ++z)
         for (int y = y0; y <= std::min(y0 + kSmallBrickSize, n.y - 1); ++y) {
           const std::uint8_t* from = &codes[std::size_t(z) * plane + std::size_t(y) * row];
           for (std::size_t x = 0; x < row; ++x) {
             const std::uint8_t none = masked && from[x] == CodeScale::kInvalidCode ? 255 : 0;
-            least[x] = std::min(least[x], std::uint8_t(from[x] | none));
-            greatest[x] = std::max(greatest[x], from[x]);
+            min_codes[x] = std::min(min_codes[x], std::uint8_t(from[x] | none));
+            max_codes[x] = std::max(max_codes[x], from[x]);
             holes[x] = std::uint8_t(holes[x] | none);
           }
         }
       for (std::size_t x = 0; x < bx; ++x) {
         CodeRange& range = packed.ranges[line * bx + x];
         for (std::size_t k = kSmallBrickSize * x; k <= std::min(kSmallBrickSize * (x + 1), row - 1); ++k)
-          range = {std::min(range.min, least[k]), std::max(range.max, greatest[k]), range.has_unused || holes[k]};
+          range = {std::min(range.min, min_codes[k]), std::max(range.max, max_codes[k]), range.has_unused || holes[k]};
       }
     }
   });

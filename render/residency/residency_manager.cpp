@@ -18,7 +18,7 @@ std::string size_words(const field::ScalarGrid& grid) {
   return s[0] == s[1] && s[1] == s[2] ? fmt::format("{}^3", s[0]) : fmt::format("{} x {} x {}", s[0], s[1], s[2]);
 }
 
-/// "67 MB", "0.4 MB"
+/// Formats bytes as "67 MB" or "0.4 MB".
 std::string megabytes(std::uint64_t bytes) {
   const double mb = 1e-6 * double(bytes);
   return mb >= 10 || mb == 0 ? fmt::format("{:.0f} MB", mb) : fmt::format("{:.2g} MB", mb);
@@ -38,7 +38,7 @@ void ResidencyManager::begin_frame(std::uint64_t reserved, std::size_t sharers) 
   ++frame_number_;
   reserved_bytes_ = reserved;
   remaining_sharers_ = std::max<std::size_t>(1, sharers);
-  // what was too large once may fit by now, even beside its coarse mirror
+  // drops downsampled grids whose full resolution fits now
   std::erase_if(entries_, [this](const auto& item) {
     return item.second.resident->downsample_factor > 1 && item.second.downsampling.needed_bytes <= available_bytes();
   });
@@ -68,31 +68,31 @@ Result<std::shared_ptr<const ResidentGrid>> ResidencyManager::get(const field::S
 }
 
 Outcome ResidencyManager::build(Entry& entry, const field::ScalarGrid& grid, const ResidencyOptions& options) {
-  const auto keep = [&entry](ResidentGrid mirror) {
-    entry.resident = std::make_shared<const ResidentGrid>(std::move(mirror));
+  const auto store = [&entry](ResidentGrid uploaded) {
+    entry.resident = std::make_shared<const ResidentGrid>(std::move(uploaded));
     return Done{};
   };
   const std::uint64_t room = available_bytes();
   const auto needed = resident_grid_bytes(device_, grid, options);
   if (needed && *needed <= room) {
-    CATENA_TRY(ResidentGrid mirror, make_resident_grid(device_, grid, options));
-    return keep(std::move(mirror));
+    CATENA_TRY(ResidentGrid uploaded, make_resident_grid(device_, grid, options));
+    return store(std::move(uploaded));
   }
   const auto voxels = [&] {
     const Vec3 n = grid.index_box().hi - grid.index_box().lo + Vec3(1.0);
-    constexpr double kMost = 1e18;
-    return std::uint64_t(std::min(kMost, n.x * n.y * n.z)) * (options.use_float32 ? 4 : 2);
+    constexpr double kMaxBytes = 1e18;
+    return std::uint64_t(std::min(kMaxBytes, n.x * n.y * n.z)) * (options.use_float32 ? 4 : 2);
   };
   entry.downsampling = {grid.name(), 1, size_words(grid), needed.value_or(voxels()), room};
   for (const int factor : {2, 4, 8}) {
-    // averaging costs time: not where it cannot help
+    // skips a factor that cannot fit, because averaging takes time
     if (entry.downsampling.needed_bytes / (std::uint64_t(factor) * factor * factor) > 4 * room) continue;
     CATENA_TRY(const field::CoarseGrid coarse, field::box_downsample(grid, factor));
     const auto bytes = resident_grid_bytes(device_, *coarse.grid, options);
     if (!bytes || *bytes > room) continue;
-    CATENA_TRY(ResidentGrid mirror, make_downsampled_resident_grid(device_, coarse, factor, options));
+    CATENA_TRY(ResidentGrid uploaded, make_downsampled_resident_grid(device_, coarse, factor, options));
     entry.downsampling.factor = factor;
-    return keep(std::move(mirror));
+    return store(std::move(uploaded));
   }
   ++device_.counters().refused_allocations;
   return Error{fmt::format(

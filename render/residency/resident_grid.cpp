@@ -19,7 +19,7 @@ namespace catena::render {
 namespace {
 
 using field::Index3;
-constexpr std::uint64_t kCellMapBytes = 128;  // a brick, cell_map.h
+constexpr std::uint64_t kCellMapBytes = 128;  // bytes per brick, cell_map.h
 
 class MirrorBuilder {
  public:
@@ -28,19 +28,19 @@ class MirrorBuilder {
 
   Result<ResidentGrid> build() {
     CATENA_CHECK(ask());
-    if (!plan()) return std::move(mirror_);
-    mirror_.offset = encoder_.offset;
-    mirror_.scale = encoder_.scale;
-    CATENA_CHECK(mirror_.atlas ? build_atlas() : build_dense());
-    if (mirror_.nearest) {
-      CATENA_TRY(mirror_.point_sampler, vk::Sampler::create(device_, vk::Filter::nearest));
+    if (!plan()) return std::move(resident_);
+    resident_.offset = encoder_.offset;
+    resident_.scale = encoder_.scale;
+    CATENA_CHECK(resident_.atlas ? build_atlas() : build_dense());
+    if (resident_.nearest) {
+      CATENA_TRY(resident_.point_sampler, vk::Sampler::create(device_, vk::Filter::nearest));
     }
-    for (BrickRange& range : mirror_.brick_ranges)
-      range = mirror_.cubic ? widen_for_cubic(encoder_.round_trip(range)) : encoder_.round_trip(range);
-    return std::move(mirror_);
+    for (BrickRange& range : resident_.brick_ranges)
+      range = resident_.cubic ? widen_for_cubic(encoder_.round_trip(range)) : encoder_.round_trip(range);
+    return std::move(resident_);
   }
 
-  /// Of the images, and with what making them and the maps needs.
+  /// Bytes of the images, and with those needed for making them and the maps.
   struct Bytes {
     std::uint64_t images = 0, needed = 0;
   };
@@ -50,7 +50,7 @@ class MirrorBuilder {
     std::array<std::uint32_t, 3> values{std::uint32_t(size_.x + 2 * pad_), std::uint32_t(size_.y + 2 * pad_),
                                         std::uint32_t(size_.z + 2 * pad_)},
         mask = values;
-    if (mirror_.atlas) {
+    if (resident_.atlas) {
       const auto slots = assign_slots(device_, atlas_);
       if (!slots) return std::nullopt;
       for (int a = 0; a < 3; ++a) {
@@ -64,53 +64,53 @@ class MirrorBuilder {
     const auto mask_bytes = vk::image_memory_bytes(device_, vk::volume_image_info(VK_FORMAT_R8_UINT, mask[0], mask[1], mask[2]));
     if (!value_bytes || !mask_bytes) return std::nullopt;
     const std::uint64_t staging = std::uint64_t(kPaddedBrickSize) * values[0] * values[1] * encoder_.texel_bytes();
-    // a word a brick; for surfaces also the map of cells
-    const std::uint64_t map = mirror_.brick_ranges.size() * (sizeof(std::uint32_t) + (encoder_.float32 ? kCellMapBytes : 0));
-    const std::uint64_t images = *value_bytes + (mirror_.masked ? *mask_bytes : 0);
+    // one word per brick; for surfaces also the cell map
+    const std::uint64_t map = resident_.brick_ranges.size() * (sizeof(std::uint32_t) + (encoder_.float32 ? kCellMapBytes : 0));
+    const std::uint64_t images = *value_bytes + (resident_.masked ? *mask_bytes : 0);
     return Bytes{images, images + std::max(staging, map) + map};
   }
 
  private:
-  /// A sparse grid may reach over far more bricks than it has, and something is kept for each.
+  /// Error: too little host memory. A sparse grid may span many more bricks than it stores, and each needs memory.
   Outcome ask() const {
     const Vec3 bricks = (grid_.index_box().hi - grid_.index_box().lo) / double(kBrickSize) + Vec3(2.0);
-    constexpr double kBytesABrick = 48;  // plan and slots here; the map of cells is the GPU's
+    constexpr double kBytesPerBrick = 48;  // plan and slots on the host; the cell map is on the GPU
     return check_memory_available(fmt::format("drawing the grid \"{}\", which reaches over {:.0f} x {:.0f} x {:.0f} bricks of 8^3 voxels,",
                                               grid_.name(), bricks.x, bricks.y, bricks.z),
-                                  kBytesABrick * bricks.x * bricks.y * bricks.z);
+                                  kBytesPerBrick * bricks.x * bricks.y * bricks.z);
   }
 
-  /// What the grid is and how it is laid out; false where there is nothing to draw.
+  /// Chooses the layout; returns false if the grid has nothing to draw.
   bool plan() {
     const VoxelExtent extent = voxel_extent(grid_);
     lo_ = extent.lo;
     size_ = extent.size;
     hi_ = {lo_.x + size_.x - 1, lo_.y + size_.y - 1, lo_.z + size_.z - 1};
     if (size_.x < 2 || size_.y < 2 || size_.z < 2 || grid_.stats().active_voxels == 0) return false;
-    mirror_.is_drawable = true;
-    mirror_.nearest = grid_.interpolation() == field::Interpolation::nearest;
-    mirror_.masked = has_invalid_cells(grid_);
-    mirror_.cubic = grid_.interpolation() == field::Interpolation::cubic;
-    pad_ = mirror_.cubic ? 1 : 0;
-    if (mirror_.cubic) return true;
+    resident_.is_drawable = true;
+    resident_.nearest = grid_.interpolation() == field::Interpolation::nearest;
+    resident_.masked = has_invalid_cells(grid_);
+    resident_.cubic = grid_.interpolation() == field::Interpolation::cubic;
+    pad_ = resident_.cubic ? 1 : 0;
+    if (resident_.cubic) return true;
     if (options_.layout != GridLayout::dense) {
       const auto down = [](std::int32_t v) { return v & ~(kBrickSize - 1); };
       place({down(lo_.x), down(lo_.y), down(lo_.z)});
-      atlas_ = plan_atlas(grid_, mirror_.origin, mirror_.bricks);
+      atlas_ = plan_atlas(grid_, resident_.origin, resident_.bricks);
     }
-    mirror_.atlas = options_.layout == GridLayout::atlas || (options_.layout == GridLayout::automatic && atlas_pays());
+    resident_.atlas = options_.layout == GridLayout::atlas || (options_.layout == GridLayout::automatic && atlas_pays());
     return true;
   }
 
   Index3 padded_lo() const { return {lo_.x - pad_, lo_.y - pad_, lo_.z - pad_}; }
 
   void place(const Index3& origin) {
-    mirror_.origin = origin;
-    mirror_.box_lo = Vec3(lo_.x - origin.x, lo_.y - origin.y, lo_.z - origin.z);
-    mirror_.box_hi = Vec3(hi_.x - origin.x, hi_.y - origin.y, hi_.z - origin.z);
-    mirror_.bricks = {(hi_.x - origin.x + kBrickSize - 1) / kBrickSize, (hi_.y - origin.y + kBrickSize - 1) / kBrickSize,
-                      (hi_.z - origin.z + kBrickSize - 1) / kBrickSize};
-    mirror_.brick_ranges.assign(std::size_t(mirror_.bricks[0]) * mirror_.bricks[1] * mirror_.bricks[2], BrickRange{});
+    resident_.origin = origin;
+    resident_.box_lo = Vec3(lo_.x - origin.x, lo_.y - origin.y, lo_.z - origin.z);
+    resident_.box_hi = Vec3(hi_.x - origin.x, hi_.y - origin.y, hi_.z - origin.z);
+    resident_.bricks = {(hi_.x - origin.x + kBrickSize - 1) / kBrickSize, (hi_.y - origin.y + kBrickSize - 1) / kBrickSize,
+                        (hi_.z - origin.z + kBrickSize - 1) / kBrickSize};
+    resident_.brick_ranges.assign(std::size_t(resident_.bricks[0]) * resident_.bricks[1] * resident_.bricks[2], BrickRange{});
   }
 
   bool fits_dense() const {
@@ -128,36 +128,36 @@ class MirrorBuilder {
 
   Result<vk::Image> create_image(VkFormat format, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
     auto image = vk::Image::create(device_, vk::volume_image_info(format, x, y, z));
-    if (!image) return Error{fmt::format("the grid \"{}\" cannot be mirrored: {}", grid_.name(), image.error().message)};
+    if (!image) return Error{fmt::format("the grid \"{}\" cannot be uploaded: {}", grid_.name(), image.error().message)};
     return image;
   }
 
   Outcome create_images(std::uint32_t x, std::uint32_t y, std::uint32_t z, std::uint32_t mx, std::uint32_t my, std::uint32_t mz) {
-    CATENA_TRY(mirror_.values, create_image(value_format(), x, y, z));
-    if (!mirror_.masked) return Done{};
-    CATENA_TRY(mirror_.mask, create_image(VK_FORMAT_R8_UINT, mx, my, mz));
+    CATENA_TRY(resident_.values, create_image(value_format(), x, y, z));
+    if (!resident_.masked) return Done{};
+    CATENA_TRY(resident_.mask, create_image(VK_FORMAT_R8_UINT, mx, my, mz));
     return Done{};
   }
 
-  /// Rows of bricks, in parallel; the mask is uploaded from a copy kept while the values go up.
+  /// Uploads rows of bricks in parallel; the mask is collected meanwhile and uploaded afterwards.
   Outcome build_dense() {
     const Index3 lo = padded_lo();
     place(lo);
     const auto nx = std::uint32_t(size_.x + 2 * pad_), ny = std::uint32_t(size_.y + 2 * pad_), nz = std::uint32_t(size_.z + 2 * pad_);
     CATENA_CHECK(create_images(nx, ny, nz, nx, ny, nz));
-    std::vector<std::uint8_t> mask(mirror_.masked ? std::size_t(nx) * ny * nz : 0);
+    std::vector<std::uint8_t> mask(resident_.masked ? std::size_t(nx) * ny * nz : 0);
     const std::size_t texel = encoder_.texel_bytes();
-    CATENA_CHECK(vk::upload_planes(device_, mirror_.values, kBrickSize, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
+    CATENA_CHECK(vk::upload_planes(device_, resident_.values, kBrickSize, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
       const std::uint32_t layers = (count + kBrickSize - 1) / kBrickSize, rows = (ny + kBrickSize - 1) / kBrickSize;
       parallel_for(std::size_t(layers) * rows, 1, [&](std::size_t begin, std::size_t end) {
         CellBlock block;
         for (std::size_t task = begin; task < end; ++task) {
           const int y0 = kBrickSize * int(task % rows), z0 = int(first) + kBrickSize * int(task / rows);
-          // with what the brick's last cells reach, and a padded one's first ones
+          // including the voxels that the brick's last cells read, and the first cells of a padded brick
           const int before_y = std::min(pad_, y0), before_z = std::min(pad_, z0);
           const int height = std::min(kPaddedBrickSize + pad_, int(ny) - y0), depth = std::min(kPaddedBrickSize + pad_, int(nz) - z0);
           block.read(grid_, {lo.x, lo.y + y0 - before_y, lo.z + z0 - before_z}, {int(nx), height + before_y, depth + before_z},
-                     mirror_.masked);
+                     resident_.masked);
           for (int z = 0; z < std::min(kBrickSize, depth); ++z)
             for (int y = 0; y < std::min(kBrickSize, height); ++y) {
               const std::size_t row = (std::size_t(z0 + z) * ny + y0 + y) * nx, from = block.voxel_index(0, y + before_y, z + before_z);
@@ -169,20 +169,20 @@ class MirrorBuilder {
       });
     }));
     if (mask.empty()) return Done{};
-    return vk::upload_planes(device_, mirror_.mask, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
+    return vk::upload_planes(device_, resident_.mask, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
       std::memcpy(out, mask.data() + std::size_t(first) * nx * ny, std::size_t(count) * nx * ny);
     });
   }
 
-  /// Of a row of bricks along x from y0, z0 in the image, which are before_y, before_z in the block.
+  /// Sets the ranges of a row of bricks along x. y0, z0: its position in the image; before_y, before_z: in the block.
   void find_ranges(const CellBlock& block, int y0, int z0, int before_y, int before_z) {
-    const int cells_y = std::min(kBrickSize, int(mirror_.box_hi.y) - y0), cells_z = std::min(kBrickSize, int(mirror_.box_hi.z) - z0);
+    const int cells_y = std::min(kBrickSize, int(resident_.box_hi.y) - y0), cells_z = std::min(kBrickSize, int(resident_.box_hi.z) - z0);
     if (cells_y < 1 || cells_z < 1) return;
-    const auto cells_x = int(mirror_.box_hi.x);
-    // the padding's cells are none: in the first bricks they are passed over
+    const auto cells_x = int(resident_.box_hi.x);
+    // the padding has no cells of its own: the first bricks skip it
     const int first_y = before_y + std::max(0, pad_ - y0), first_z = before_z + std::max(0, pad_ - z0);
-    for (int x = 0; x < mirror_.bricks[0]; ++x)
-      mirror_.brick_ranges[mirror_.brick_index(x, y0 / kBrickSize, z0 / kBrickSize)] =
+    for (int x = 0; x < resident_.bricks[0]; ++x)
+      resident_.brick_ranges[resident_.brick_index(x, y0 / kBrickSize, z0 / kBrickSize)] =
           block.compute_range({std::max(pad_, kBrickSize * x), first_y, first_z},
                               {std::min(kBrickSize * (x + 1), cells_x), before_y + cells_y, before_z + cells_z}, pad_);
   }
@@ -190,17 +190,17 @@ class MirrorBuilder {
   Outcome build_atlas() {
     auto slots = assign_slots(device_, atlas_);
     if (!slots) return Error{fmt::format("the grid \"{}\" has {}", grid_.name(), slots.error().message)};
-    mirror_.brick_slots = std::move(slots->brick_words);
+    resident_.brick_slots = std::move(slots->brick_words);
     const std::vector<std::size_t>& brick_of = slots->slot_bricks;
     const auto [sx, sy, sz] = slots->slots_per_axis;
     CATENA_CHECK(create_images(sx * kPaddedBrickSize, sy * kPaddedBrickSize, sz * kPaddedBrickSize, sx * kBrickSize, sy * kBrickSize,
                                sz * kBrickSize));
     constexpr std::size_t mask_bytes = std::size_t(kBrickSize) * kBrickSize * kBrickSize;
-    std::vector<std::uint8_t> mask(mirror_.masked ? mask_bytes * sx * sy * sz : 0);
+    std::vector<std::uint8_t> mask(resident_.masked ? mask_bytes * sx * sy * sz : 0);
     const std::size_t texel = encoder_.texel_bytes(), width = std::size_t(sx) * kPaddedBrickSize,
                       height = std::size_t(sy) * kPaddedBrickSize;
     CATENA_CHECK(vk::upload_planes(
-        device_, mirror_.values, kPaddedBrickSize, [&, sx = sx, sy = sy](std::uint32_t first, std::uint32_t count, std::byte* out) {
+        device_, resident_.values, kPaddedBrickSize, [&, sx = sx, sy = sy](std::uint32_t first, std::uint32_t count, std::byte* out) {
           const std::size_t begin_slot = std::size_t(first / kPaddedBrickSize) * sx * sy;
           const std::size_t end_slot = std::min(brick_of.size(), begin_slot + std::size_t(count / kPaddedBrickSize) * sx * sy);
           std::memset(out, 0, width * height * count * texel);
@@ -209,8 +209,8 @@ class MirrorBuilder {
             for (std::size_t slot = begin_slot + begin; slot < begin_slot + end; ++slot) {
               const std::size_t brick = brick_of[slot];
               const Index3 origin = atlas_.first_voxel(brick);
-              block.read(grid_, origin, {kPaddedBrickSize, kPaddedBrickSize, kPaddedBrickSize}, mirror_.masked);
-              mirror_.brick_ranges[brick] = clipped_range(block, origin);
+              block.read(grid_, origin, {kPaddedBrickSize, kPaddedBrickSize, kPaddedBrickSize}, resident_.masked);
+              resident_.brick_ranges[brick] = clipped_range(block, origin);
               const std::size_t ox = slot % sx * kPaddedBrickSize, oy = slot / sx % sy * kPaddedBrickSize,
                                 oz = (slot - begin_slot) / sx / sy * kPaddedBrickSize;
               for (int k = 0; k < kPaddedBrickSize; ++k)
@@ -228,15 +228,15 @@ class MirrorBuilder {
           });
         }));
     for (std::size_t i = 0; i < atlas_.is_constant.size(); ++i)
-      if (atlas_.is_constant[i]) mirror_.brick_ranges[i] = {atlas_.constant_values[i], atlas_.constant_values[i]};
+      if (atlas_.is_constant[i]) resident_.brick_ranges[i] = {atlas_.constant_values[i], atlas_.constant_values[i]};
     if (mask.empty()) return Done{};
     const std::size_t plane = std::size_t(sx) * kBrickSize * sy * kBrickSize;
-    return vk::upload_planes(device_, mirror_.mask, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
+    return vk::upload_planes(device_, resident_.mask, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
       std::memcpy(out, mask.data() + first * plane, count * plane);
     });
   }
 
-  /// CellCache outside the index box say nothing about a brick.
+  /// Returns the range of a brick's cells inside the index box.
   BrickRange clipped_range(const CellBlock& block, const Index3& origin) const {
     const auto first = [](int lo, int at) { return std::max(0, lo - at); };
     const auto last = [](int hi, int at) { return std::min(kBrickSize, hi - at); };
@@ -250,9 +250,9 @@ class MirrorBuilder {
   const field::ScalarGrid& grid_;
   const ResidencyOptions options_;
   const TexelEncoder encoder_;
-  ResidentGrid mirror_;
+  ResidentGrid resident_;
   Index3 lo_, hi_, size_;
-  int pad_ = 0;  ///< voxels each side, of a cubic grid
+  int pad_ = 0;  ///< voxels on each side, for a cubic grid
   AtlasPlan atlas_;
 };
 
@@ -274,13 +274,13 @@ std::optional<std::uint64_t> resident_image_bytes(vk::Device& device, const fiel
 
 Result<ResidentGrid> make_downsampled_resident_grid(vk::Device& device, const field::CoarseGrid& grid, int factor,
                                                     const ResidencyOptions& options) {
-  CATENA_TRY(ResidentGrid mirror, make_resident_grid(device, *grid.grid, options));
-  mirror.downsample_factor = factor;
-  mirror.downsampled = grid.grid;
-  const Vec3 origin(mirror.origin.x, mirror.origin.y, mirror.origin.z);
-  mirror.domain_lo = grid.domain.lo - origin;
-  mirror.domain_hi = grid.domain.hi - origin;
-  return mirror;
+  CATENA_TRY(ResidentGrid resident, make_resident_grid(device, *grid.grid, options));
+  resident.downsample_factor = factor;
+  resident.downsampled = grid.grid;
+  const Vec3 origin(resident.origin.x, resident.origin.y, resident.origin.z);
+  resident.domain_lo = grid.domain.lo - origin;
+  resident.domain_hi = grid.domain.hi - origin;
+  return resident;
 }
 
 }  // namespace catena::render

@@ -21,7 +21,7 @@ TexelEncoder::TexelEncoder(const field::ScalarGrid& grid, bool float32_texels) :
   if (!(lo <= hi)) lo = hi = 0;
   min = float(lo);
   max = float(hi);
-  if (grid.interpolation() == field::Interpolation::cubic) {  // ghosts lie within one range of the data beyond its own
+  if (grid.interpolation() == field::Interpolation::cubic) {  // ghost values exceed the data's range by at most its width
     const double span = grid.stats().max - grid.stats().min;
     min = float(std::max(std::min(lo, grid.stats().min - span), -double{FLT_MAX}));
     max = float(std::min(std::max(hi, grid.stats().max + span), double{FLT_MAX}));
@@ -32,7 +32,7 @@ TexelEncoder::TexelEncoder(const field::ScalarGrid& grid, bool float32_texels) :
     offset = float(lo);
     scale = float(range);
   } else if (largest > 0) {
-    // a power of two that brings the largest magnitude to 0.5..1: halves round alike at every power of two
+    // a power of two that scales the largest magnitude to 0.5..1: the relative rounding of half floats is equal there
     scale = std::exp2(float(std::clamp(std::ilogb(largest) + 1, -120, 120)));
   }
   if (range == 0) offset = float(lo);

@@ -29,7 +29,7 @@ void VoxelBlock::read(const field::ScalarGrid& grid, const Index3& origin, const
   used.clear();
   if (!masked) return;
   for (float& v : values) v = std::isfinite(v) ? v : 0;
-  // every cell that has a voxel of the box as a corner
+  // all cells that have a voxel of the box as a corner
   const Index3 cells{box.x + 1, box.y + 1, box.z + 1};
   std::vector<std::uint8_t> valid(std::size_t(cells.x) * std::size_t(cells.y) * std::size_t(cells.z));
   grid.read_cell_validity({origin.x - 1, origin.y - 1, origin.z - 1}, cells, valid);
@@ -81,10 +81,10 @@ void for_each_slab(const field::ScalarGrid& grid, const SlabRange& slabs, const 
 
 void widen_to_cells(ValueInterval& range, const VoxelBlock& block, const ValueInterval& active) {
   const auto from = float(active.min), to = float(active.max);
-  auto least = float(range.min), greatest = float(range.max);
+  auto min_value = float(range.min), max_value = float(range.max);
   const int cells = block.size.x - 1;
   const std::size_t row = std::size_t(block.size.x), plane = row * std::size_t(block.size.y);
-  // least and greatest of the four corners in the plane x
+  // minimum and maximum of the four corners in the plane x
   std::vector<float> low(row), high(row);
   for (int z = 0; z + 1 < block.size.z; ++z)
     for (int y = 0; y + 1 < block.size.y; ++y) {
@@ -98,17 +98,17 @@ void widen_to_cells(ValueInterval& range, const VoxelBlock& block, const ValueIn
       }
       for (int x = 0; x < cells; ++x) {
         const float l = low[x] < low[x + 1] ? low[x] : low[x + 1], g = high[x] < high[x + 1] ? high[x + 1] : high[x];
-        bool touches = g > from && l < to && (l < least || g > greatest);
+        bool touches = g > from && l < to && (l < min_value || g > max_value);
         if (touches && !block.used.empty()) {
           const std::uint8_t* u = &block.used[first + std::size_t(x)];
           touches = u[0] && u[1] && u[row] && u[row + 1] && u[plane] && u[plane + 1] && u[plane + row] && u[plane + row + 1];
         }
-        least = touches && l < least ? l : least;
-        greatest = touches && g > greatest ? g : greatest;
+        min_value = touches && l < min_value ? l : min_value;
+        max_value = touches && g > max_value ? g : max_value;
       }
     }
-  range.min = std::min(range.min, double(least));
-  range.max = std::max(range.max, double(greatest));
+  range.min = std::min(range.min, double(min_value));
+  range.max = std::max(range.max, double(max_value));
 }
 
 CodeScale::CodeScale(const ValueInterval& range, bool is_masked) : has_mask(is_masked) {
@@ -125,11 +125,11 @@ ValueInterval clip_outliers(ValueInterval range, const field::ScalarGrid& grid, 
 }
 
 void CodeScale::encode(const VoxelBlock& block, std::size_t first, std::size_t count, std::uint8_t* out) const {
-  const auto zero = float(lo), scale = per_code > 0 ? float(1 / per_code) : 0.0f, least = float(min_code());
+  const auto zero = float(lo), scale = per_code > 0 ? float(1 / per_code) : 0.0f, min_value = float(min_code());
   const float* values = &block.values[first];
   for (std::size_t i = 0; i < count; ++i) {
     const float code = (values[i] - zero) * scale + 0.5f;
-    out[i] = std::uint8_t(code > least ? (code < 255.0f ? code : 255.0f) : least);
+    out[i] = std::uint8_t(code > min_value ? (code < 255.0f ? code : 255.0f) : min_value);
   }
   if (block.used.empty()) return;
   for (std::size_t i = 0; i < count; ++i)

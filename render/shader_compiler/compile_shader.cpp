@@ -31,7 +31,7 @@ std::optional<EShLanguage> stage_of(std::string_view name) {
   return std::nullopt;
 }
 
-/// Once a process; its end cleans up.
+/// glslang, initialized once per process and finalized at its end.
 struct Library {
   Library() { glslang::InitializeProcess(); }
   ~Library() { glslang::FinalizeProcess(); }
@@ -61,7 +61,7 @@ class Includes final : public glslang::TShader::Includer {
   std::string folder_;
 };
 
-/// The first complaint of a log, "ERROR: place: what", without its first word.
+/// Returns the first line "ERROR: place: message" of a log, without "ERROR: ".
 std::string first_error(std::string_view log, const std::string& path) {
   constexpr std::string_view kError = "ERROR: ";
   const auto at = log.find(kError);
@@ -125,7 +125,7 @@ Result<ShaderWatcher> ShaderWatcher::open(const std::string& folder, std::vector
 
 std::map<std::string, ShaderWatcher::Timestamp> ShaderWatcher::read_timestamps() const {
   std::map<std::string, Timestamp> found;
-  // a file that is being replaced may be gone for a moment: it is looked at again the next time
+  // a file that is being replaced may be missing for a moment; it is found at the next check
   for (const char* part : {"passes", "lib", "shared"}) {
     std::error_code error;
     for (fs::directory_iterator at(folder_ + "/" + part, error), end; !error && at != end; at.increment(error)) {

@@ -12,7 +12,7 @@
 namespace catena::render {
 namespace {
 
-constexpr double kSquare = 1e-6;  // cosine between the edges of a rectangle
+constexpr double kRectangleTolerance = 1e-6;  // maximum cosine between the edges of a rectangle
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 std::string text_of(const Vec3& p) { return "[" + to_text(p.x) + ", " + to_text(p.y) + ", " + to_text(p.z) + "]"; }
@@ -23,7 +23,7 @@ Result<View> make_screen_view(const Screen& screen, const Vec3& eye) {
   const Vec3 across = screen.lower_right - screen.lower_left, upwards = screen.upper_left - screen.lower_left;
   const double width = norm(across), height = norm(upwards);
   const Vec3 right = direction(across), up = direction(upwards), normal = direction(cross(right, up));
-  if (!(width > 0 && height > 0 && std::isfinite(width * height)) || std::fabs(dot(right, up)) > kSquare)
+  if (!(width > 0 && height > 0 && std::isfinite(width * height)) || std::fabs(dot(right, up)) > kRectangleTolerance)
     return Error{"the screen's corners " + text_of(screen.lower_left) + ", " + text_of(screen.lower_right) + ", " +
                  text_of(screen.upper_left) + " span no rectangle; lower left, lower right and upper left of one were expected"};
   const Vec3 corner = screen.lower_left - eye;
@@ -101,7 +101,7 @@ std::vector<View> make_stereo_views(const View& centre, double aspect, const Ste
   CATENA_ASSERT(settings.views > 0 && aspect > 0 && zero_parallax > 0 && separation >= 0);
   const Camera axes = make_camera(centre, 1, 1, {});
   View same_up = centre;
-  same_up.up = axes.up;  // a doubtful up is settled once for all eyes
+  same_up.up = axes.up;  // an up direction along the axis is replaced once for all eyes
   std::vector<View> result;
   for (std::size_t k = 0; k < settings.views; ++k) {
     const double offset = (double(k) - 0.5 * double(settings.views - 1)) * separation;

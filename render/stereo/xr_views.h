@@ -7,11 +7,11 @@
 
 namespace catena::render {
 
-inline constexpr double kArmLengthM = 0.7;                   ///< arm's length
-inline constexpr double kMaxDown_deg = 40, kMaxUp_deg = 15;  ///< limits of the initial elevation angle
+inline constexpr double kArmLengthM = 0.7;                             ///< arm's length
+inline constexpr double kMaxDownPitch_deg = 40, kMaxUpPitch_deg = 15;  ///< limits of the initial elevation angle
 /// Returns the initial placement of the world for a user whose eyes are at the origin of the local space: level (the view's up is the
 /// vertical), with the view's target at distance_m, seen at the same elevation as in the view: straight ahead and down, as on a desk. The
-/// elevation of a view from steeply above or below is limited to kMaxDown_deg or kMaxUp_deg, which is comfortable to look at.
+/// elevation of a view from steeply above or below is limited to kMaxDownPitch_deg or kMaxUpPitch_deg, which is comfortable to look at.
 Placement make_initial_placement(const View& view, double distance_m = kArmLengthM);
 
 /// Eye of the headset in the local space: position in meters, orthonormal axes (columns: right, up, back), field of view.

@@ -16,7 +16,7 @@
 namespace catena::render {
 namespace {
 
-constexpr double kUnit = 64;                      // FreeType's pixels are 26.6
+constexpr double kUnit = 64;                      // FreeType's 26.6 fixed point: units per pixel
 constexpr FT_Int32 kUnscaled = FT_LOAD_NO_SCALE;  // measures in font units
 constexpr FT_Int32 kHinted = FT_LOAD_TARGET_LIGHT | FT_LOAD_NO_BITMAP;
 
@@ -35,7 +35,7 @@ struct Font::Impl {
   FT_Library library = nullptr;
   FT_Face face = nullptr;
   FT_Stroker stroker = nullptr;
-  double cap_height = 0;  // font units
+  double cap_height = 0;  // in font units
 
   Impl() = default;
   Impl(const Impl&) = delete;

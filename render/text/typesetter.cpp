@@ -9,7 +9,7 @@ namespace catena::render {
 namespace {
 
 constexpr int kFirstHeight = 128;
-constexpr int kShelfStep = 4;  // shelves' heights are rounded up to it
+constexpr int kShelfStep = 4;  // shelf heights are rounded up to a multiple
 
 }  // namespace
 
@@ -96,7 +96,7 @@ TextLayout Typesetter::layout(std::string_view text, const TextStyle& style) {
   if (font == nullptr || text.empty()) return out;
   const FontMetrics measures = font->metrics(style.size_px);
 
-  // lines from the left
+  // left-aligned lines
   std::vector<std::size_t> line_starts{0};
   std::vector<double> widths;
   double x = 0, y = measures.cap_height;
@@ -120,7 +120,7 @@ TextLayout Typesetter::layout(std::string_view text, const TextStyle& style) {
   line_starts.push_back(out.glyphs.size());
   out.extent = {*std::max_element(widths.begin(), widths.end()), y, measures.descent};
 
-  // and aligned
+  // horizontal alignment
   for (std::size_t line = 0; line < widths.size(); ++line)
     for (std::size_t i = line_starts[line]; i < line_starts[line + 1]; ++i)
       out.glyphs[i].x += style.align * (out.extent.width - widths[line]);

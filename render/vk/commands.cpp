@@ -215,7 +215,7 @@ Outcome Commands::finish() {
 
 Outcome upload_planes(Device& device, Image& image, std::uint32_t granule,
                       const std::function<void(std::uint32_t first, std::uint32_t count, std::byte* out)>& fill) {
-  // staging memory counts in the budget: little is taken of little
+  // the budget includes staging memory: little remaining memory allows only small chunks
   const VkDeviceSize staging_limit = std::min<VkDeviceSize>(VkDeviceSize(32) << 20, device.memory_available() / 4);
   const VkExtent3D extent = image.info().extent;
   const VkDeviceSize plane = texel_bytes(image.info().format) * extent.width * extent.height;

@@ -72,7 +72,7 @@ bool has_extension(VkPhysicalDevice physical, const char* name) {
                      [&](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
 }
 
-/// The first queue family with graphics (and presentation, where there is a surface).
+/// Returns the first queue family with graphics and, if there is a surface, presentation.
 std::optional<std::uint32_t> find_queue(VkPhysicalDevice physical, VkSurfaceKHR surface) {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
@@ -104,7 +104,7 @@ void enable_required(DeviceFeatures& features) {
   features.v12.scalarBlockLayout = VK_TRUE;
   features.v13.dynamicRendering = VK_TRUE;
   features.v13.synchronization2 = VK_TRUE;
-  features.v13.maintenance4 = VK_TRUE;  // glslang writes LocalSizeId for Vulkan 1.3
+  features.v13.maintenance4 = VK_TRUE;  // glslang emits LocalSizeId for Vulkan 1.3
 }
 
 std::vector<const char*> required_extensions(bool presents) {
@@ -128,7 +128,7 @@ std::string missing_requirement(VkPhysicalDevice physical, VkSurfaceKHR surface)
   if (!features.v13.dynamicRendering) return "dynamicRendering";
   if (!features.v13.synchronization2) return "synchronization2";
   if (!features.v13.maintenance4) return "maintenance4";
-  if (!find_queue(physical, surface)) return surface ? "a queue that draws and presents" : "a queue that draws";
+  if (!find_queue(physical, surface)) return surface ? "a queue with graphics and presentation" : "a queue with graphics";
   return {};
 }
 
@@ -143,15 +143,15 @@ Result<std::vector<VkPhysicalDevice>> physical_devices(VkInstance instance) {
   return devices;
 }
 
-/// lavapipe starts a thread for its queue and one a core for drawing when the device is made. Where one that draws cannot be started it
-/// waits for it for ever; so as many are started here, at once, and ended. It does without its other threads, for compute shaders and for
-/// its cache (Mesa 22.3: each thread refused in turn).
+/// Returns an Error if lavapipe cannot start its threads. When the device is created, lavapipe (Mesa 22.3) starts one thread for its queue
+/// and one per core for rendering, and waits forever for a rendering thread that cannot be started. So the same number of threads is
+/// started and ended here first. lavapipe's other threads, for compute shaders and the cache, are not required.
 Outcome driver_threads(const std::string& name) {
-  constexpr std::size_t kMostCores = 32, kQueue = 1;
+  constexpr std::size_t kMaxCores = 32, kQueue = 1;
   const char* stated = std::getenv("LP_NUM_THREADS");
-  const std::size_t cores = std::min<std::size_t>(kMostCores, std::max(1u, std::thread::hardware_concurrency()));
-  const long wanted = stated != nullptr ? std::strtol(stated, nullptr, 10) : -1;
-  const std::size_t count = kQueue + (wanted >= 0 ? std::min<std::size_t>(kMostCores, static_cast<std::size_t>(wanted)) : cores);
+  const std::size_t cores = std::min<std::size_t>(kMaxCores, std::max(1u, std::thread::hardware_concurrency()));
+  const long thread_count = stated != nullptr ? std::strtol(stated, nullptr, 10) : -1;
+  const std::size_t count = kQueue + (thread_count >= 0 ? std::min<std::size_t>(kMaxCores, static_cast<std::size_t>(thread_count)) : cores);
   std::atomic<bool> end{false};
   std::vector<std::thread> threads;
   threads.reserve(count);
@@ -197,11 +197,11 @@ std::uint64_t Device::default_budget() const {
   memory.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2;
   memory.pNext = &budget;
   vkGetPhysicalDeviceMemoryProperties2(physical_, &memory);
-  std::uint64_t most = 0;
+  std::uint64_t max_bytes = 0;
   for (std::uint32_t i = 0; i < memory.memoryProperties.memoryHeapCount; ++i)
     if ((memory.memoryProperties.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) && budget.heapBudget[i] > budget.heapUsage[i])
-      most = std::max<std::uint64_t>(most, budget.heapBudget[i] - budget.heapUsage[i]);
-  return most > 0 ? most / 10 * 9 : info_.memory_bytes / 10 * 8;
+      max_bytes = std::max<std::uint64_t>(max_bytes, budget.heapBudget[i] - budget.heapUsage[i]);
+  return max_bytes > 0 ? max_bytes / 10 * 9 : info_.memory_bytes / 10 * 8;
 }
 
 Error Device::failed(VkResult result, const std::string& what) {
@@ -212,12 +212,13 @@ Error Device::failed(VkResult result, const std::string& what) {
 Outcome Device::select_physical_device(const std::string& choice) {
   CATENA_TRY(const auto devices, physical_devices(instance_->handle()));
   int best = -1;
-  std::string seen;
+  std::string found_devices;
   for (VkPhysicalDevice candidate : devices) {
     VkPhysicalDeviceProperties properties{};
     vkGetPhysicalDeviceProperties(candidate, &properties);
     const std::string missing = missing_requirement(candidate, instance_->surface());
-    seen += fmt::format("{}{}{}", seen.empty() ? "" : ", ", properties.deviceName, missing.empty() ? "" : " (without " + missing + ")");
+    found_devices += fmt::format("{}{}{}", found_devices.empty() ? "" : ", ", properties.deviceName,
+                                 missing.empty() ? "" : " (without " + missing + ")");
     if (!missing.empty() || !matches(properties, choice)) continue;
     if (preference(properties.deviceType) > best) {
       best = preference(properties.deviceType);
@@ -225,19 +226,19 @@ Outcome Device::select_physical_device(const std::string& choice) {
     }
   }
   if (!physical_)
-    return Error{choice.empty() ? fmt::format("no usable Vulkan device: {}", seen)
+    return Error{choice.empty() ? fmt::format("no usable Vulkan device: {}", found_devices)
                                 : fmt::format("no usable Vulkan device matches CATENA_DEVICE \"{}\", expected cpu, gpu or a part of: {}",
-                                              choice, seen)};
+                                              choice, found_devices)};
   return Done{};
 }
 
-/// The one that the maker chose.
+/// Takes the physical device that the provider chose.
 Outcome Device::adopt_physical_device() {
-  CATENA_VK(provider_.physical_device(instance_->handle(), &physical_), "choose the device that was asked for");
+  CATENA_VK(provider_.physical_device(instance_->handle(), &physical_), "select the requested device");
   VkPhysicalDeviceProperties properties{};
   vkGetPhysicalDeviceProperties(physical_, &properties);
   const std::string missing = missing_requirement(physical_, instance_->surface());
-  if (!missing.empty()) return Error{fmt::format("the device {} that was chosen lacks {}", properties.deviceName, missing)};
+  if (!missing.empty()) return Error{fmt::format("the requested device {} lacks {}", properties.deviceName, missing)};
   return Done{};
 }
 
@@ -304,7 +305,7 @@ Outcome Device::create_device() {
 
 Device::~Device() {
   if (device_) {
-    // wait for everything; whatever the answer is, nothing runs after it
+    // waits for all work; whatever the result, nothing runs on the device afterwards
     {
       const auto turn = lock_queue();
       (void)vkDeviceWaitIdle(device_);
@@ -388,7 +389,7 @@ Outcome Device::wait(std::uint64_t value) {
     info.semaphoreCount = 1;
     info.pSemaphores = &timeline_;
     info.pValues = &value;
-    // of a lost device nothing is waited for: the value may never come
+    // no wait on a lost device: the value may never be signaled
     VkResult result = is_lost_ ? VK_ERROR_DEVICE_LOST : injected_failure(DriverCall::wait);
     if (result == VK_SUCCESS) result = vkWaitSemaphores(device_, &info, std::numeric_limits<std::uint64_t>::max());
     if (result != VK_SUCCESS) return failed(result, "wait for " + info_.name);

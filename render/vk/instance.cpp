@@ -59,7 +59,7 @@ const char* result_name(VkResult result) {
 
 Error vulkan_error(VkResult result, const std::string& what) {
   Error error{"Vulkan could not " + what + ": " + result_name(result)};
-  // drivers and their libraries that get no memory are not told apart
+  // drivers report a lack of memory by several codes
   const bool may_lack_memory =
       result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_INITIALIZATION_FAILED;
   if (may_lack_memory && resource_limit(RLIMIT_AS)) error.message += " (" + describe_errno(ENOMEM) + ")";
@@ -69,7 +69,7 @@ Error vulkan_error(VkResult result, const std::string& what) {
 namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
-constexpr std::size_t kKeptTexts = 64;
+constexpr std::size_t kMaxMessages = 64;
 
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                           const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
@@ -103,18 +103,18 @@ VkApplicationInfo application_info() {
   return application;
 }
 
-/// The loader unloads a driver with the last instance, and NVIDIA's (580) cannot be loaded a 31st time (its static thread-local
-/// storage is used up): one instance without anything stays to the end of the process.
+/// Holds an empty instance until the process ends. The loader unloads a driver with the last instance, and NVIDIA's driver (580) cannot be
+/// loaded a 31st time, because its static thread-local storage is exhausted.
 void keep_the_driver_loaded() {
-  static const VkInstance kept = [] {
+  static const VkInstance retained = [] {
     const VkApplicationInfo application = application_info();
     VkInstanceCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
     info.pApplicationInfo = &application;
-    VkInstance made = VK_NULL_HANDLE;
-    return vkCreateInstance(&info, nullptr, &made) == VK_SUCCESS ? made : VkInstance(VK_NULL_HANDLE);
+    VkInstance created = VK_NULL_HANDLE;
+    return vkCreateInstance(&info, nullptr, &created) == VK_SUCCESS ? created : VkInstance(VK_NULL_HANDLE);
   }();
-  (void)kept;
+  (void)retained;
 }
 
 }  // namespace
@@ -122,7 +122,7 @@ void keep_the_driver_loaded() {
 void Messages::add(std::string text) {
   const std::lock_guard lock(mutex_);
   ++count_;
-  if (texts_.size() < kKeptTexts) texts_.push_back(std::move(text));
+  if (texts_.size() < kMaxMessages) texts_.push_back(std::move(text));
 }
 
 std::uint64_t Messages::count() const {
@@ -138,9 +138,9 @@ std::vector<std::string> Messages::texts() const {
 Result<std::unique_ptr<Instance>> Instance::create(bool validation, const SurfaceFactory& surface, const VulkanProvider& maker) {
   std::unique_ptr<Instance> self(new Instance);
 
-  // version
+  // loader version
   std::uint32_t version = VK_API_VERSION_1_0;
-  CATENA_VK(vkEnumerateInstanceVersion(&version), "ask the loader's version");
+  CATENA_VK(vkEnumerateInstanceVersion(&version), "query the loader's version");
   if (version < VK_API_VERSION_1_3)
     return Error{fmt::format("the Vulkan loader has version {}.{}, expected 1.3 or newer (package libvulkan1)",
                              VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version))};
@@ -158,7 +158,7 @@ Result<std::unique_ptr<Instance>> Instance::create(bool validation, const Surfac
   keep_the_driver_loaded();
   const VkApplicationInfo application = application_info();
 
-  // validation, with synchronization checks
+  // validation with synchronization checks
   VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(&self->messages_);
   const VkValidationFeatureEnableEXT enabled[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
   VkValidationFeaturesEXT features{};
@@ -176,11 +176,11 @@ Result<std::unique_ptr<Instance>> Instance::create(bool validation, const Surfac
   info.enabledExtensionCount = std::uint32_t(extensions.size());
   info.ppEnabledExtensionNames = extensions.data();
   self->owned_ = !maker.keeps_ownership;
-  const VkResult made = maker.instance ? maker.instance(info, &self->instance_) : vkCreateInstance(&info, nullptr, &self->instance_);
-  if (made == VK_ERROR_INCOMPATIBLE_DRIVER)  // there is none
-    return Error{vulkan_error(made, "create an instance").message +
+  const VkResult created = maker.instance ? maker.instance(info, &self->instance_) : vkCreateInstance(&info, nullptr, &self->instance_);
+  if (created == VK_ERROR_INCOMPATIBLE_DRIVER)  // no driver was found
+    return Error{vulkan_error(created, "create an instance").message +
                  ", expected the driver of a GPU or Mesa's lavapipe (package mesa-vulkan-drivers)"};
-  CATENA_VK(made, "create an instance");
+  CATENA_VK(created, "create an instance");
 
   if (validation) {
     const auto create =

@@ -37,20 +37,20 @@ struct CATENA_EXPORT SurfaceFactory {
 };
 
 /// Provider of Vulkan objects in place of Catena, for an XR runtime or a host application with a device of its own; it also defines the
-/// queue. Catena creates the objects whose function is empty. The extensions, layers and features in `wanted` are required; the provider
+/// queue. Catena creates the objects whose function is empty. The extensions, layers and features in `info` are required; the provider
 /// may add others. A result other than VK_SUCCESS becomes the Error. Frame thread.
 struct CATENA_EXPORT VulkanProvider {
   /// Creates the instance, like vkCreateInstance.
-  std::function<VkResult(const VkInstanceCreateInfo& wanted, VkInstance* made)> instance;
+  std::function<VkResult(const VkInstanceCreateInfo& info, VkInstance* created)> instance;
   /// Selects a physical device of the instance; it must still meet Catena's requirements.
   std::function<VkResult(VkInstance instance, VkPhysicalDevice* chosen)> physical_device;
   /// Creates the device, like vkCreateDevice, with one queue for graphics and compute.
-  std::function<VkResult(VkPhysicalDevice physical, const VkDeviceCreateInfo& wanted, VkDevice* made)> device;
+  std::function<VkResult(VkPhysicalDevice physical, const VkDeviceCreateInfo& info, VkDevice* created)> device;
   /// Queue family whose first queue is used; nullopt: the first family with graphics and compute.
   std::optional<std::uint32_t> queue_family;
   /// Mutex held around every use of the queue, if others use it too; must outlive the device. Null: none.
   std::mutex* queue_lock = nullptr;
-  /// Whether the provider keeps ownership of instance and device: Catena does not destroy them.
+  /// true: the provider owns instance and device, and Catena does not destroy them.
   bool keeps_ownership = false;
 };
 

@@ -8,7 +8,7 @@
 namespace catena::render::vk {
 namespace {
 
-/// Lives as long as the creation of the pipeline.
+/// Shader module, destroyed once the pipeline is created.
 class ShaderModule {
  public:
   explicit ShaderModule(Device& device) : device_(device) {}
@@ -41,7 +41,7 @@ class ShaderModule {
   VkShaderModule module_ = VK_NULL_HANDLE;
 };
 
-/// The constants 0, 1, 2, .. as Vulkan wants them. Points into the vector that it was given.
+/// Specialization constants with the ids 0, 1, 2, ... Points into the vector passed to the constructor.
 struct Specialization {
   std::vector<VkSpecializationMapEntry> entries;
   VkSpecializationInfo info{};
@@ -124,7 +124,7 @@ Result<Pipeline> Pipeline::create(Device& device, const GraphicsInfo& info) {
   const VkPipelineShaderStageCreateInfo stages[] = {vertex.stage(VK_SHADER_STAGE_VERTEX_BIT, nullptr),
                                                     fragment.stage(VK_SHADER_STAGE_FRAGMENT_BIT, &constants.info)};
 
-  // vertices
+  // vertex input
   const VkVertexInputBindingDescription binding{0, info.vertex_stride, VK_VERTEX_INPUT_RATE_VERTEX};
   std::vector<VkVertexInputAttributeDescription> attributes;
   for (const VertexAttribute& a : info.attributes) attributes.push_back({a.location, 0, a.format, a.offset});

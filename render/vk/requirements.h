@@ -29,7 +29,7 @@ CATENA_EXPORT void enable_required(DeviceFeatures& features);
 /// Returns the required device extensions. `presents`: Catena presents images in a window of its own.
 CATENA_EXPORT std::vector<const char*> required_extensions(bool presents = false);
 /// Returns the first requirement that the device does not meet, by its name such as "independentBlend"; empty: it meets all. `surface`:
-/// where images are presented; null for offscreen rendering.
+/// surface on which images are presented; null for offscreen rendering.
 CATENA_EXPORT std::string missing_requirement(VkPhysicalDevice physical, VkSurfaceKHR surface = VK_NULL_HANDLE);
 
 }  // namespace catena::render::vk

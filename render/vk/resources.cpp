@@ -14,7 +14,7 @@ namespace {
 
 std::string megabytes(VkDeviceSize bytes) { return fmt::format("{:.1f} MB", 1e-6 * double(bytes)); }
 
-/// The first memory type that is allowed and has all of `required`, one with `preferred` before others.
+/// Returns the first memory type that is allowed and has all `required` properties; one with `preferred` is chosen over others.
 std::optional<std::uint32_t> memory_type(const Device& device, std::uint32_t allowed, VkMemoryPropertyFlags required,
                                          VkMemoryPropertyFlags preferred) {
   VkPhysicalDeviceMemoryProperties memory{};
@@ -34,7 +34,7 @@ Result<VkDeviceMemory> allocate(Device& device, const VkMemoryRequirements& need
   DeviceCounters& counters = device.counters();
   if (needs.size > device.memory_available()) {
     ++counters.refused_allocations;
-    return Error{fmt::format("{} needs {} of GPU memory, {} of the budget of {} are left", what, megabytes(needs.size),
+    return Error{fmt::format("{} needs {} of GPU memory, but only {} of the budget of {} is left", what, megabytes(needs.size),
                              megabytes(device.memory_available()), megabytes(device.info().memory_budget))};
   }
   VkMemoryAllocateInfo info{};
@@ -45,12 +45,12 @@ Result<VkDeviceMemory> allocate(Device& device, const VkMemoryRequirements& need
   VkResult result = device.injected_failure(DriverCall::allocate);
   if (result == VK_SUCCESS) result = vkAllocateMemory(device.handle(), &info, nullptr, &memory);
   if (result != VK_SUCCESS)
-    return vulkan_error(result, fmt::format("allocate {} for {} ({} of {} held)", megabytes(needs.size), what,
+    return vulkan_error(result, fmt::format("allocate {} for {} ({} of {} in use)", megabytes(needs.size), what,
                                             megabytes(counters.allocated_bytes), megabytes(device.info().memory_bytes)));
   counters.allocated_bytes += needs.size;
   counters.peak_bytes = std::max(counters.peak_bytes, counters.allocated_bytes);
   ++counters.allocations;
-  // the memory of a processor's driver is this process's own
+  // a CPU driver uses the memory of the process
   if (void* start = nullptr; device.info().is_cpu() && needs.size >= kMinHugePageBytes &&
                              vkMapMemory(device.handle(), memory, 0, VK_WHOLE_SIZE, 0, &start) == VK_SUCCESS) {
     prefer_huge_pages(start, needs.size);
@@ -119,7 +119,7 @@ VkDeviceSize texel_bytes(VkFormat format) {
     case VK_FORMAT_R32G32B32A32_SFLOAT:
       return 16;
     default:
-      CATENA_ASSERT(!"a format without a size here");
+      CATENA_ASSERT(!"a format without a known size");
       return 0;
   }
 }
@@ -185,13 +185,13 @@ Outcome ensure_image(Device& device, Image& image, VkFormat format, std::uint32_
 }
 
 Result<Image> Image::create(Device& device, const ImageInfo& info) {
-  // within the device's limits, with a sentence when not
+  // checks the device's limits, for an error message
   VkImageFormatProperties limits{};
   const VkResult supported =
       vkGetPhysicalDeviceImageFormatProperties(device.physical(), info.format, info.type, VK_IMAGE_TILING_OPTIMAL, info.usage, 0, &limits);
   const auto& e = info.extent;
   if (supported != VK_SUCCESS || e.width > limits.maxExtent.width || e.height > limits.maxExtent.height || e.depth > limits.maxExtent.depth)
-    return Error{fmt::format("an image of {} x {} x {} does not fit the device {}, expected at most {} x {} x {}", e.width, e.height,
+    return Error{fmt::format("an image of {} x {} x {} is too large for the device {}, expected at most {} x {} x {}", e.width, e.height,
                              e.depth, device.info().name, limits.maxExtent.width, limits.maxExtent.height, limits.maxExtent.depth)};
 
   Image self;

@@ -31,7 +31,7 @@ class CATENA_EXPORT Buffer {
 
   /// Returns the Vulkan handle; null if empty.
   VkBuffer handle() const { return buffer_; }
-  /// Returns the size in bytes.
+  /// Returns the size in bytes; 0 if empty.
   VkDeviceSize size() const { return size_; }
   /// Returns whether the buffer is not empty.
   explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }

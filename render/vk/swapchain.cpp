@@ -16,7 +16,7 @@ VkSemaphoreCreateInfo binary_semaphore() {
   return info;
 }
 
-/// Display values go out unchanged: a UNORM format in the usual colour space before any other.
+/// Chooses a UNORM format in the sRGB color space, so that display values are presented unchanged.
 Result<VkSurfaceFormatKHR> choose_format(const Device& device) {
   std::uint32_t count = 0;
   CATENA_VK(vkGetPhysicalDeviceSurfaceFormatsKHR(device.physical(), device.surface(), &count, nullptr), "list the window's formats");
@@ -63,12 +63,12 @@ Outcome Swapchain::resize(std::uint32_t width, std::uint32_t height) {
 
 Outcome Swapchain::create_swapchain(std::uint32_t width, std::uint32_t height) {
   VkSurfaceCapabilitiesKHR caps{};
-  CATENA_VK(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_->physical(), device_->surface(), &caps), "ask the window's capabilities");
+  CATENA_VK(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_->physical(), device_->surface(), &caps), "query the window's capabilities");
   extent_ = caps.currentExtent;
   if (extent_.width == std::numeric_limits<std::uint32_t>::max())
     extent_ = {std::clamp(width, caps.minImageExtent.width, caps.maxImageExtent.width),
                std::clamp(height, caps.minImageExtent.height, caps.maxImageExtent.height)};
-  if (extent_.width == 0 || extent_.height == 0) return Done{};  // minimised: present() says false until it is back
+  if (extent_.width == 0 || extent_.height == 0) return Done{};  // minimized: present() returns false until it is restored
   VkSwapchainCreateInfoKHR info{};
   info.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR;
   info.surface = device_->surface();
@@ -96,7 +96,7 @@ Outcome Swapchain::create_swapchain(std::uint32_t width, std::uint32_t height) {
   return Done{};
 }
 
-/// A suboptimal swapchain of the window's size is used on: made again it would be no better.
+/// Returns whether the swapchain has the window's size. A suboptimal swapchain of this size is kept, because a new one would be the same.
 bool Swapchain::has_window_size() const {
   VkSurfaceCapabilitiesKHR caps{};
   if (vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_->physical(), device_->surface(), &caps) != VK_SUCCESS) return false;
@@ -110,14 +110,14 @@ Result<bool> Swapchain::present(const Image& source) {
   const VkResult acquired = vkAcquireNextImageKHR(device_->handle(), swapchain_, std::numeric_limits<std::uint64_t>::max(), image_acquired_,
                                                   VK_NULL_HANDLE, &index);
   if (acquired == VK_ERROR_OUT_OF_DATE_KHR) return false;
-  if (acquired != VK_SUCCESS && acquired != VK_SUBOPTIMAL_KHR) return vulkan_error(acquired, "take an image of the window");
+  if (acquired != VK_SUCCESS && acquired != VK_SUBOPTIMAL_KHR) return vulkan_error(acquired, "acquire an image of the window");
   Result<bool> shown = copy_and_present(source, index, acquired == VK_SUCCESS);
-  if (!shown) destroy();  // an image is taken and its semaphore waited for by nobody
+  if (!shown) destroy();  // an acquired image was not presented, and no submission waits for its semaphore
   return shown;
 }
 
 Result<bool> Swapchain::copy_and_present(const Image& source, std::uint32_t index, bool optimal) {
-  // copy, scaled to the window
+  // copies the image, scaled to the window
   CATENA_TRY(Commands commands, Commands::begin(*device_));
   const VkImage target = images_[index];
   const ResourceUse taken{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_NONE};
@@ -140,7 +140,7 @@ Result<bool> Swapchain::copy_and_present(const Image& source, std::uint32_t inde
   }();
   CATENA_CHECK(device_->wait(value));
   if (shown == VK_ERROR_OUT_OF_DATE_KHR) return false;
-  if (shown != VK_SUCCESS && shown != VK_SUBOPTIMAL_KHR) return vulkan_error(shown, "show the picture");
+  if (shown != VK_SUCCESS && shown != VK_SUBOPTIMAL_KHR) return vulkan_error(shown, "present the image");
   return (optimal && shown == VK_SUCCESS) || has_window_size();
 }
 

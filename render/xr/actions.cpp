@@ -9,7 +9,7 @@ namespace catena::render::xr {
 
 namespace {
 
-/// What is bound on each hand; empty: nothing.
+/// Bindings of an interaction profile, for each hand; empty: not bound.
 struct Profile {
   const char *name, *select, *grab, *stick;
   const char *left_menu, *right_menu;
@@ -23,37 +23,37 @@ constexpr Profile kProfiles[] = {
 };
 constexpr const char* kHandPaths[kControllers] = {"/user/hand/left", "/user/hand/right"};
 
-double clamped(float value, double least) { return std::isfinite(value) ? std::clamp(double(value), least, 1.0) : 0.0; }
+double clamped(float value, double lower_bound) { return std::isfinite(value) ? std::clamp(double(value), lower_bound, 1.0) : 0.0; }
 
 }  // namespace
 
 Result<XrPath> Actions::make_path(const char* text) {
   XrPath made = XR_NULL_PATH;
-  CATENA_XR_CHECK(*session_, session_->dispatch().StringToPath(session_->instance().handle(), text, &made), "name a control");
+  CATENA_XR_CHECK(*session_, session_->dispatch().StringToPath(session_->instance().handle(), text, &made), "create a path");
   return made;
 }
 
-Result<XrAction> Actions::make_action(XrActionType type, const char* name, const char* words, bool of_hands) {
+Result<XrAction> Actions::make_action(XrActionType type, const char* name, const char* localized_name, bool per_hand) {
   XrActionCreateInfo info{};
   info.type = XR_TYPE_ACTION_CREATE_INFO;
   info.actionType = type;
   std::strcpy(info.actionName, name);
-  std::strcpy(info.localizedActionName, words);
-  info.countSubactionPaths = of_hands ? std::uint32_t(hand_paths_.size()) : 0;
+  std::strcpy(info.localizedActionName, localized_name);
+  info.countSubactionPaths = per_hand ? std::uint32_t(hand_paths_.size()) : 0;
   info.subactionPaths = hand_paths_.data();
   XrAction made = XR_NULL_HANDLE;
-  CATENA_XR_CHECK(*session_, session_->dispatch().CreateAction(set_, &info, &made), "make a control");
+  CATENA_XR_CHECK(*session_, session_->dispatch().CreateAction(set_, &info, &made), "create an action");
   return made;
 }
 
-Result<XrSpace> Actions::make_pose_space(XrAction pose, XrPath hand) {
+Result<XrSpace> Actions::make_pose_space(XrAction pose, XrPath controller_path) {
   XrActionSpaceCreateInfo info{};
   info.type = XR_TYPE_ACTION_SPACE_CREATE_INFO;
   info.action = pose;
-  info.subactionPath = hand;
+  info.subactionPath = controller_path;
   info.poseInActionSpace.orientation.w = 1;
   XrSpace made = XR_NULL_HANDLE;
-  CATENA_XR_CHECK(*session_, session_->dispatch().CreateActionSpace(session_->handle(), &info, &made), "follow a pose");
+  CATENA_XR_CHECK(*session_, session_->dispatch().CreateActionSpace(session_->handle(), &info, &made), "create a pose space");
   return made;
 }
 
@@ -77,20 +77,20 @@ Outcome Actions::create_actions() {
   info.type = XR_TYPE_ACTION_SET_CREATE_INFO;
   std::strcpy(info.actionSetName, "hands");
   std::strcpy(info.localizedActionSetName, "Hands");
-  CATENA_XR_CHECK(*session_, xr.CreateActionSet(session_->instance().handle(), &info, &set_), "make controls");
+  CATENA_XR_CHECK(*session_, xr.CreateActionSet(session_->instance().handle(), &info, &set_), "create the action set");
   for (std::size_t k = 0; k < kControllers; ++k) {
     CATENA_TRY(hand_paths_[k], make_path(kHandPaths[k]));
   }
-  CATENA_TRY(aim_, make_action(XR_ACTION_TYPE_POSE_INPUT, "aim", "Where the hand points"));
-  CATENA_TRY(grip_, make_action(XR_ACTION_TYPE_POSE_INPUT, "grip", "Where the hand is"));
+  CATENA_TRY(aim_, make_action(XR_ACTION_TYPE_POSE_INPUT, "aim", "Aim pose"));
+  CATENA_TRY(grip_, make_action(XR_ACTION_TYPE_POSE_INPUT, "grip", "Grip pose"));
   CATENA_TRY(select_, make_action(XR_ACTION_TYPE_FLOAT_INPUT, "select", "Select"));
   CATENA_TRY(grab_, make_action(XR_ACTION_TYPE_FLOAT_INPUT, "grab", "Grab"));
   CATENA_TRY(stick_, make_action(XR_ACTION_TYPE_VECTOR2F_INPUT, "stick", "Turn"));
   CATENA_TRY(menu_, make_action(XR_ACTION_TYPE_BOOLEAN_INPUT, "menu", "Panel"));
-  CATENA_TRY(vibration_, make_action(XR_ACTION_TYPE_VIBRATION_OUTPUT, "vibration", "What is felt"));
-  const bool sees_eyes = session_->instance().capabilities().gaze;
-  if (sees_eyes) {
-    CATENA_TRY(gaze_, make_action(XR_ACTION_TYPE_POSE_INPUT, "gaze", "Where the eyes look", false));
+  CATENA_TRY(vibration_, make_action(XR_ACTION_TYPE_VIBRATION_OUTPUT, "vibration", "Vibration"));
+  const bool has_gaze = session_->instance().capabilities().gaze;
+  if (has_gaze) {
+    CATENA_TRY(gaze_, make_action(XR_ACTION_TYPE_POSE_INPUT, "gaze", "Gaze", false));
     CATENA_CHECK(suggest_gaze_binding());
   }
   CATENA_CHECK(suggest_bindings());
@@ -98,18 +98,18 @@ Outcome Actions::create_actions() {
   attach.type = XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO;
   attach.countActionSets = 1;
   attach.actionSets = &set_;
-  CATENA_XR_CHECK(*session_, xr.AttachSessionActionSets(session_->handle(), &attach), "take controls");
+  CATENA_XR_CHECK(*session_, xr.AttachSessionActionSets(session_->handle(), &attach), "attach the action set");
   for (std::size_t k = 0; k < kControllers; ++k) {
     CATENA_TRY(aim_spaces_[k], make_pose_space(aim_, hand_paths_[k]));
     CATENA_TRY(grip_spaces_[k], make_pose_space(grip_, hand_paths_[k]));
   }
-  if (sees_eyes) {
+  if (has_gaze) {
     CATENA_TRY(gaze_space_, make_pose_space(gaze_, XR_NULL_PATH));
   }
   return Done{};
 }
 
-/// A runtime need not know every controller: one that it knows is enough.
+/// Suggests bindings for all profiles; one that the runtime accepts suffices.
 Outcome Actions::suggest_bindings() {
   XrResult last = XR_SUCCESS;
   bool taken = false;
@@ -135,11 +135,11 @@ Outcome Actions::suggest_bindings() {
     CATENA_TRY(info.interactionProfile, make_path((std::string("/interaction_profiles/") + profile.name).c_str()));
     info.countSuggestedBindings = std::uint32_t(bindings.size());
     info.suggestedBindings = bindings.data();
-    const XrResult said = session_->dispatch().SuggestInteractionProfileBindings(session_->instance().handle(), &info);
-    taken = taken || XR_SUCCEEDED(said);
-    if (XR_FAILED(said)) last = said;
+    const XrResult result = session_->dispatch().SuggestInteractionProfileBindings(session_->instance().handle(), &info);
+    taken = taken || XR_SUCCEEDED(result);
+    if (XR_FAILED(result)) last = result;
   }
-  return taken ? Outcome(Done{}) : Outcome(session_->failed(last, "take controls"));
+  return taken ? Outcome(Done{}) : Outcome(session_->failed(last, "attach the action set"));
 }
 
 Outcome Actions::suggest_gaze_binding() {
@@ -150,7 +150,7 @@ Outcome Actions::suggest_gaze_binding() {
   CATENA_TRY(info.interactionProfile, make_path("/interaction_profiles/ext/eye_gaze_interaction"));
   info.countSuggestedBindings = 1;
   info.suggestedBindings = &binding;
-  CATENA_XR_CHECK(*session_, session_->dispatch().SuggestInteractionProfileBindings(session_->instance().handle(), &info), "take the gaze");
+  CATENA_XR_CHECK(*session_, session_->dispatch().SuggestInteractionProfileBindings(session_->instance().handle(), &info), "bind the gaze");
   return Done{};
 }
 
@@ -160,7 +160,7 @@ Outcome Actions::sync() {
   info.type = XR_TYPE_ACTIONS_SYNC_INFO;
   info.countActiveActionSets = 1;
   info.activeActionSets = &active;
-  CATENA_XR_CHECK(*session_, session_->dispatch().SyncActions(session_->handle(), &info), "look at the controls");
+  CATENA_XR_CHECK(*session_, session_->dispatch().SyncActions(session_->handle(), &info), "read the controls");
   return Done{};
 }
 
@@ -170,27 +170,27 @@ Result<bool> Actions::locate(XrSpace space, XrTime at, XrPose& pose) {
   return found.has_value();
 }
 
-Result<ControllerState> Actions::controller(std::size_t which, XrTime at) {
+Result<ControllerState> Actions::controller(std::size_t index, XrTime at) {
   const DispatchTable& xr = session_->dispatch();
   ControllerState state;
   state.is_focused = session_->is_focused();
   XrActionStateGetInfo info{};
   info.type = XR_TYPE_ACTION_STATE_GET_INFO;
-  info.subactionPath = hand_paths_[which];
+  info.subactionPath = hand_paths_[index];
   info.action = grip_;
   XrActionStatePose pose{};
   pose.type = XR_TYPE_ACTION_STATE_POSE;
-  CATENA_XR_CHECK(*session_, xr.GetActionStatePose(session_->handle(), &info, &pose), "look at the controls");
+  CATENA_XR_CHECK(*session_, xr.GetActionStatePose(session_->handle(), &info, &pose), "read the controls");
   if (!pose.isActive) return state;
-  CATENA_TRY(state.is_tracked, locate(grip_spaces_[which], at, state.grip));
-  CATENA_TRY(state.has_aim, locate(aim_spaces_[which], at, state.aim));
+  CATENA_TRY(state.is_tracked, locate(grip_spaces_[index], at, state.grip));
+  CATENA_TRY(state.has_aim, locate(aim_spaces_[index], at, state.aim));
   if (!state.is_focused) return state;
 
   const auto amount = [&](XrAction of, double& value) -> Outcome {
     XrActionStateFloat found{};
     found.type = XR_TYPE_ACTION_STATE_FLOAT;
     info.action = of;
-    CATENA_XR_CHECK(*session_, xr.GetActionStateFloat(session_->handle(), &info, &found), "look at the controls");
+    CATENA_XR_CHECK(*session_, xr.GetActionStateFloat(session_->handle(), &info, &found), "read the controls");
     value = found.isActive ? clamped(found.currentState, 0) : 0;
     return Done{};
   };
@@ -199,7 +199,7 @@ Result<ControllerState> Actions::controller(std::size_t which, XrTime at) {
   XrActionStateVector2f stick{};
   stick.type = XR_TYPE_ACTION_STATE_VECTOR2F;
   info.action = stick_;
-  CATENA_XR_CHECK(*session_, xr.GetActionStateVector2f(session_->handle(), &info, &stick), "look at the controls");
+  CATENA_XR_CHECK(*session_, xr.GetActionStateVector2f(session_->handle(), &info, &stick), "read the controls");
   if (stick.isActive) {
     state.stick_x = clamped(stick.currentState.x, -1);
     state.stick_y = clamped(stick.currentState.y, -1);
@@ -207,7 +207,7 @@ Result<ControllerState> Actions::controller(std::size_t which, XrTime at) {
   XrActionStateBoolean menu{};
   menu.type = XR_TYPE_ACTION_STATE_BOOLEAN;
   info.action = menu_;
-  CATENA_XR_CHECK(*session_, xr.GetActionStateBoolean(session_->handle(), &info, &menu), "look at the controls");
+  CATENA_XR_CHECK(*session_, xr.GetActionStateBoolean(session_->handle(), &info, &menu), "read the controls");
   state.menu = menu.isActive && menu.currentState;
   return state;
 }
@@ -220,19 +220,19 @@ Result<std::optional<XrPose>> Actions::gaze(XrTime at) {
   info.action = gaze_;
   XrActionStatePose state{};
   state.type = XR_TYPE_ACTION_STATE_POSE;
-  CATENA_XR_CHECK(*session_, session_->dispatch().GetActionStatePose(session_->handle(), &info, &state), "look at the eyes");
+  CATENA_XR_CHECK(*session_, session_->dispatch().GetActionStatePose(session_->handle(), &info, &state), "read the gaze");
   if (!state.isActive) return none;
   XrPose pose;
   CATENA_TRY(const bool known, locate(gaze_space_, at, pose));
   return known ? std::optional(pose) : none;
 }
 
-Outcome Actions::vibrate(std::size_t which, double amplitude, double frequency_hz, std::int64_t duration_ns) {
+Outcome Actions::vibrate(std::size_t index, double amplitude, double frequency_hz, std::int64_t duration_ns) {
   if (!session_->is_focused()) return Done{};
   XrHapticActionInfo info{};
   info.type = XR_TYPE_HAPTIC_ACTION_INFO;
   info.action = vibration_;
-  info.subactionPath = hand_paths_[which];
+  info.subactionPath = hand_paths_[index];
   XrHapticVibration vibration{};
   vibration.type = XR_TYPE_HAPTIC_VIBRATION;
   vibration.amplitude = float(std::isfinite(amplitude) ? std::clamp(amplitude, 0.0, 1.0) : 0);
@@ -245,27 +245,27 @@ Outcome Actions::vibrate(std::size_t which, double amplitude, double frequency_h
   return Done{};
 }
 
-Outcome Actions::stop_vibration(std::size_t which) {
+Outcome Actions::stop_vibration(std::size_t index) {
   XrHapticActionInfo info{};
   info.type = XR_TYPE_HAPTIC_ACTION_INFO;
   info.action = vibration_;
-  info.subactionPath = hand_paths_[which];
-  CATENA_XR_CHECK(*session_, session_->dispatch().StopHapticFeedback(session_->handle(), &info), "stop vibrating");
+  info.subactionPath = hand_paths_[index];
+  CATENA_XR_CHECK(*session_, session_->dispatch().StopHapticFeedback(session_->handle(), &info), "stop the vibration");
   return Done{};
 }
 
-Result<std::string> Actions::interaction_profile(std::size_t which) {
+Result<std::string> Actions::interaction_profile(std::size_t index) {
   XrInteractionProfileState state{};
   state.type = XR_TYPE_INTERACTION_PROFILE_STATE;
-  CATENA_XR_CHECK(*session_, session_->dispatch().GetCurrentInteractionProfile(session_->handle(), hand_paths_[which], &state),
-                  "name a controller");
+  CATENA_XR_CHECK(*session_, session_->dispatch().GetCurrentInteractionProfile(session_->handle(), hand_paths_[index], &state),
+                  "report the controller type");
   if (state.interactionProfile == XR_NULL_PATH) return std::string();
   std::array<char, XR_MAX_PATH_LENGTH> text{};
   std::uint32_t count = 0;
   CATENA_XR_CHECK(*session_,
                   session_->dispatch().PathToString(session_->instance().handle(), state.interactionProfile, std::uint32_t(text.size()),
                                                     &count, text.data()),
-                  "name a controller");
+                  "report the controller type");
   return std::string(text.data());
 }
 

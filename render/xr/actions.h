@@ -44,19 +44,19 @@ class Actions {
   Outcome sync();
   /// Returns a controller's state at a time of the runtime's clock: the current time for interaction, the frame's display time for
   /// rendering.
-  Result<ControllerState> controller(std::size_t which, XrTime at);
+  Result<ControllerState> controller(std::size_t index, XrTime at);
 
   /// Returns the user's gaze at that time; nullopt if the headset does not know it or the session has no focus.
   Result<std::optional<XrPose>> gaze(XrTime at);
 
   /// Replaces the vibration of a controller. amplitude 0..1; frequency in Hz, 0: chosen by the runtime, which clamps unsupported values.
   /// Does nothing without focus.
-  Outcome vibrate(std::size_t which, double amplitude, double frequency_hz, std::int64_t duration_ns);
+  Outcome vibrate(std::size_t index, double amplitude, double frequency_hz, std::int64_t duration_ns);
   /// Stops the vibration of a controller.
-  Outcome stop_vibration(std::size_t which);
+  Outcome stop_vibration(std::size_t index);
 
   /// Returns, for instance, "/interaction_profiles/valve/index_controller"; empty: no controller.
-  Result<std::string> interaction_profile(std::size_t which);
+  Result<std::string> interaction_profile(std::size_t index);
 
  private:
   explicit Actions(Session& session) : session_(&session) {}
@@ -64,8 +64,8 @@ class Actions {
   Outcome suggest_bindings();
   Outcome suggest_gaze_binding();
   Result<XrPath> make_path(const char* text);
-  Result<XrAction> make_action(XrActionType type, const char* name, const char* words, bool of_hands = true);
-  Result<XrSpace> make_pose_space(XrAction pose, XrPath hand);
+  Result<XrAction> make_action(XrActionType type, const char* name, const char* localized_name, bool per_hand = true);
+  Result<XrSpace> make_pose_space(XrAction pose, XrPath controller_path);
   Result<bool> locate(XrSpace space, XrTime at, XrPose& pose);
 
   Session* session_;

@@ -29,7 +29,7 @@ Outcome locate(Session& session, Frame& frame) {
       session,
       session.dispatch().LocateViews(session.handle(), &info, &state, std::uint32_t(frame.views.size()), &count, frame.views.data()),
       "locate the eyes");
-  // an eye that no picture can be made for, whatever the flags say, is not tracked
+  // an eye without a usable projection is not tracked, whatever the flags say
   frame.is_valid =
       std::ranges::all_of(frame.views, [](const XrView& one) { return static_cast<bool>(make_xr_eye_view({}, make_xr_eye(one))); });
   frame.should_render =
@@ -55,30 +55,31 @@ XrHeadPose head_pose(const Frame& frame) {
   for (const XrView& view : frame.views) {
     const auto& [x, y, z, w] = view.pose.orientation;
     const Quat turn = normalized(Quat(w, x, y, z));
-    sum += dot(sum, turn) < 0 ? -turn : turn;  // q and -q are one rotation
+    sum += dot(sum, turn) < 0 ? -turn : turn;  // q and -q are the same rotation
     head.position += make_xr_eye(view).position / double(frame.views.size());
   }
   head.orientation = normalized(sum);
   return head;
 }
 
-Result<std::optional<Frame>> begin_frame(Session& session, std::optional<std::chrono::nanoseconds> patience) {
+Result<std::optional<Frame>> begin_frame(Session& session, std::optional<std::chrono::nanoseconds> timeout) {
   const DispatchTable& xr = session.dispatch();
-  const std::optional<FrameWaiter::WaitResult> answer = session.frame_waiter().wait_for(patience);
-  if (!answer) return std::optional<Frame>();
-  CATENA_XR_CHECK(session, answer->result, "say when the next picture is due");
-  const XrFrameState& state = answer->state;
+  const std::optional<FrameWaiter::WaitResult> waited = session.frame_waiter().wait_for(timeout);
+  if (!waited) return std::optional<Frame>();
+  CATENA_XR_CHECK(session, waited->result, "wait for the next frame");
+  const XrFrameState& state = waited->state;
   Frame frame;
   frame.display_time = state.predictedDisplayTime;
-  constexpr std::int64_t kLeast_ns = 1'000'000, kMost_ns = 1'000'000'000, kUnknown_ns = 11'111'111;  // of a period that is one
+  constexpr std::int64_t kMinPeriod_ns = 1'000'000, kMaxPeriod_ns = 1'000'000'000,
+                         kDefaultPeriod_ns = 11'111'111;  // limits of a stated period, and the default
   const std::int64_t period_ns = state.predictedDisplayPeriod;
-  frame.display_period_ns = period_ns > 0 ? std::clamp(period_ns, kLeast_ns, kMost_ns) : kUnknown_ns;
+  frame.display_period_ns = period_ns > 0 ? std::clamp(period_ns, kMinPeriod_ns, kMaxPeriod_ns) : kDefaultPeriod_ns;
   frame.should_render = state.shouldRender && is_visible(session.state());
   XrFrameBeginInfo begin{};
   begin.type = XR_TYPE_FRAME_BEGIN_INFO;
   {
     const auto turn = session.device().lock_queue();
-    CATENA_XR_CHECK(session, xr.BeginFrame(session.handle(), &begin), "begin a picture");
+    CATENA_XR_CHECK(session, xr.BeginFrame(session.handle(), &begin), "begin a frame");
   }
   if (const Outcome located = locate(session, frame); !located) {
     (void)end_frame(session, frame, {});
@@ -121,7 +122,7 @@ Outcome end_frame(Session& session, const Frame& frame, const std::vector<Submit
   end.layerCount = std::uint32_t(layers.size());
   end.layers = layers.data();
   const auto turn = session.device().lock_queue();
-  CATENA_XR_CHECK(session, session.dispatch().EndFrame(session.handle(), &end), "show a picture");
+  CATENA_XR_CHECK(session, session.dispatch().EndFrame(session.handle(), &end), "end a frame");
   return Done{};
 }
 

@@ -8,13 +8,13 @@ namespace catena::render::xr {
 
 namespace {
 
-/// The fovea goes where the person looks; straight ahead of the view where that is not known, or behind it.
+/// Moves the fovea to the gaze; keeps the center of the view if the gaze is unknown or points backwards.
 void look_at(const std::optional<Vec3>& gaze, const XrEye& eye, RenderSettings& settings) {
   if (!gaze || !settings.fast || !(settings.fast->fovea_tangent > 0)) return;
-  const Vec3 seen = *gaze * eye.local_from_eye;  // v * R = R^T v
-  if (!(seen.z < 0)) return;
-  settings.fast->gaze_right = std::clamp(-seen.x / seen.z, -kMaxGazeTangent, kMaxGazeTangent);
-  settings.fast->gaze_up = std::clamp(-seen.y / seen.z, -kMaxGazeTangent, kMaxGazeTangent);
+  const Vec3 gaze_direction = *gaze * eye.local_from_eye;  // v * R = R^T v
+  if (!(gaze_direction.z < 0)) return;
+  settings.fast->gaze_right = std::clamp(-gaze_direction.x / gaze_direction.z, -kMaxGazeTangent, kMaxGazeTangent);
+  settings.fast->gaze_up = std::clamp(-gaze_direction.y / gaze_direction.z, -kMaxGazeTangent, kMaxGazeTangent);
 }
 
 bool has_projection(const FramePacket& packet) {
@@ -46,8 +46,8 @@ Outcome Headset::create_views() {
     view.depth = DepthImages::create(*session_, size);
     views_.push_back(std::move(view));
   }
-  // depths that could not be made are done without, but not what was lost on the way
-  if (loss() != Loss::none) return session_->failed(XR_ERROR_SESSION_LOST, "make images");
+  // missing depth images are tolerated, a session lost meanwhile is not
+  if (loss() != Loss::none) return session_->failed(XR_ERROR_SESSION_LOST, "create images");
   return update_masks();
 }
 
@@ -60,7 +60,7 @@ Outcome Headset::update_masks() {
 }
 
 void Headset::stop() {
-  if (session_) session_->stop_wait();  // before anything that it uses goes
+  if (session_) session_->stop_wait();  // before the resources that the waiting thread uses
   panel_ = nullptr;
   views_.clear();
   actions_.reset();
@@ -107,9 +107,9 @@ Result<std::vector<SubmittedView>> Headset::render_views(const Frame& frame, Ren
     const XrEye eye = make_xr_eye(frame.views[k]);
     packet.width = scaled(view.color->size().width);
     packet.height = scaled(view.color->size().height);
-    CATENA_TRY(const View seen, make_xr_eye_view(placement, eye));
-    if (aim) aim(seen, packet);
-    packet.view = seen;
+    CATENA_TRY(const View eye_view, make_xr_eye_view(placement, eye));
+    if (aim) aim(eye_view, packet);
+    packet.view = eye_view;
     packet.eyes.clear();
     packet.packing = Packing::single;
     if (!view.hidden.empty()) packet.meshes.push_back(make_mask_item(view.hidden, placement, eye));

@@ -47,16 +47,16 @@ Instance::~Instance() {
 
 Outcome Instance::create() {
   std::uint32_t count = 0;
-  CATENA_XR_CHECK(*this, dispatch_.EnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr), "say what it can do");
+  CATENA_XR_CHECK(*this, dispatch_.EnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr), "list its extensions");
   std::vector<XrExtensionProperties> offered(count, {XR_TYPE_EXTENSION_PROPERTIES, nullptr, {}, 0});
-  CATENA_XR_CHECK(*this, dispatch_.EnumerateInstanceExtensionProperties(nullptr, count, &count, offered.data()), "say what it can do");
+  CATENA_XR_CHECK(*this, dispatch_.EnumerateInstanceExtensionProperties(nullptr, count, &count, offered.data()), "list its extensions");
   if (!is_among(offered, XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME))
-    return Error{"the headset's runtime takes no pictures from Vulkan, expected one with " XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
+    return Error{"the headset's runtime does not support Vulkan, expected the extension " XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
 
-  std::vector<const char*> wanted{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
+  std::vector<const char*> requested{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
   const auto take = [&](const char* name) {
     const bool there = is_among(offered, name);
-    if (there) wanted.push_back(name);
+    if (there) requested.push_back(name);
     return there;
   };
   capabilities_.depth = take(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
@@ -70,49 +70,50 @@ Outcome Instance::create() {
   std::strcpy(info.applicationInfo.engineName, "catena");
   info.applicationInfo.applicationVersion = info.applicationInfo.engineVersion = 1;
   info.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 0, 0);
-  info.enabledExtensionCount = std::uint32_t(wanted.size());
-  info.enabledExtensionNames = wanted.data();
-  CATENA_XR_CHECK(*this, dispatch_.CreateInstance(&info, &instance_), "be connected to");
+  info.enabledExtensionCount = std::uint32_t(requested.size());
+  info.enabledExtensionNames = requested.data();
+  CATENA_XR_CHECK(*this, dispatch_.CreateInstance(&info, &instance_), "be connected");
   return Done{};
 }
 
 Outcome Instance::query_system() {
   XrInstanceProperties runtime{};
   runtime.type = XR_TYPE_INSTANCE_PROPERTIES;
-  CATENA_XR_CHECK(*this, dispatch_.GetInstanceProperties(instance_, &runtime), "name its runtime");
-  XrSystemGetInfo wanted{};
-  wanted.type = XR_TYPE_SYSTEM_GET_INFO;
-  wanted.formFactor = XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY;
-  CATENA_XR_CHECK(*this, dispatch_.GetSystem(instance_, &wanted, &system_), "be found");
+  CATENA_XR_CHECK(*this, dispatch_.GetInstanceProperties(instance_, &runtime), "report its runtime");
+  XrSystemGetInfo requested{};
+  requested.type = XR_TYPE_SYSTEM_GET_INFO;
+  requested.formFactor = XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY;
+  CATENA_XR_CHECK(*this, dispatch_.GetSystem(instance_, &requested, &system_), "be found");
   XrSystemProperties system{};
   system.type = XR_TYPE_SYSTEM_PROPERTIES;
   XrSystemEyeGazeInteractionPropertiesEXT eyes{};
   eyes.type = XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT;
   if (capabilities_.gaze) system.next = &eyes;
-  CATENA_XR_CHECK(*this, dispatch_.GetSystemProperties(instance_, system_, &system), "describe itself");
+  CATENA_XR_CHECK(*this, dispatch_.GetSystemProperties(instance_, system_, &system), "report its properties");
   capabilities_.gaze = capabilities_.gaze && eyes.supportsEyeGazeInteraction;
   name_ = std::string(runtime.runtimeName) + ", " + system.systemName;
 
   std::uint32_t count = 0;
-  CATENA_XR_CHECK(*this, dispatch_.EnumerateViewConfigurationViews(instance_, system_, kStereo, 0, &count, nullptr), "say its size");
-  constexpr std::uint32_t kMostViews = 64;
-  if (count > kMostViews) return Error{fmt::format("the headset {} has {} views, expected at most {}", name_, count, kMostViews)};
+  CATENA_XR_CHECK(*this, dispatch_.EnumerateViewConfigurationViews(instance_, system_, kStereo, 0, &count, nullptr),
+                  "report its view sizes");
+  constexpr std::uint32_t kMaxViews = 64;
+  if (count > kMaxViews) return Error{fmt::format("the headset {} has {} views, expected at most {}", name_, count, kMaxViews)};
   XrViewConfigurationView view{};
   view.type = XR_TYPE_VIEW_CONFIGURATION_VIEW;
   std::vector<XrViewConfigurationView> views(count, view);
   CATENA_XR_CHECK(*this, dispatch_.EnumerateViewConfigurationViews(instance_, system_, kStereo, count, &count, views.data()),
-                  "say its size");
+                  "report its view sizes");
   views.resize(std::min<std::size_t>(views.size(), count));
   for (const XrViewConfigurationView& one : views)
     view_sizes_.push_back({std::clamp(one.recommendedImageRectWidth, 1u, std::max(1u, one.maxImageRectWidth)),
                            std::clamp(one.recommendedImageRectHeight, 1u, std::max(1u, one.maxImageRectHeight))});
   if (view_sizes_.empty()) return Error{"the headset " + name_ + " has no views, expected two"};
 
-  // opaque where it can be: a see-through display shows black as nothing
-  CATENA_XR_CHECK(*this, dispatch_.EnumerateEnvironmentBlendModes(instance_, system_, kStereo, 0, &count, nullptr), "say how it blends");
+  // opaque if available: on a see-through display black is transparent
+  CATENA_XR_CHECK(*this, dispatch_.EnumerateEnvironmentBlendModes(instance_, system_, kStereo, 0, &count, nullptr), "list its blend modes");
   std::vector<XrEnvironmentBlendMode> modes(count);
   CATENA_XR_CHECK(*this, dispatch_.EnumerateEnvironmentBlendModes(instance_, system_, kStereo, count, &count, modes.data()),
-                  "say how it blends");
+                  "list its blend modes");
   if (modes.empty()) return Error{"the headset " + name_ + " has no blend mode, expected one"};
   blend_mode_ = std::ranges::find(modes, XR_ENVIRONMENT_BLEND_MODE_OPAQUE) != modes.end() ? XR_ENVIRONMENT_BLEND_MODE_OPAQUE : modes[0];
   return Done{};

@@ -9,9 +9,9 @@ Result<std::unique_ptr<QuadLayer>> QuadLayer::create(Session& session, ViewSize 
   return self;
 }
 
-Outcome QuadLayer::submit_image(vk::Image& picture) {
-  CATENA_CHECK(images_->submit_image(picture));
-  image_size_ = {picture.info().extent.width, picture.info().extent.height};
+Outcome QuadLayer::submit_image(vk::Image& image) {
+  CATENA_CHECK(images_->submit_image(image));
+  image_size_ = {image.info().extent.width, image.info().extent.height};
   return Done{};
 }
 

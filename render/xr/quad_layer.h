@@ -21,7 +21,7 @@ class QuadLayer {
   /// Creates a panel of `size` pixels. An Error if the runtime refuses.
   static Result<std::unique_ptr<QuadLayer>> create(Session& session, ViewSize size);
   /// Sets the image (RGBA, 8 bits, straight alpha, of the layer's size).
-  Outcome submit_image(vk::Image& picture);
+  Outcome submit_image(vk::Image& image);
   void set_quad(const Quad& quad) { quad_ = quad; }
   /// Returns the layer for end_frame(), valid until the next call; null before the first image.
   const XrCompositionLayerBaseHeader* composition_layer();

@@ -28,7 +28,7 @@ Result<std::unique_ptr<Session>> Session::create(Instance& instance, vk::Device&
   info.systemId = instance.system();
   {
     const auto turn = device.lock_queue();
-    CATENA_XR_CHECK(instance, self->dispatch().CreateSession(instance.handle(), &info, &self->session_), "begin a session");
+    CATENA_XR_CHECK(instance, self->dispatch().CreateSession(instance.handle(), &info, &self->session_), "create a session");
   }
   CATENA_CHECK(self->create_spaces());
   instance.clear_session_loss();
@@ -59,9 +59,9 @@ Session::~Session() {
 
 Outcome Session::create_spaces() {
   std::uint32_t count = 0;
-  CATENA_XR_CHECK(*instance_, dispatch().EnumerateReferenceSpaces(session_, 0, &count, nullptr), "list its spaces");
+  CATENA_XR_CHECK(*instance_, dispatch().EnumerateReferenceSpaces(session_, 0, &count, nullptr), "list its reference spaces");
   std::vector<XrReferenceSpaceType> offered(count);
-  CATENA_XR_CHECK(*instance_, dispatch().EnumerateReferenceSpaces(session_, count, &count, offered.data()), "list its spaces");
+  CATENA_XR_CHECK(*instance_, dispatch().EnumerateReferenceSpaces(session_, count, &count, offered.data()), "list its reference spaces");
   constexpr XrReferenceSpaceType kTypes[] = {XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_STAGE, XR_REFERENCE_SPACE_TYPE_VIEW};
   for (std::size_t k = 0; k < spaces_.size(); ++k) {
     if (std::ranges::find(offered, kTypes[k]) == offered.end()) continue;
@@ -69,7 +69,7 @@ Outcome Session::create_spaces() {
     info.type = XR_TYPE_REFERENCE_SPACE_CREATE_INFO;
     info.referenceSpaceType = kTypes[k];
     info.poseInReferenceSpace.orientation.w = 1;
-    CATENA_XR_CHECK(*instance_, dispatch().CreateReferenceSpace(session_, &info, &spaces_[k]), "make a space");
+    CATENA_XR_CHECK(*instance_, dispatch().CreateReferenceSpace(session_, &info, &spaces_[k]), "create a reference space");
   }
   if (!space(SpaceKind::local)) return Error{"the headset " + instance_->name() + " has no local space, expected one"};
   return Done{};
@@ -85,14 +85,14 @@ Outcome Session::enter_state(XrSessionState state) {
       XrSessionBeginInfo info{};
       info.type = XR_TYPE_SESSION_BEGIN_INFO;
       info.primaryViewConfigurationType = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-      CATENA_XR_CHECK(*instance_, dispatch().BeginSession(session_, &info), "begin to show");
+      CATENA_XR_CHECK(*instance_, dispatch().BeginSession(session_, &info), "begin the session");
       is_running_ = true;
       return Done{};
     }
     case SessionAction::end:
-      if (!std::exchange(is_running_, false)) return Done{};  // a runtime that says twice that it stops
+      if (!std::exchange(is_running_, false)) return Done{};  // the runtime reports the end twice
       CATENA_XR_CHECK(*instance_, dispatch().EndSession(session_), "end the session");
-      stop_wait();  // what it says is of a session that is over
+      stop_wait();  // a pending result belongs to the ended session
       return Done{};
     case SessionAction::exit:
       is_running_ = false;
@@ -112,7 +112,7 @@ Outcome Session::poll() {
     XrEventDataBuffer event{};
     event.type = XR_TYPE_EVENT_DATA_BUFFER;
     const XrResult polled = dispatch().PollEvent(instance_->handle(), &event);
-    if (XR_FAILED(polled)) return failed(polled, "say what happened");
+    if (XR_FAILED(polled)) return failed(polled, "report its events");
     if (polled == XR_EVENT_UNAVAILABLE) return Done{};
     switch (event.type) {
       case XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED: {

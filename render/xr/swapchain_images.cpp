@@ -10,16 +10,16 @@ Result<std::unique_ptr<SwapchainImages>> SwapchainImages::create(Session& sessio
   Instance& instance = session.instance();
   const DispatchTable& xr = session.dispatch();
   std::uint32_t count = 0;
-  CATENA_XR_CHECK(instance, xr.EnumerateSwapchainFormats(session.handle(), 0, &count, nullptr), "list its picture formats");
+  CATENA_XR_CHECK(instance, xr.EnumerateSwapchainFormats(session.handle(), 0, &count, nullptr), "list its swapchain formats");
   std::vector<std::int64_t> formats(count);
-  CATENA_XR_CHECK(instance, xr.EnumerateSwapchainFormats(session.handle(), count, &count, formats.data()), "list its picture formats");
+  CATENA_XR_CHECK(instance, xr.EnumerateSwapchainFormats(session.handle(), count, &count, formats.data()), "list its swapchain formats");
   const bool depth = content == SwapchainContent::depth;
-  const std::array<std::int64_t, 2> wanted = depth ? std::array<std::int64_t, 2>{VK_FORMAT_D32_SFLOAT, VK_FORMAT_D32_SFLOAT}
-                                                   : std::array<std::int64_t, 2>{VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM};
-  const auto format = std::ranges::find_if(wanted, [&](std::int64_t f) { return std::ranges::find(formats, f) != formats.end(); });
-  if (format == wanted.end())
-    return Error{"the headset " + instance.name() + " takes no " +
-                 (depth ? "depths of 32 bits, expected D32_SFLOAT" : "pictures of 8 bits a colour and alpha, expected R8G8B8A8_SRGB")};
+  const std::array<std::int64_t, 2> preferred = depth ? std::array<std::int64_t, 2>{VK_FORMAT_D32_SFLOAT, VK_FORMAT_D32_SFLOAT}
+                                                      : std::array<std::int64_t, 2>{VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM};
+  const auto format = std::ranges::find_if(preferred, [&](std::int64_t f) { return std::ranges::find(formats, f) != formats.end(); });
+  if (format == preferred.end())
+    return Error{"the headset " + instance.name() + " supports no " +
+                 (depth ? "32-bit depth images, expected D32_SFLOAT" : "images with 8 bits per channel, expected R8G8B8A8_SRGB")};
 
   std::unique_ptr<SwapchainImages> self(new SwapchainImages(session, size, content));
   XrSwapchainCreateInfo info{};
@@ -32,12 +32,12 @@ Result<std::unique_ptr<SwapchainImages>> SwapchainImages::create(Session& sessio
   info.height = size.height;
   {
     const auto turn = session.device().lock_queue();
-    CATENA_XR_CHECK(instance, xr.CreateSwapchain(session.handle(), &info, &self->swapchain_), "make images");
+    CATENA_XR_CHECK(instance, xr.CreateSwapchain(session.handle(), &info, &self->swapchain_), "create images");
   }
   CATENA_XR_CHECK(instance, xr.EnumerateSwapchainImages(self->swapchain_, 0, &count, nullptr), "list its images");
-  XrSwapchainImageVulkan2KHR image{};
-  image.type = XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR;
-  std::vector<XrSwapchainImageVulkan2KHR> images(count, image);
+  XrSwapchainImageVulkan2KHR source{};
+  source.type = XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR;
+  std::vector<XrSwapchainImageVulkan2KHR> images(count, source);
   CATENA_XR_CHECK(
       instance, xr.EnumerateSwapchainImages(self->swapchain_, count, &count, reinterpret_cast<XrSwapchainImageBaseHeader*>(images.data())),
       "list its images");
@@ -52,41 +52,41 @@ SwapchainImages::~SwapchainImages() {
   (void)session_->dispatch().DestroySwapchain(swapchain_);
 }
 
-Outcome SwapchainImages::submit_image(vk::Image& picture) {
+Outcome SwapchainImages::submit_image(vk::Image& source) {
   Instance& instance = session_->instance();
   const DispatchTable& xr = session_->dispatch();
   std::uint32_t index = 0;
   {
     const auto turn = session_->device().lock_queue();
-    CATENA_XR_CHECK(instance, xr.AcquireSwapchainImage(swapchain_, nullptr, &index), "lend an image");
+    CATENA_XR_CHECK(instance, xr.AcquireSwapchainImage(swapchain_, nullptr, &index), "acquire an image");
   }
   XrSwapchainImageWaitInfo wait{};
   wait.type = XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO;
   wait.timeout = XR_INFINITE_DURATION;
-  CATENA_XR_CHECK(instance, xr.WaitSwapchainImage(swapchain_, &wait), "lend an image");
-  if (index >= images_.size()) return instance.failed(XR_ERROR_RUNTIME_FAILURE, "lend an image that it has");
-  const Outcome copied = copy(picture, images_[index]);
+  CATENA_XR_CHECK(instance, xr.WaitSwapchainImage(swapchain_, &wait), "acquire an image");
+  if (index >= images_.size()) return instance.failed(XR_ERROR_RUNTIME_FAILURE, "acquire an existing image");
+  const Outcome copied = copy(source, images_[index]);
   const auto turn = session_->device().lock_queue();
-  CATENA_XR_CHECK(instance, xr.ReleaseSwapchainImage(swapchain_, nullptr), "take an image back");
+  CATENA_XR_CHECK(instance, xr.ReleaseSwapchainImage(swapchain_, nullptr), "release an image");
   return copied;
 }
 
-Outcome SwapchainImages::copy(vk::Image& picture, VkImage to) {
-  const VkExtent3D extent = picture.info().extent;
+Outcome SwapchainImages::copy(vk::Image& source, VkImage to) {
+  const VkExtent3D extent = source.info().extent;
   CATENA_ASSERT(extent.width <= size_.width && extent.height <= size_.height);
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(session_->device()));
-  commands.transition(picture, vk::kTransferRead);
+  commands.transition(source, vk::kTransferRead);
   vk::ResourceUse lent = content_ == SwapchainContent::depth ? vk::kDepthTarget : vk::kColorTarget;
   if (content_ == SwapchainContent::depth) lent.layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
-  vk::ResourceUse before = lent;  // what the runtime did to it is over, and what it shows does not count
+  vk::ResourceUse before = lent;  // the runtime's use has ended, and the previous content is discarded
   before.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  commands.barrier(to, picture.aspect(), before, vk::kTransferWrite);
+  commands.barrier(to, source.aspect(), before, vk::kTransferWrite);
   VkImageCopy region{};
-  region.srcSubresource = region.dstSubresource = {picture.aspect(), 0, 0, 1};
+  region.srcSubresource = region.dstSubresource = {source.aspect(), 0, 0, 1};
   region.extent = extent;
-  vkCmdCopyImage(commands.handle(), picture.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+  vkCmdCopyImage(commands.handle(), source.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
                  &region);
-  commands.barrier(to, picture.aspect(), vk::kTransferWrite, lent);
+  commands.barrier(to, source.aspect(), vk::kTransferWrite, lent);
   CATENA_TRY([[maybe_unused]] const std::uint64_t done, commands.submit());
   return Done{};
 }

@@ -29,11 +29,11 @@ class SwapchainImages {
 
   /// Copies an image of at most this size (RGBA, 8 bits; for depth: D32) to the upper left part of the next swapchain image, and releases
   /// that to the runtime. The next frame's layers show it.
-  Outcome submit_image(vk::Image& picture);
+  Outcome submit_image(vk::Image& source);
 
  private:
   SwapchainImages(Session& session, ViewSize size, SwapchainContent content) : session_(&session), size_(size), content_(content) {}
-  Outcome copy(vk::Image& picture, VkImage to);
+  Outcome copy(vk::Image& source, VkImage to);
 
   Session* session_;
   ViewSize size_;

@@ -8,7 +8,7 @@ namespace catena::render::xr {
 
 namespace {
 
-constexpr double kNearM = 0.02;  // nearer to the eye than anybody looks
+constexpr double kNearM = 0.02;  // distance of the mask from the eye, nearer than any object
 
 }  // namespace
 
@@ -22,9 +22,9 @@ Result<HiddenMesh> load_hidden_mesh(Session& session, std::size_t view) {
     return get(session.handle(), XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, std::uint32_t(view),
                XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR, &mask);
   };
-  CATENA_XR_CHECK(session, ask(), "say what its lenses hide");
-  constexpr std::uint32_t kMost = 1'000'000;
-  if (mask.vertexCountOutput == 0 || mask.indexCountOutput == 0 || mask.vertexCountOutput > kMost || mask.indexCountOutput > kMost)
+  CATENA_XR_CHECK(session, ask(), "report its visibility mask");
+  constexpr std::uint32_t kMaxCount = 1'000'000;
+  if (mask.vertexCountOutput == 0 || mask.indexCountOutput == 0 || mask.vertexCountOutput > kMaxCount || mask.indexCountOutput > kMaxCount)
     return mesh;
   std::vector<XrVector2f> vertices(mask.vertexCountOutput);
   mesh.triangles.resize(mask.indexCountOutput);
@@ -32,9 +32,9 @@ Result<HiddenMesh> load_hidden_mesh(Session& session, std::size_t view) {
   mask.indexCapacityInput = mask.indexCountOutput;
   mask.vertices = vertices.data();
   mask.indices = mesh.triangles.data();
-  CATENA_XR_CHECK(session, ask(), "say what its lenses hide");
+  CATENA_XR_CHECK(session, ask(), "report its visibility mask");
   mesh.triangles.resize(std::min<std::size_t>(mesh.triangles.size(), mask.indexCountOutput) / 3 * 3);
-  // a mesh that points beyond its vertices, or to no place, is none
+  // a mesh with an index beyond its vertices or a position that is not finite is ignored
   if (std::ranges::any_of(mesh.triangles, [&](std::uint32_t i) { return i >= vertices.size(); })) return HiddenMesh{};
   if (!std::ranges::all_of(vertices, [](const XrVector2f& v) { return std::isfinite(v.x) && std::isfinite(v.y); })) return HiddenMesh{};
   for (const XrVector2f& v : vertices) mesh.vertices.push_back({v.x, v.y});

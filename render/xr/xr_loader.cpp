@@ -51,7 +51,7 @@ void DispatchTable::disable_destruction() {
 }
 
 Result<std::unique_ptr<Loader>> Loader::open(const char* library) {
-  // what goes wrong is said once, by us
+  // the loader's own output is disabled: errors are reported once, by Catena
   ::setenv("XR_LOADER_DEBUG", "none", 0);
   std::unique_ptr<Loader> self(new Loader);
   self->library_ = ::dlopen(library, RTLD_NOW | RTLD_LOCAL);

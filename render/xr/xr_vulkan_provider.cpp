@@ -8,16 +8,15 @@ namespace catena::render::xr {
 
 namespace {
 
-/// Vulkan's own answer where there is one, or else that the runtime refused.
+/// Returns Vulkan's result if the runtime succeeded, else an initialization failure.
 VkResult answer(Instance& instance, XrResult said, VkResult vulkan, const char* what) {
   if (XR_SUCCEEDED(said)) return vulkan;
   (void)instance.failed(said, what);
   return VK_ERROR_INITIALIZATION_FAILED;
 }
 
-/// The features of a device in structures of their own instead of VkPhysicalDeviceVulkan12Features: a runtime looks whether the chain has
-/// VkPhysicalDeviceTimelineSemaphoreFeatures, else puts its own there (Monado), and that may not stand beside the other. Points into
-/// itself.
+/// Device features in separate structures instead of VkPhysicalDeviceVulkan12Features: a runtime (Monado) adds
+/// VkPhysicalDeviceTimelineSemaphoreFeatures to a chain without it, which must not be combined with the former. Points into itself.
 struct SplitFeatures {
   VkPhysicalDeviceFeatures2 core{};
   VkPhysicalDeviceTimelineSemaphoreFeatures timeline{};
@@ -48,7 +47,7 @@ struct SplitFeatures {
 vk::VulkanProvider Instance::vulkan_provider(std::mutex& queue_lock) {
   vk::VulkanProvider maker;
   maker.instance = [this](const VkInstanceCreateInfo& wanted, VkInstance* made) {
-    // asking is required before an instance is made; 1.3 is what Catena needs, whatever the answer is
+    // OpenXR requires this call before the instance is created; Catena needs 1.3 in any case
     XrGraphicsRequirementsVulkan2KHR versions{};
     versions.type = XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR;
     const XrResult asked = dispatch_.GetVulkanGraphicsRequirements2KHR(instance_, system_, &versions);

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Volumes, translucent isosurfaces and layers together: the ray is cut where a volume begins or ends, at surfaces and at layers. The
+// Volumes, translucent isosurfaces and layers along one ray, which is split where a volume begins or ends, at surfaces and at layers. The
 // includer defines GRID_COUNT and, with layers, HAS_LAYERS.
-layout(constant_id = 2) const int VOLUME_COUNT = 1;   // grids 0 .. VOLUME_COUNT - 1
-layout(constant_id = 3) const int SURFACE_COUNT = 0;  // the grids after them
-layout(constant_id = 8) const int COLOR_GRID_COUNT = 0;  // and after those
+layout(constant_id = 2) const int VOLUME_COUNT = 1;   // volumes: grids 0 .. VOLUME_COUNT - 1
+layout(constant_id = 3) const int SURFACE_COUNT = 0;  // isosurfaces: the next grids
+layout(constant_id = 8) const int COLOR_GRID_COUNT = 0;  // color grids: the grids after the isosurfaces
 #include "shaders/lib/grids.glsl"
 #include "shaders/lib/rays.glsl"
 #include "shaders/lib/lighting.glsl"
 #include "shaders/lib/surface.glsl"
 #include "shaders/lib/raycast.glsl"
 
-// The surfaces, by their number, which is a constant here too.
-float crossings[MAX_SURFACES];  // the next one
+// Next crossing of each surface, and the end of its visible interval.
+float crossings[MAX_SURFACES];
 float limits[MAX_SURFACES];
 
 void init_surface(int s, vec2 q, float end) {
@@ -25,7 +25,7 @@ void init_surface(int s, vec2 q, float end) {
   }
 }
 
-// Blends surface s, if it is the one that the ray crosses at t, and looks for its next crossing a little way behind.
+// Blends surface s, if it is the one that the ray crosses at t, and finds its next crossing, 1e-3 voxels behind t.
 void shade_surface(int s, int surface, float t) {
   const int i = VOLUME_COUNT + s;
   if (s < SURFACE_COUNT && s == surface && transmittance > frame.termination) {
@@ -48,7 +48,7 @@ void main() {
   const vec2 q = pixel_position();
   const float end = setup_pixel(q);
 
-  // where the ray meets each grid
+  // the ray's interval in each grid
   for (int j = VOLUME_COUNT + SURFACE_COUNT; j < VOLUME_COUNT + SURFACE_COUNT + COLOR_GRID_COUNT; ++j) rays[j] = local_ray(j, q);
   for (int i = 0; i < VOLUME_COUNT; ++i) {
     rays[i] = local_ray(i, q);
@@ -69,7 +69,7 @@ void main() {
   for (int i = 0; i < VOLUME_COUNT; ++i) t = min(t, intervals[i].x);
   for (int s = 0; s < SURFACE_COUNT; ++s) t = min(t, crossings[s]);
 
-  // from event to event: a volume begins or ends, a surface or a layer is crossed
+  // from event to event: the beginning or end of a volume, or the crossing of a surface or layer
   for (int guard = 0; guard < 4096 && transmittance > frame.termination && t < end; ++guard) {
     float next = NO_DEPTH;
     int surface = -1;

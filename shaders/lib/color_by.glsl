@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Colours by another grid at the same world place. Grid j holds a table of colours; `p` is the place in its own index space.
+// Color by another grid at the same world position. Grid j has a table of colors; `p` is the position in its index space.
 
-// Alpha: 0 where the value has no colour, as what is no label; else 1.
+// Returns the color of a value; alpha 0: the value has no color (it is no label), else 1.
 vec4 table_color(int j, float value) {
   uint at;
   float way;
@@ -9,7 +9,7 @@ vec4 table_color(int j, float value) {
   return interpolate_entry(at, way);
 }
 
-// The colour of the nearest corner of the cell that has one.
+// Returns the color of the cell's nearest corner that has one; else `otherwise`.
 vec3 nearest_label_color(int j, vec3 p, vec3 otherwise) {
   const ivec3 cell = cell_of(j, p);
   vec4 lo, hi;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The cubic cell (engine/field/cubic.h): the 4 x 4 x 4 texels about a cell of a grid that is mirrored padded (render/residency/resident_grid.h).
-// Summed by differences from the texel at the cell's corner: texels that are all equal give just that value, and a slope of 0.
-#define CUBIC_OVERSHOOT (61.0 / 128.0)  // of the texels' range, at both ends
+// Cubic cell (engine/field/cubic.h): the 4 x 4 x 4 texels around a cell of a padded resident grid (render/residency/resident_grid.h).
+// Summed as differences from the texel at the cell's corner, so that equal texels give exactly their value and a gradient of 0.
+#define CUBIC_OVERSHOOT (61.0 / 128.0)  // share of the texels' range, at both ends
 
-vec4 cubic_rows[16];  // of the cell that was fetched last: along x; y + 4 z
+vec4 cubic_rows[16];  // texels of the last fetched cell: rows along x, index y + 4 z
 
 void fetch_cubic(int i, ivec3 cell) {
   for (int row = 0; row < 16; ++row) {
@@ -12,14 +12,14 @@ void fetch_cubic(int i, ivec3 cell) {
   }
 }
 
-// Weights of the texels 0, 2 and 3 less the texel 1: of the value, and of its slope.
+// Weights of the texels 0, 2, 3, relative to texel 1: of the value and of its derivative.
 vec3 cubic_weights(float t) { return 0.5 * vec3(t * (t * (2.0 - t) - 1.0), t * (1.0 + t * (4.0 - 3.0 * t)), t * t * (t - 1.0)); }
 vec3 cubic_slopes(float t) { return 0.5 * vec3(t * (4.0 - 3.0 * t) - 1.0, 1.0 + t * (8.0 - 9.0 * t), t * (3.0 * t - 2.0)); }
 
 vec4 weigh_rows(vec4 a, vec4 b, vec4 c, vec4 d, vec3 w) { return w.x * (a - b) + w.y * (c - b) + w.z * (d - b); }
 float weigh_row(vec4 r, vec3 w) { return w.x * (r.x - r.y) + w.y * (r.z - r.y) + w.z * (r.w - r.y); }
 
-// At a place of the cell, each coordinate in 0..1.
+// Returns the value at position f of the cell, each coordinate in 0..1.
 float cubic_value(vec3 f) {
   const vec3 wx = cubic_weights(f.x), wy = cubic_weights(f.y), wz = cubic_weights(f.z);
   vec4 plane[4];
@@ -31,7 +31,7 @@ float cubic_value(vec3 f) {
   return row.y + weigh_row(row, wx);
 }
 
-// The same with its gradient, local.
+// Returns the value and its gradient, in local axes.
 float cubic_value(vec3 f, out vec3 gradient) {
   const vec3 wx = cubic_weights(f.x), wy = cubic_weights(f.y), wz = cubic_weights(f.z), sy = cubic_slopes(f.y);
   vec4 plane[4], plane_y[4];
@@ -47,7 +47,7 @@ float cubic_value(vec3 f, out vec3 gradient) {
   return row.y + weigh_row(row, wx);
 }
 
-// Fetches the cell that holds a local position of the domain; the place in it.
+// Fetches the cell that contains a local position of the domain; returns the position in it, 0..1.
 vec3 fetch_cubic_at(int i, vec3 p) {
   const ivec3 cell = cell_of(i, p);
   fetch_cubic(i, cell);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The first crossing of a level along a ray where the cell is cubic. Along the ray the value is then a polynomial of ninth degree: it is
-// taken at ten places, a cubic laid through each four of them, and what that cubic says of a root is asked of the polynomial itself.
-// Missed is what rises above the level and sinks again between two of ten places by less than the cubic errs there.
-// Watertight: the value with which the ray leaves a cell is the one with which it enters the next.
+// First crossing of a level along a ray in a cubic cell, where the value is a polynomial of degree nine. It is evaluated at ten points; a
+// cubic through four consecutive points predicts the position of a root, which is verified by the polynomial itself. Missed are pairs of
+// roots between two of the points, if the polynomial exceeds the level there by less than the error of the cubic. Watertight: the value at
+// the exit of a cell is reused as the value at the entry of the next.
 #define CUBIC_SUBDIVISIONS 3
 
-// Fetches the cell, its values counted from the level.
+// Fetches the cell, with values relative to the level.
 void fetch_level_cubic(int i, ivec3 cell) {
   fetch_cubic(i, cell);
   const float base = frame.grids[i].value_offset - frame.grids[i].level, scale = frame.grids[i].value_scale;
@@ -14,14 +14,14 @@ void fetch_level_cubic(int i, ivec3 cell) {
 
 float value_along(RaySegment segment, float u) { return cubic_value(mix(segment.a, segment.b, u)); }
 
-// The coefficients of the cubic through values at 0, 1/3, 2/3 and 1.
+// Returns the Bernstein coefficients of the cubic through values at 0, 1/3, 2/3 and 1.
 vec4 cubic_through(vec4 v) {
   return vec4(v.x, (-5.0 * v.x + 18.0 * v.y - 9.0 * v.z + 2.0 * v.w) / 6.0, (2.0 * v.x - 9.0 * v.y + 18.0 * v.z - 5.0 * v.w) / 6.0, v.w);
 }
 
 bool signs_differ(float a, float b) { return (a >= 0.0) != (b >= 0.0); }
 
-// The first change of sign of the fetched cell along a piece whose first value is `value`, which becomes its last one.
+// Finds the first change of sign of the fetched cell along a segment. `value`: at its start on input, at its end on output.
 bool find_sign_change(RaySegment segment, inout float value, out Bracket change) {
   bool found = false;
   change = Bracket(0.0, 0.0, 0.0, 1.0);
@@ -46,7 +46,7 @@ bool find_sign_change(RaySegment segment, inout float value, out Bracket change)
   return found;
 }
 
-// Where the fetched cell is zero, by false position with halved ends (the Illinois rule).
+// Returns the root of the fetched cell in the bracket, by the false position method with the Illinois rule.
 float cubic_root(RaySegment segment, Bracket change) {
   float a = change.a, b = change.b, fa = change.fa, fb = change.fb, u = a, moved = 1.0;
   for (int k = 0; k < 24 && moved > 1e-7; ++k) {
@@ -70,7 +70,7 @@ float first_cubic_crossing(int i, CellTraversal traversal, FlippedRay flipped, f
   bool found = false;
   RaySegment segment = RaySegment(vec3(0.0), vec3(0.0), -NO_DEPTH, -NO_DEPTH);
   Bracket change = Bracket(0.0, 0.0, 0.0, 1.0);
-  float value = 0.0;  // where the ray left the cell before
+  float value = 0.0;  // at the exit of the previous cell
   while (!found && traversal.t < to) {
     if (next_cell_in_map(i, traversal, flipped, to)) {
       fetch_level_cubic(i, traversal.cell ^ flipped.turned);

@@ -1,70 +1,71 @@
 // SPDX-License-Identifier: MIT
-// One packed volume along a ray: segments between samples s0, s1 with slopes d0, d1 along the ray; the value at the middle by the
-// Hermite cubic, (s0 + s1) / 2 + (d0 - d1) L / 8; each half from the pre-integrated table (render/raycast/transfer_tables.h). A segment
-// within a cube of plain bricks (render/residency/brick_map.h) is as long as the ray's way through it.
-layout(constant_id = 0) const uint SHADED = 0;  // 1: by the gradient of the cell, 2: by gradients made beforehand
+// Ray march through one packed volume, in segments between samples s0, s1 with slopes d0, d1 along the ray. The value at the middle is that
+// of the Hermite cubic, (s0 + s1) / 2 + (d0 - d1) L / 8; each half is integrated by the pre-integrated table
+// (render/raycast/transfer_tables.h). A segment in a cube of homogeneous bricks (render/residency/brick_map.h) extends to the ray's exit
+// from the cube.
+layout(constant_id = 0) const uint SHADED = 0;  // 1: by the gradient of the cell, 2: by precomputed gradients
 layout(constant_id = 1) const uint SKIPS_EMPTY = 0;
 layout(constant_id = 2) const uint HAS_OPAQUE = 0;
-layout(constant_id = 7) const uint HALF_OPACITY_DEPTH = 0;  // instead of a colour: the depth at which half of the light is gone
+layout(constant_id = 7) const uint HALF_OPACITY_DEPTH = 0;  // output: depth of half transmittance instead of a color
 
 layout(binding = 4) uniform utexture2D preintegrated;  // 256 x 256
 layout(binding = 8) uniform sampler3D gradients;       // render/residency/gradient_volume.h
 #include "shaders/lib/packed.glsl"
 
 #define SMALL_BRICK_SIZE 4.0
-#define SEARCH_VOXELS 1.5  // the longest step to what is seen first
-// Where it begins to be seen, segments are a part of a step, and grow; light wants shorter ones than colour. Where nothing is lit and
-// nothing is empty they begin with the volume, and are whole.
+#define SEARCH_VOXELS 1.5  // maximum step of the search for the first visible value
+// At the first visible value, segments are a part of a step, and grow; shading needs shorter ones than color. Unshaded rays without
+// empty-space skipping start at the volume's boundary with full steps.
 const bool FROM_VISIBLE = SHADED != 0u || SKIPS_EMPTY != 0u;
 const float FIRST_STEP = SHADED != 0u ? 0.125 : FROM_VISIBLE ? 0.25 : 1.0, STEP_GROWTH = SHADED != 0u ? 1.1 : 1.3;
 
-// x: sigma, yzw: colour
+// Returns x: sigma, yzw: color.
 vec4 lookup_preintegrated(float a, float b) {
   const uvec2 e = texelFetch(preintegrated, ivec2(int(a + 0.5), int(b + 0.5)), 0).rg;
   return vec4(uintBitsToFloat(e.x), vec3(e.y & 2047u, e.y >> 11 & 2047u, e.y >> 22) * vec3(1.0 / 2047.0, 1.0 / 2047.0, 1.0 / 1023.0));
 }
 
-// As `lit` (lighting.glsl) for a headlight, by the cosine between normal and ray: colour * x + y.
+// Returns the shading of a headlight as in `lit` (lighting.glsl), from the cosine n of normal and ray: x * color + y.
 vec2 light_at(float n, float n2) {
   const float m = max(0.0, 2.0 * n2 - 1.0);
   const float m2 = m * m, m4 = m2 * m2, m8 = m4 * m4;
   return vec2(0.2 + 0.7 * n, 0.2 * m8 * m8 * m4);
 }
 
-// A sample of the ray at depth t, and what leads on from it.
+// Sample of the ray at depth t, with the slope for the segment after it.
 struct RaySample {
   float t;
   vec3 p;
   PackedSample s;
-  float slope;  // codes a depth, along the ray
+  float slope;  // codes per unit of depth, along the ray
 };
 
-// The gradient at a sample, codes a world length.
+// Returns the gradient at a sample, in codes per world unit.
 vec3 normal_at(RaySample at) {
   if (SHADED != 2u) return frame.grids[0].world_gradient * at.s.gradient;
-  vec3 place = (at.p + 0.5) / (frame.grids[0].hi + 1.0);
+  vec3 uvw = (at.p + 0.5) / (frame.grids[0].hi + 1.0);
   if (IS_BRICKED != 0u) {
     const vec3 brick = floor(clamp(floor(at.p), frame.grids[0].lo, frame.grids[0].hi - 1.0) * 0.125);
     const float nodes = ray_grid.gradient_nodes;
-    place = (nodes * unpack_slot(at.s.brick) + 0.125 * (nodes - 1.0) * (at.p - 8.0 * brick) + 0.5) / vec3(textureSize(gradients, 0));
+    uvw = (nodes * unpack_slot(at.s.brick) + 0.125 * (nodes - 1.0) * (at.p - 8.0 * brick) + 0.5) / vec3(textureSize(gradients, 0));
     if (!is_stored(at.s.brick)) return vec3(0.0);
   }
-  return frame.grids[0].world_gradient * textureLod(gradients, place, 0.0).rgb;
+  return frame.grids[0].world_gradient * textureLod(gradients, uvw, 0.0).rgb;
 }
 
-// The mean light over half a segment along which the derivative goes from a to b, by the squared length of the gradient across the ray:
-// the derivative is known far better than its direction is, and lights both sides alike.
+// Returns the mean shading over half a segment, along which the derivative goes from a to b. `across2`: squared length of the gradient's
+// component across the ray. The derivative is known better than the gradient's direction; both sides are shaded alike.
 vec2 light_between(float a, float b, float across2) {
   const float squares = (a * a + a * b + b * b) * (1.0 / 3.0), length2 = across2 + squares;
   const float sizes = a * b >= 0.0 ? 0.5 * abs(a + b) : 0.5 * (a * a + b * b) / abs(b - a);
   return length2 > 0.0 ? light_at(min(1.0, sizes * inversesqrt(length2)), squares / length2) : vec2(0.2, 0.0);
 }
 
-// What a march needs all along.
+// Constant data of a march.
 struct March {
   LocalRay ray;
   vec3 inverse, is_forward_axis;
-  float h, end;  // of a segment, and where the last one ends
+  float h, end;  // length of a segment, and end of the last one
 };
 
 RaySample sample_at(March m, float t) {
@@ -76,7 +77,8 @@ RaySample sample_at(March m, float t) {
   return at;
 }
 
-// The end of the segment that begins at `from`. `curved`: 0 where it leaps over plain bricks, whose values are as good as linear.
+// Returns the sample at the end of the segment that begins at `from`. `curved`: 0 if the segment skips homogeneous bricks, where values are
+// linear for the table.
 RaySample next_sample(March m, RaySample from, out float curved) {
   float next = from.t + m.h;
   curved = 1.0;
@@ -95,33 +97,33 @@ RaySample next_sample(March m, RaySample from, out float curved) {
   return sample_at(m, next);
 }
 
-// Which halves of the segment between two samples are seen at all: that of a sample in an invalid cell is not, nor is what was leapt over
-// on the way to one or from one.
+// Returns which halves of the segment between two samples are visible. The half of a sample in an invalid cell is not; after a skip to or
+// from an invalid cell, neither half is.
 bvec2 visible_halves(RaySample a, RaySample b, float curved) {
   const bool both = a.s.valid && b.s.valid;
   return MASKED == 0u ? bvec2(true) : bvec2(both || (curved != 0.0 && a.s.valid), both || (curved != 0.0 && b.s.valid));
 }
 
-// The code half way; of a segment with one end in an invalid cell that of the other end.
+// Returns the code at the middle; if one end lies in an invalid cell, the code of the other end.
 float middle_code(RaySample a, RaySample b, float curved) {
   if (MASKED != 0u && a.s.valid != b.s.valid) return a.s.valid ? a.s.code : b.s.code;
   return clamp(0.5 * (a.s.code + b.s.code) + curved * 0.125 * (b.t - a.t) * (a.slope - b.slope), 0.0, 255.0);
 }
 
-// From s to where the ray begins to see, wherever the volume does: no rings, and none that move with the camera. Without light, and by steps
-// that leap over no wall.
+// Returns the sample where the ray begins to see, anywhere in the volume: avoids rings, in particular rings that move with the camera.
+// Ignores shading, and uses steps that skip no thin wall.
 RaySample find_first_visible(March m, RaySample s) {
   m.h = min(m.h, SEARCH_VOXELS / length(m.ray.direction));
-  float behind = 0.0, code_behind = 0.0, middle = 0.0;  // the end of the segment in which it is, and the codes there and half way
-  for (bool seen = false; s.t < m.end && !seen;) {
+  float behind = 0.0, code_behind = 0.0, middle = 0.0;  // end of the segment with the first visible value, its code, and the code at the segment's middle
+  for (bool found = false; s.t < m.end && !found;) {
     float curved;
     const RaySample e = next_sample(m, s, curved);
     middle = middle_code(s, e, curved);
     const bvec2 halves = visible_halves(s, e, curved);
-    seen = (halves.x && lookup_preintegrated(s.s.code, middle).x > 0.0) || (halves.y && lookup_preintegrated(middle, e.s.code).x > 0.0);
+    found = (halves.x && lookup_preintegrated(s.s.code, middle).x > 0.0) || (halves.y && lookup_preintegrated(middle, e.s.code).x > 0.0);
     behind = e.t;
     code_behind = e.s.code;
-    if (!seen) s = e;
+    if (!found) s = e;
   }
   float dark = 0.0, lit = 1.0;
   for (int k = 0; k < 3; ++k) {
@@ -135,10 +137,11 @@ RaySample find_first_visible(March m, RaySample s) {
   return s;
 }
 
-// Where in a piece of one sigma half of the light is gone, as a share of its length; before > 0.5 >= after.
+// Returns the position where transmittance falls to 0.5 in a segment of constant sigma, as a share of its length; before > 0.5 >= after.
 float half_transmittance_position(float before, float after) { return clamp(log(2.0 * before) / log(before / max(after, 1e-30)), 0.0, 1.0); }
 
-// The premultiplied colour of the ray of pixel place q, up to depth `end`; with HALF_OPACITY_DEPTH that depth, and alpha 1 where there is one.
+// Returns the premultiplied color along the ray of pixel coordinate q, up to depth `end`; with HALF_OPACITY_DEPTH that depth, and alpha 1
+// if it exists.
 vec4 march_packed(vec2 q, float end) {
   const vec3 world = world_direction(q);
   const float world_per_depth = length(world);
@@ -155,7 +158,7 @@ vec4 march_packed(vec2 q, float end) {
   vec3 sum = vec3(0.0);
   RaySample s = sample_at(m, interval.x);
   if (FROM_VISIBLE) s = find_first_visible(m, s);
-  // shading: the gradient, its share along the ray and the square of the rest
+  // shading: the gradient, its component along the ray, and the squared length of the rest
   vec3 normal = vec3(0.0);
   float along = 0.0, across2 = 0.0;
   if (SHADED != 0u) {
@@ -172,7 +175,7 @@ vec4 march_packed(vec2 q, float end) {
     m.h = min(longest, STEP_GROWTH * m.h);
     const float extent = e.t - s.t;
 
-    // its two halves
+    // the two halves of the segment
     const float middle = middle_code(s, e, curved);
     vec4 first = lookup_preintegrated(s.s.code, middle), second = lookup_preintegrated(middle, e.s.code);
     if (MASKED != 0u) {
@@ -184,8 +187,8 @@ vec4 march_packed(vec2 q, float end) {
     const float half_way = transmittance * exp2(first.x * half_length);
     const float after = half_way * exp2(second.x * half_length);
     if (HALF_OPACITY_DEPTH != 0u && after <= 0.5) {
-      const float part = half_way <= 0.5 ? half_transmittance_position(transmittance, half_way) : 1.0 + half_transmittance_position(half_way, after);
-      return vec4(s.t + 0.5 * extent * part, 0.0, 0.0, 1.0);
+      const float split = half_way <= 0.5 ? half_transmittance_position(transmittance, half_way) : 1.0 + half_transmittance_position(half_way, after);
+      return vec4(s.t + 0.5 * extent * split, 0.0, 0.0, 1.0);
     }
     if (SHADED != 0u) {
       vec3 normal_end = normal_at(e);
@@ -196,13 +199,13 @@ vec4 march_packed(vec2 q, float end) {
         along = along_end;
         across2 = across2_end;
       }
-      const float both = dot(normal, normal_end) - along * along_end, ends = along + along_end;
+      const float both = dot(normal, normal_end) - along * along_end, end_sum = along + along_end;
       float rise = (e.s.code - s.s.code) / (extent * world_per_depth);
-      if (MASKED != 0u && s.s.valid != e.s.valid) rise = 0.5 * ends;
-      // central differences reach as far as a segment of two voxels: the rise over longer ones knows their slope better, over shorter
-      // ones it has the kinks of the cells
+      if (MASKED != 0u && s.s.valid != e.s.valid) rise = 0.5 * end_sum;
+      // central differences span two voxels: over a longer segment the difference of the codes gives the slope better, over a shorter one
+      // it shows the kinks between cells
       const float by_rise = clamp(0.5 * (extent * voxels - 1.0), 0.0, 1.0);
-      const float along_middle = SHADED == 1u ? 1.5 * rise - 0.25 * ends : mix(0.5 * ends, 0.75 * rise + 0.125 * ends, by_rise);
+      const float along_middle = SHADED == 1u ? 1.5 * rise - 0.25 * end_sum : mix(0.5 * end_sum, 0.75 * rise + 0.125 * end_sum, by_rise);
       const vec2 l0 = light_between(along, along_middle, max(0.0, 0.5625 * across2 + 0.375 * both + 0.0625 * across2_end));
       const vec2 l1 = light_between(along_middle, along_end, max(0.0, 0.0625 * across2 + 0.375 * both + 0.5625 * across2_end));
       normal = normal_end;
@@ -218,7 +221,7 @@ vec4 march_packed(vec2 q, float end) {
     s = e;
   }
   if (HALF_OPACITY_DEPTH != 0u) return vec4(NO_DEPTH, 0.0, 0.0, 0.0);
-  // what a ray that has ended early leaves out is taken for as dense as what it has met, and of a colour between the mean and the last
+  // the rest of a terminated ray: the mean optical density so far, and a color between the mean and the last one
   if (s.t < m.end) {
     const float after = transmittance * exp2(log2(max(transmittance, 1e-30)) * (m.end - s.t) / (s.t - begin));
     sum += 0.5 * (transmittance - after) * (last + sum / (1.0 - transmittance));

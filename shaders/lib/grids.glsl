@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Grids as textures: dense or brick atlas (render/residency), with their masks and brick maps. GRID_COUNT of them are bound.
-// An includer that defines NO_CUBIC leaves cubic grids to another shader: what is never run takes drivers their time all the same.
-// Lavapipe cannot index an array of textures, hence the switches; they fold away where the index is a constant.
+// Grids as textures: dense or brick atlas (render/residency), with masks and brick maps. GRID_COUNT of them are bound. An includer that
+// defines NO_CUBIC does not support cubic grids; code that is never executed still costs compile time. The switches replace indexing of an
+// array of textures, which lavapipe does not support; they are resolved at compile time for a constant index.
 #define BRICK_SIZE 8
 #define PADDED_BRICK_SIZE 9
 
@@ -9,7 +9,7 @@ layout(scalar, binding = 0) uniform Frame { FrameData frame; };
 layout(binding = 3) uniform sampler3D values_0;
 layout(binding = 11) uniform utexture3D map_0;
 layout(binding = 19) uniform utexture3D mask_0;
-#if GRID_COUNT > 1  // 2, 6 or 8
+#if GRID_COUNT > 1  // GRID_COUNT is 2, 6 or 8
 layout(binding = 4) uniform sampler3D values_1;
 layout(binding = 12) uniform utexture3D map_1;
 layout(binding = 20) uniform utexture3D mask_1;
@@ -66,7 +66,7 @@ layout(binding = 26) uniform utexture3D mask_7;
 #define SWITCH_GRID(i, CALL) return CALL(0);
 #endif
 
-// three bits a grid, then two a volume (grids 0..3)
+// three bits per grid, then two per volume (grids 0..3)
 layout(constant_id = 0) const uint GRID_FLAGS = 0;
 bool grid_is_atlas(int i) { return (GRID_FLAGS >> (3 * i) & 1u) != 0u; }
 bool grid_is_masked(int i) { return (GRID_FLAGS >> (3 * i) & 2u) != 0u; }
@@ -93,18 +93,18 @@ uint mask_texel(int i, ivec3 at) {
 
 ivec3 unpack_slot(uint word) { return ivec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u); }
 int empty_distance(uint word) { return int(word >> 24); }
-// maps of volumes (render/residency/brick_map.h)
+// words of a volume's map (render/residency/brick_map.h)
 int skip_distance(uint word) { return int(word >> 24 & 127u); }
 bool is_homogeneous(uint word) { return word >> 31 != 0u; }
 
-// The cell that holds a local position of the domain.
+// Returns the cell that contains a local position of the domain.
 ivec3 cell_of(int i, vec3 p) { return ivec3(clamp(floor(p), frame.grids[i].lo, frame.grids[i].hi - 1.0)); }
 
 #ifndef NO_CUBIC
 #include "shaders/lib/cubic.glsl"
 #endif
 
-// The texel value at a local position of the domain: trilinear, cubic, or of the nearest voxel center.
+// Returns the texel value at a local position of the domain: trilinear, cubic, or of the nearest voxel center.
 float sample_texel(int i, vec3 p) {
 #ifndef NO_CUBIC
   if (grid_is_cubic(i)) return cubic_value(fetch_cubic_at(i, p));
@@ -129,7 +129,7 @@ bool cell_is_valid(int i, ivec3 cell) {
   return mask_texel(i, cell) != 0u;
 }
 
-// Corner i + 2 j + 4 k of a cell in c[k][...]: lo = (000, 100, 010, 110), hi the same one plane up.
+// Reads the corners i + 2 j + 4 k of a cell: lo = (000, 100, 010, 110), hi = the corners one plane up.
 void cell_corners(int i, ivec3 cell, out vec4 lo, out vec4 hi) {
   ivec3 at = cell;
   if (grid_is_atlas(i)) at = unpack_slot(brick_word(i, cell >> 3)) * PADDED_BRICK_SIZE + (cell & 7);
@@ -139,11 +139,11 @@ void cell_corners(int i, ivec3 cell, out vec4 lo, out vec4 hi) {
   hi = frame.grids[i].value_offset + frame.grids[i].value_scale * hi;
 }
 
-// The weights of a cell's corners along its axes at a place in it.
+// Returns the weights of the upper corners along the axes; 0 or 1 for nearest interpolation.
 vec3 corner_weights(int i, vec3 f) { return mix(f, step(0.5, f), frame.grids[i].nearest); }
 
-// Central difference of texels along one axis: both ends clamped to the domain; an end in an invalid cell gives the center instead.
-// What rounding alone can make is zero, or constant regions would be lit at random.
+// Returns the central difference of texels along one axis. Both ends are clamped to the domain; an end in an invalid cell is replaced by
+// the center. Differences within the rounding error are zero, because constant regions would be shaded randomly otherwise.
 float central_difference(int i, vec3 p, vec3 step) {
   vec3 a = clamp(p - step, frame.grids[i].lo, frame.grids[i].hi), b = clamp(p + step, frame.grids[i].lo, frame.grids[i].hi);
   if (grid_is_masked(i)) {
@@ -155,8 +155,8 @@ float central_difference(int i, vec3 p, vec3 step) {
   return abs(high - low) > 1e-6 * (abs(low) + abs(high)) ? (high - low) / moved : 0.0;
 }
 
-// The gradient by central differences of one voxel, or the cubic's own, in world axes, up to the texels' scale (which is positive); 0
-// where the nearest voxel counts.
+// Returns the gradient in world axes, up to the texels' positive scale: central differences over one voxel on either side, or the analytic
+// gradient of a cubic grid; 0 for nearest interpolation.
 vec3 world_gradient(int i, vec3 p) {
 #ifndef NO_CUBIC
   if (grid_is_cubic(i)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Translucent layers of triangles, the nearest first: premultiplied colours and depths. The includer defines LAYER_COUNT.
+// Translucent triangle layers, the nearest first: premultiplied colors, and depths. The includer defines LAYER_COUNT.
 layout(binding = 27) uniform texture2D layer_color_0;
 layout(binding = 28) uniform texture2D layer_color_1;
 layout(binding = 29) uniform texture2D layer_color_2;
@@ -27,7 +27,7 @@ float layer_texel(int k, ivec2 at) {
   }
 }
 
-// Of layer k, in front of `end`; NO_DEPTH: neither it nor those behind it count.
+// Returns the depth of layer k if it is less than `end`; NO_DEPTH: neither this layer nor those behind it are visible.
 float layer_depth(int k, ivec2 at, float end) {
   if (k >= LAYER_COUNT) return NO_DEPTH;
   const float t = layer_texel(k, at);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The colour of a fragment of triangles: lit, with their edges as dark lines of about a pixel.
+// Color of a triangle fragment: shaded, with edges as dark lines about one pixel wide.
 layout(location = 0) in vec3 in_normal;
 layout(location = 1) in vec3 in_color;
 layout(location = 2) in vec3 in_view;
@@ -8,7 +8,7 @@ layout(location = 4) flat in uint in_id;
 layout(location = 5) in vec3 in_edges;
 
 #define EDGE_HALF_WIDTH 0.5   // pixels
-#define EDGE_DARKNESS 0.25    // of the triangles' colour
+#define EDGE_DARKNESS 0.25    // share of the triangle's color
 
 vec3 to_camera() {
   return mix(-in_view / max(length(in_view), 1e-30), vec3(0.0, 0.0, -1.0), float(frame.orthographic));

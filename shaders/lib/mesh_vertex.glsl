@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A vertex of lit triangles, placed: all outputs of the vertex stage. The uniform `frame` (MeshFrameData) is there.
+// Outputs of the vertex stage for a vertex of shaded triangles. The includer declares the uniform `frame` (MeshFrameData).
 layout(location = 0) out vec3 out_normal;   // view axes: x right, y up, z forward
 layout(location = 1) out vec3 out_color;
-layout(location = 2) out vec3 out_view;     // position in the view
+layout(location = 2) out vec3 out_view;     // position in view axes
 layout(location = 3) out float out_depth;
 layout(location = 4) flat out uint out_id;
-layout(location = 5) out vec3 out_edges;    // distances from the triangle's edges, 1 at the opposite corner; 1 where they are not drawn
+layout(location = 5) out vec3 out_edges;    // distances from the triangle's edges, 1 at the opposite corner; 1 for hidden edges
 #include "shaders/lib/vertex_transform.glsl"
 
 void emit_vertex(vec3 position, vec3 normal, vec3 color, uint id) {

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The cell of a packed volume around a position: value in codes, trilinear, and its gradient.
-//   whole (render/residency/packed_volume.h): two words of four codes
-//   IS_BRICKED (render/residency/packed_atlas.h): four words of two codes in the slot that the map names, or the one code of the brick
+// Sample of a packed volume: trilinear value in codes, and the cell's gradient. Two layouts:
+//   dense (render/residency/packed_volume.h): two words of four codes per cell
+//   IS_BRICKED (render/residency/packed_atlas.h): four words of two codes in the brick's slot, or the constant code of the brick
 layout(constant_id = 5) const uint IS_BRICKED = 0;
-layout(constant_id = 6) const uint MASKED = 0;  // a cell is valid where none of its codes is 0
+layout(constant_id = 6) const uint MASKED = 0;  // a cell is valid if none of its codes is 0
 
 layout(binding = 3) uniform utexture3D packed_words;
 layout(binding = 5) uniform utexture3D homogeneous_map;
 
 struct PackedSample {
   float code;
-  vec3 gradient;  // codes a voxel, of the cell
-  uint brick;     // IS_BRICKED: the map's word
+  vec3 gradient;  // codes per voxel, of the cell
+  uint brick;     // IS_BRICKED: word of the brick map
   bool valid;
 };
 
@@ -32,11 +32,11 @@ PackedSample sample_packed(vec3 p) {
   vec4 near, far;  // (0,0) (1,0) (0,1) (1,1) in x and y, at z = 0 and 1
   if (IS_BRICKED != 0u) {
     s.brick = texelFetch(homogeneous_map, cell >> 3, 0).r;
-    const bool kept = is_stored(s.brick);
-    const ivec3 at = kept ? ivec3(unpack_slot(s.brick)) * ivec3(8, 9, 9) + (cell & 7) : ivec3(0);
+    const bool stored = is_stored(s.brick);
+    const ivec3 at = stored ? ivec3(unpack_slot(s.brick)) * ivec3(8, 9, 9) + (cell & 7) : ivec3(0);
     near = four_codes(slot_word(at) | slot_word(at + ivec3(0, 1, 0)) << 16);
     far = four_codes(slot_word(at + ivec3(0, 0, 1)) | slot_word(at + ivec3(0, 1, 1)) << 16);
-    if (!kept) near = far = vec4(s.brick & 255u);
+    if (!stored) near = far = vec4(s.brick & 255u);
   } else {
     near = four_codes(slot_word(cell));
     far = four_codes(slot_word(cell + ivec3(0, 0, 1)));

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Which fragments a translucent layer takes (render/passes/passes.h). Depths are compared as the depth buffer holds them, and equal
-// ones by their ids, so that the comparison here and the depth test agree to the bit.
+// Depth peeling: selection of the fragments of a translucent layer (render/passes/passes.h). Depths are compared in the depth buffer's
+// precision, and equal depths by id, so that this comparison and the depth test agree exactly.
 layout(constant_id = 1) const uint MODE = MODE_OPAQUE;
 layout(constant_id = 2) const uint HAS_OPAQUE = 0;
 layout(scalar, binding = 5) uniform Layers { LayerData layer; };
 layout(binding = 6) uniform texture2D opaque_depth;
-layout(binding = 7) uniform texture2D previous_depth;  // of the layer before
+layout(binding = 7) uniform texture2D previous_depth;  // depth of the previous layer
 layout(binding = 8) uniform utexture2D previous_id;
 layout(location = 0) out vec4 out_color;
 layout(location = 1) out float out_depth;
@@ -25,18 +25,18 @@ bool in_layer(float t, uint id) {
   return here < passed || (here == passed && id > texelFetch(previous_id, at, 0).r);
 }
 
-// Writes a fragment, or nothing: a depth of 0 never passes the depth test (cheaper and safer than discard).
-// `color` is premultiplied by alpha.
-void write_fragment(bool seen, vec3 color, float alpha, float t, uint id) {
-  if (MODE != MODE_OPAQUE && seen) seen = in_layer(t, id);
+// Writes a fragment, or nothing: a depth of 0 never passes the depth test (cheaper and safer than discard). `color` is premultiplied by
+// alpha.
+void write_fragment(bool is_visible, vec3 color, float alpha, float t, uint id) {
+  if (MODE != MODE_OPAQUE && is_visible) is_visible = in_layer(t, id);
   out_color = vec4(color, alpha);
   out_depth = t;
   out_id = id;
-  gl_FragDepth = seen ? layer_depth(t) : 0.0;
+  gl_FragDepth = is_visible ? layer_depth(t) : 0.0;
   if (MODE == MODE_TAIL) {
-    // weighted by optical depth: rgb sums, alpha becomes the product of (1 - alpha)
-    const float a = seen ? min(alpha, 0.999) : 0.0;
+    // weighted by optical depth: rgb is summed, alpha becomes the product of (1 - alpha)
+    const float a = is_visible ? min(alpha, 0.999) : 0.0;
     out_color = vec4(a > 0.0 ? color / alpha * -log(1.0 - a) : vec3(0.0), a);
-    if (!seen || !(a > 0.0)) out_depth = NO_DEPTH;
+    if (!is_visible || !(a > 0.0)) out_depth = NO_DEPTH;
   }
 }

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Where the nearest voxel counts the weights of the corners are whole, and what stands at the four places is compared.
-// In a trilinear cell the value along a ray is a cubic: its greatest value lies at an end of the segment or at a root of the derivative.
-// In a cubic cell it is of ninth degree: a cubic through each four of ten places says where to look, and the cell itself is asked there.
-// Bricks of which no value can be better than the best so far are passed over: bits 24..31 of a brick's word are 0 where it has no
-// valid cell, else 1 + n, and no value in it is better than bound_lo + n bound_per_code. A minimum is the maximum of -value.
+// Extremum of the value along a ray.
+//   nearest     the corner weights are 0 or 1; the values at four points are compared
+//   trilinear   the value is a cubic; its maximum lies at an end of the segment or at a root of the derivative
+//   cubic       the value has degree nine; cubics through four of ten points predict its maximum, where the cell is evaluated
+// Bricks without a better value than the best so far are skipped: bits 24..31 of a brick's word are 0 if it has no valid cell, else 1 + n,
+// and no value in it is better than bound_lo + n bound_per_code. A minimum is computed as the maximum of -value.
 float signed_value(float v) { return PROJECTION_KIND == 2u ? -v : v; }
 
-float interpolate_cell(vec4 lo, vec4 hi, vec3 place) {
-  if (grid_is_cubic(0)) return cubic_value(place);
-  const vec3 f = corner_weights(0, place);
+float interpolate_cell(vec4 lo, vec4 hi, vec3 position) {
+  if (grid_is_cubic(0)) return cubic_value(position);
+  const vec3 f = corner_weights(0, position);
   const vec4 z = mix(lo, hi, f.z);
   const vec2 y = mix(z.xy, z.zw, f.y);
   return mix(y.x, y.y, f.x);
 }
 
-// The greatest value of a cell with corners lo, hi between a and b.
+// Returns the maximum value of a cell with corners lo, hi on the segment from a to b.
 float max_between(vec4 lo, vec4 hi, vec3 a, vec3 b) {
   const float f0 = interpolate_cell(lo, hi, a), f1 = interpolate_cell(lo, hi, mix(a, b, 1.0 / 3.0)), f2 = interpolate_cell(lo, hi, mix(a, b, 2.0 / 3.0)),
               f3 = interpolate_cell(lo, hi, b);
   float best = max(max(f0, f1), max(f2, f3));
-  // derivative: c1 + 2 c2 u + 3 c3 u^2
+  // coefficients of the derivative c1 + 2 c2 u + 3 c3 u^2
   const float c1 = 0.5 * (-11.0 * f0 + 18.0 * f1 - 9.0 * f2 + 2.0 * f3);
   const float c2 = 4.5 * (2.0 * f0 - 5.0 * f1 + 4.0 * f2 - f3), c3 = 4.5 * (3.0 * (f1 - f2) + f3 - f0);
   const float discriminant = c2 * c2 - 3.0 * c1 * c3;
@@ -31,7 +32,7 @@ float max_between(vec4 lo, vec4 hi, vec3 a, vec3 b) {
   return best;
 }
 
-// The same of a cubic cell; `best` where it cannot hold more.
+// Returns the maximum of `best` and of a cubic cell's values from a to b; skips a cell whose bound does not exceed `best`.
 float max_of_cubic(ivec3 cell, vec3 a, vec3 b, float best) {
   fetch_cubic(0, cell);
   const float offset = signed_value(frame.grids[0].value_offset), scale = signed_value(frame.grids[0].value_scale);
@@ -41,8 +42,8 @@ float max_of_cubic(ivec3 cell, vec3 a, vec3 b, float best) {
     low = min(low, cubic_rows[row]);
     high = max(high, cubic_rows[row]);
   }
-  const float least = min(min(low.x, low.y), min(low.z, low.w)), greatest = max(max(high.x, high.y), max(high.z, high.w));
-  if (greatest + CUBIC_OVERSHOOT * (greatest - least) > best) {
+  const float lowest = min(min(low.x, low.y), min(low.z, low.w)), highest = max(max(high.x, high.y), max(high.z, high.w));
+  if (highest + CUBIC_OVERSHOOT * (highest - lowest) > best) {
     for (int part = 0; part < 3; ++part)
       best = max(best, max_between(vec4(0.0), vec4(0.0), mix(a, b, float(part) / 3.0), mix(a, b, float(part + 1) / 3.0)));
   }
@@ -74,16 +75,16 @@ float find_extremum(LocalRay ray, vec2 interval) {
         cell_corners(0, cell, low, high);
         low = PROJECTION_KIND == 2u ? -low : low;
         high = PROJECTION_KIND == 2u ? -high : high;
-        const vec4 most = max(low, high);
-        if (max(max(most.x, most.y), max(most.z, most.w)) > best) best = max(best, max_between(low, high, a, b));
+        const vec4 maxima = max(low, high);
+        if (max(max(maxima.x, maxima.y), max(maxima.z, maxima.w)) > best) best = max(best, max_between(low, high, a, b));
       }
     }
-    // the cell behind the face through which the ray leaves
+    // the cell behind the face through which the ray exits
     const bool x = leave.x == out_at, y = !x && leave.y == out_at;
-    const ivec3 beyond = ivec3(mix(vec3(lo - 1), vec3(hi), forward));
+    const ivec3 outside = ivec3(mix(vec3(lo - 1), vec3(hi), forward));
     ivec3 inside = cell;
     if (pass) inside = clamp(ivec3(floor(ray.origin + out_at * ray.direction)), lo, hi - 1);
-    cell = ivec3(x ? beyond.x : inside.x, y ? beyond.y : inside.y, x || y ? inside.z : beyond.z);
+    cell = ivec3(x ? outside.x : inside.x, y ? outside.y : inside.y, x || y ? inside.z : outside.z);
     t = max(t, out_at);
     done = any(lessThan(cell, first)) || any(greaterThan(cell, last));
   }

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Emission and absorption along the pixel's ray, in front of the opaque depth:
 //   T(t) = S exp(-tau),  tau += sigma h per segment,  C += c (T_before - T_after),  S *= 1 - opacity at a surface
-// Optical depth is summed and the exponential taken of the sum, so that rounding does not pile up over many segments. The value
-// of a segment is the one at its middle; the last segment of a piece is its exact rest, and with jitter the first one is a part of
-// a segment too. What is plain (empty, or of one colour and sigma) is one segment. The includer defines VOLUME_COUNT (grids
-// 0 .. VOLUME_COUNT - 1) and GRID_COUNT.
+// Optical depth is summed, and the exponential is taken of the sum, so that rounding errors do not accumulate over many segments. A segment
+// has the value at its middle. The last segment of an interval is the exact remainder; with jitter the first segment is shortened, too. A
+// homogeneous region (empty, or of constant color and sigma) is one segment. The includer defines GRID_COUNT and VOLUME_COUNT
+// (grids 0 .. VOLUME_COUNT - 1).
 layout(constant_id = 1) const uint HAS_OPAQUE = 0;       // there is an opaque depth
-layout(constant_id = 5) const uint GRID_MODES = 0;   // two bits a grid: 1 a factor by the gradient, 2 colours by another grid,
-layout(constant_id = 6) const uint COLOR_GRIDS = 0;  // which one: four bits a grid
+layout(constant_id = 5) const uint GRID_MODES = 0;   // two bits per grid: 1: factor by gradient, 2: color by another grid,
+layout(constant_id = 6) const uint COLOR_GRIDS = 0;  // four bits per grid: index of that grid
 layout(constant_id = 7) const uint HAS_JITTER = 0;
-layout(constant_id = 9) const uint HAS_FOG = 0;  // there is a depth cue
-layout(constant_id = 10) const uint HALF_OPACITY_DEPTH = 0;  // instead of a colour: the depth at which half of the light is gone
+layout(constant_id = 9) const uint HAS_FOG = 0;  // there is depth fog
+layout(constant_id = 10) const uint HALF_OPACITY_DEPTH = 0;  // output: depth of half transmittance instead of a color
 
 #include "shaders/lib/tables.glsl"
 layout(binding = 2) uniform texture2D opaque_depth;
@@ -20,7 +20,7 @@ LocalRay rays[GRID_COUNT];
 vec2 intervals[GRID_COUNT];
 vec3 view_direction;
 float world_per_depth;
-float jitter_offset = 0.0;  // what the first segment lacks, in segments
+float jitter_offset = 0.0;  // missing part of the first segment, in segments
 float optical_depth = 0.0, surface_transmittance = 1.0, transmittance = 1.0;
 vec3 color_sum = vec3(0.0);
 float half_opacity_depth = NO_DEPTH;
@@ -37,7 +37,7 @@ vec4 transfer(int i, float value) {
   return vec4(mix(table[at].rgb, table[at + 1u].rgb, way), sigma);
 }
 
-// By the length of the gradient, field units per world unit.
+// Returns the factor of sigma by gradient magnitude, in field units per world unit.
 float gradient_factor(int i, float gradient) {
   uint at;
   float way;
@@ -47,32 +47,32 @@ float gradient_factor(int i, float gradient) {
 
 #if GRID_COUNT > 1
 #include "shaders/lib/color_by.glsl"
-// The colour of grid i at depth t by the other grid, if it has one.
-vec3 resolve_color(int i, float t, vec3 own) {
-  if (!has_other_color(i)) return own;
+// Returns the color of grid i at depth t by another grid, if it has one; else `own_color`.
+vec3 resolve_color(int i, float t, vec3 own_color) {
+  if (!has_other_color(i)) return own_color;
   const int j = int(COLOR_GRIDS >> (4 * i) & 15u);
-  return color_at(j, rays[j].origin + t * rays[j].direction, own);
+  return color_at(j, rays[j].origin + t * rays[j].direction, own_color);
 }
 #else
-vec3 resolve_color(int i, float t, vec3 own) { return own; }
+vec3 resolve_color(int i, float t, vec3 own_color) { return own_color; }
 #endif
 
-// What volume i adds at depth t of its ray: sigma and sigma-weighted colour. Lowers `skip_count` to the segments (of depth h) over which it
-// stays the same. Called with constants only: loops over textures are not unrolled once they branch.
+// Adds volume i at depth t of its ray: sigma, and color * sigma. Reduces `skip_count` to the number of segments (of length h in depth) over
+// which its contribution is constant. Call it with constant i only: loops over textures are not unrolled if they branch.
 void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_sum, inout int skip_count) {
   if (i < VOLUME_COUNT && (VOLUME_COUNT == 1 || (t >= intervals[i].x && t <= intervals[i].y))) {
     const vec3 p = clamp(rays[i].origin + t * rays[i].direction, frame.grids[i].lo, frame.grids[i].hi);
     int distance = 0;
-    bool seen = true;
+    bool is_active = true;
     if (volume_skips(i)) {
       const ivec3 brick = cell_of(i, p) >> 3;
       const uint word = brick_word(i, brick);
-      distance = HAS_FOG != 0u && is_homogeneous(word) ? 0 : skip_distance(word);  // fog colours what is plain
-      seen = distance == 0 || is_homogeneous(word);
+      distance = HAS_FOG != 0u && is_homogeneous(word) ? 0 : skip_distance(word);  // fog varies in homogeneous regions
+      is_active = distance == 0 || is_homogeneous(word);
       if (distance > 0) skip_count = min(skip_count, max(1, int(ceil(min(exit_empty_region(rays[i], p, brick, distance) / h, 1e6)))));
     }
     if (distance == 0) skip_count = 1;
-    if (seen) {
+    if (is_active) {
       bool valid = true;
       if (grid_is_masked(i)) valid = cell_is_valid(i, cell_of(i, p));
       if (valid) {
@@ -92,12 +92,12 @@ void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_s
   }
 }
 
-// Where in a segment of one sigma half of the light is gone, as a share of its length; before > 0.5 >= after.
+// Returns the position where transmittance falls to 0.5 in a segment of constant sigma, as a share of its length; before > 0.5 >= after.
 float half_transmittance_position(float before, float after) { return clamp(log(2.0 * before) / log(before / max(after, 1e-30)), 0.0, 1.0); }
 
 vec4 half_opacity_output() { return vec4(half_opacity_depth, 0.0, 0.0, half_opacity_depth < NO_DEPTH ? 1.0 : 0.0); }
 
-// Segments of one length over [from, to], in which the same volumes are met throughout.
+// Marches [from, to] in segments of equal length; the set of volumes on the ray is constant in the interval.
 void march(float from, float to) {
   const float h = frame.step_world / world_per_depth;
   const int count = max(1, int(ceil((to - from) / h + jitter_offset - 1e-3)));
@@ -129,19 +129,19 @@ void march(float from, float to) {
   }
 }
 
-// The part of a grid's domain that the ray sees; NO_DEPTH twice where there is none.
+// Returns the visible interval of the ray in a grid's domain; NO_DEPTH twice if it is empty.
 vec2 visible_ray_interval(int i, vec2 q, float end) {
   vec2 interval = visible_interval(i, rays[i], q);
   interval.y = min(interval.y, end);
   return interval.x < interval.y ? interval : vec2(NO_DEPTH);
 }
 
-// Sets up the pixel; the depth where rays end.
+// Initializes the pixel; returns the depth at which rays end.
 float setup_pixel(vec2 q) {
   const vec3 direction = world_direction(q);
   world_per_depth = length(direction);
   view_direction = -direction / world_per_depth;
-  // interleaved gradient noise (J. Jimenez, 2014): neighbours differ much, so that the eye averages over them
+  // interleaved gradient noise (J. Jimenez, 2014): adjacent pixels differ strongly, so that the eye averages over them
   if (HAS_JITTER != 0u) jitter_offset = fract(52.9829189 * fract(dot(floor(q + frame.axis), vec2(0.06711056, 0.00583715))));
   return HAS_OPAQUE != 0u ? texelFetch(opaque_depth, ivec2(q + frame.axis), 0).r : NO_DEPTH;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The ray of a pixel, and where it meets a grid's domain. Depths as in shared/frame.h.
+// Ray of a pixel, and its interval in a grid's domain. Depths as in shared/frame.h.
 struct LocalRay {
   vec3 origin, direction;  // local position at depth t: origin + t direction
 };
@@ -13,16 +13,16 @@ LocalRay local_ray(int i, vec2 q) {
   return ray;
 }
 
-// World vector of one unit of depth along the ray of pixel place q (y down).
+// Returns the world vector of one unit of depth along the ray of pixel coordinate q (y down).
 vec3 world_direction(vec2 q) { return frame.forward + frame.right * (q.x * frame.slope.x) - frame.up * (q.y * frame.slope.y); }
 
 #define MIN_DIRECTION 1e-30
 
-// 1 / d; a component of zero counts as a tiny positive one, as in is_forward.
+// Returns 1 / d; a component of zero counts as a small positive one, as in is_forward.
 vec3 safe_inverse(vec3 d) { return 1.0 / mix(d, vec3(MIN_DIRECTION), lessThan(abs(d), vec3(MIN_DIRECTION))); }
 bvec3 is_forward(vec3 d) { return greaterThan(d, vec3(-MIN_DIRECTION)); }
 
-// Exact entry and exit of the domain; entry >= exit where the ray misses it.
+// Returns the exact entry and exit of the domain; entry >= exit: the ray misses it.
 vec2 domain_interval(int i, LocalRay ray) {
   const vec3 inverse = safe_inverse(ray.direction);
   const vec3 lo = frame.grids[i].domain_lo, hi = frame.grids[i].domain_hi;
@@ -37,11 +37,11 @@ vec2 domain_interval(int i, LocalRay ray) {
   return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
 }
 
-// A number of the uniform buffer for the bound of a loop. The CPU driver makes a shader that branches on nothing but uniforms anew at
-// every draw (milliseconds; 0.1 s without its disk cache); this looks like something of the pixel.
+// Returns a uniform number as a loop bound that appears to depend on the pixel. The CPU driver rebuilds a shader that branches on uniforms
+// only at every draw (milliseconds; 0.1 s without its disk cache).
 uint as_nonuniform(uint number, vec2 q) { return number + uint(q.x < -1e30); }
 
-// The part of a grid's domain that can be seen: from the eye on, within the clip planes. Entry >= exit where it is nothing.
+// Returns the visible interval of a grid's domain: in front of the camera, within the clip planes. Entry >= exit: it is empty.
 vec2 visible_interval(int i, LocalRay ray, vec2 q) {
   vec2 interval = domain_interval(i, ray);
   interval.x = max(interval.x, frame.front_depth);
@@ -62,7 +62,7 @@ float buffer_depth(float t) {
   return parallel * (frame.depth_far - z) / (frame.depth_far - frame.depth_near) + (1.0 - parallel) * clamp(frame.depth_near / max(z, 1e-30), 0.0, 1.0);
 }
 
-// Depth at which the ray leaves the cube of empty bricks around the brick of `p` (at distance `d` the next active one), from p.
+// Returns the depth from p to the ray's exit from the cube of empty bricks around p's brick; `d`: distance to the nearest active brick.
 float exit_empty_region(LocalRay ray, vec3 p, ivec3 brick, int d) {
   const vec3 inverse = safe_inverse(ray.direction);
   const vec3 lo = vec3((brick - (d - 1)) * BRICK_SIZE), hi = vec3((brick + d) * BRICK_SIZE);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The first crossing of a level along a ray. In a trilinear cell the value along the ray is a cubic; its Bernstein coefficients
-// come exactly from the polar form of the trilinear function (a and b: entry and exit within the cell, F the blossom):
+// First crossing of a level along a ray. In a trilinear cell the value along the ray is a cubic; its Bernstein coefficients are exact
+// values of the polar form (blossom) F of the trilinear function, with a and b the entry and exit in the cell:
 //   B0 = F(a,a,a)   B1 = (F(b,a,a) + F(a,b,a) + F(a,a,b)) / 3   B2 = (F(a,b,b) + F(b,a,b) + F(b,b,a)) / 3   B3 = F(b,b,b)
-// All of one sign: no root. Else the cubic is cut at its extrema and the first monotonic piece that changes sign is bracketed.
-// Watertight: the value at a face is one number for both cells (the coordinate across the face is exactly 0 or 1, and nothing is
-// contracted), so that no change of sign falls between them. A cell whose corners lie on one side is passed without a look.
+// If all have one sign, there is no root. Else the cubic is split at its extrema, and the first monotonic piece with a change of sign is
+// bracketed. Watertight: the value at a face is equal in both cells (the coordinate across the face is exactly 0 or 1, and `precise`
+// forbids contraction), so that no change of sign is lost between them. A cell whose corners lie on one side of the level is skipped.
 
 float lerp_exact(float a, float b, float w) {
   precise float r = a * (1.0 - w) + b * w;
@@ -36,12 +36,12 @@ float cubic_at(vec4 c, float u) {
   return mix(q.x, q.y, u);
 }
 
-// A monotonic piece of a cubic with a change of sign: its ends and the values there.
+// Monotonic piece of a cubic with a change of sign: its ends and the values there.
 struct Bracket {
   float a, b, fa, fb;
 };
 
-// The first of them in 0..1, if there is one.
+// Finds the first such piece in 0..1; returns false if there is none.
 bool first_bracket(vec4 c, out Bracket bracket) {
   bracket = Bracket(0.0, 1.0, c.x, c.w);
   // all coefficients on one side: no root
@@ -53,16 +53,16 @@ bool first_bracket(vec4 c, out Bracket bracket) {
   if (discriminant > 0.0) {
     const float w = -(qb + (qb >= 0.0 ? 1.0 : -1.0) * sqrt(discriminant));
     const float r0 = abs(qa) > 0.0 ? w / qa : 1.0, r1 = abs(w) > 0.0 ? qc / w : 1.0;
-    const vec2 cut = clamp(vec2(min(r0, r1), max(r0, r1)), 0.0, 1.0);
-    const float f1 = cubic_at(c, cut.x), f2 = cubic_at(c, cut.y);
-    if ((c.x >= 0.0) != (f1 >= 0.0)) bracket = Bracket(0.0, cut.x, c.x, f1);
-    else if ((f1 >= 0.0) != (f2 >= 0.0)) bracket = Bracket(cut.x, cut.y, f1, f2);
-    else bracket = Bracket(cut.y, 1.0, f2, c.w);
+    const vec2 cuts = clamp(vec2(min(r0, r1), max(r0, r1)), 0.0, 1.0);
+    const float f1 = cubic_at(c, cuts.x), f2 = cubic_at(c, cuts.y);
+    if ((c.x >= 0.0) != (f1 >= 0.0)) bracket = Bracket(0.0, cuts.x, c.x, f1);
+    else if ((f1 >= 0.0) != (f2 >= 0.0)) bracket = Bracket(cuts.x, cuts.y, f1, f2);
+    else bracket = Bracket(cuts.y, 1.0, f2, c.w);
   }
   return (bracket.fa >= 0.0) != (bracket.fb >= 0.0);
 }
 
-// Its root: Newton's steps from the chord's root, halves of the bracket where they would leave it.
+// Returns the root: Newton iteration from the secant's root, with bisection where a step leaves the bracket.
 float find_root(vec4 c, Bracket bracket) {
   const vec3 d = 3.0 * (c.yzw - c.xyz);
   float a = bracket.a, b = bracket.b;
@@ -74,18 +74,18 @@ float find_root(vec4 c, Bracket bracket) {
     else a = u;
     const vec2 slopes = mix(d.xy, d.yz, u);
     const float next = u - f / mix(slopes.x, slopes.y, u);
-    const float kept = next >= a && next <= b ? next : 0.5 * (a + b);
-    moved = abs(kept - u);
-    u = kept;
+    const float bounded = next >= a && next <= b ? next : 0.5 * (a + b);
+    moved = abs(bounded - u);
+    u = bounded;
   }
   return u;
 }
 
-// A ray with its axes turned so that it moves towards greater coordinates: p' = -p on a turned axis, and cell c lies at c' = ~c.
-// Blocks of whole powers of two stay blocks. An axis along which it does not move is never left.
+// Ray with its axes flipped so that it moves towards increasing coordinates: p' = -p on a flipped axis, and cell c becomes c' = ~c. Blocks
+// of a power of two remain blocks. The ray never exits along an axis without movement.
 struct FlippedRay {
-  vec3 origin, direction, inverse, still;
-  ivec3 turned;  // -1 on a turned axis
+  vec3 origin, direction, inverse, still_offset;
+  ivec3 turned;  // -1 on a flipped axis
   ivec3 end;     // one beyond the last cell
 };
 
@@ -96,27 +96,27 @@ FlippedRay make_flipped_ray(int i, LocalRay ray) {
   flipped.origin = mix(ray.origin, -ray.origin, backward);
   flipped.direction = abs(ray.direction);
   flipped.inverse = mix(1.0 / flipped.direction, vec3(0.0), stands);
-  flipped.still = mix(vec3(0.0), vec3(NO_DEPTH), stands);
+  flipped.still_offset = mix(vec3(0.0), vec3(NO_DEPTH), stands);
   flipped.end = mix(ivec3(frame.grids[i].hi), -ivec3(frame.grids[i].lo), backward);
   return flipped;
 }
 
-// Where the ray enters a cell; on the axis of the face that it came through, if it came through one, `entered` is true.
+// Entry of the ray into a cell; `entered`: the axis of the face that it came through, if any.
 struct CellTraversal {
-  ivec3 cell;  // turned
+  ivec3 cell;  // in flipped coordinates
   float t;
   bvec3 entered;
 };
 
-vec3 exits(FlippedRay flipped, ivec3 end) { return (vec3(end) - flipped.origin) * flipped.inverse + flipped.still; }
+vec3 exits(FlippedRay flipped, ivec3 end) { return (vec3(end) - flipped.origin) * flipped.inverse + flipped.still_offset; }
 float min_component(vec3 v) { return min(min(v.x, v.y), v.z); }
-bvec3 min_axis(vec3 v, float least) {
-  const bool x = v.x == least, y = !x && v.y == least;
+bvec3 min_axis(vec3 v, float smallest) {
+  const bool x = v.x == smallest, y = !x && v.y == smallest;
   return bvec3(x, y, !(x || y));
 }
 
-// Goes on to where the ray leaves the box of cells around the walk's cell that ends before `end`. (Beyond the domain's last cell the
-// walk is beyond the ray's end.)
+// Advances to the ray's exit from the box of cells around the current cell that ends before `end`. Beyond the domain's last cell, t is
+// beyond the ray's end.
 void advance_past(inout CellTraversal traversal, FlippedRay flipped, ivec3 end) {
   end = min(end, flipped.end);
   const vec3 leave = exits(flipped, end);
@@ -140,7 +140,7 @@ void level_corners(int i, ivec3 cell, out vec4 lo, out vec4 hi) {
 #ifdef SURFACE_CELLS
 layout(binding = 1) uniform utexture3D cell_map;
 uint block_word(int i, ivec3 cell) {
-  if (grid_is_cubic(i)) return brick_word(i, cell >> 1);  // its map is that of its cells
+  if (grid_is_cubic(i)) return brick_word(i, cell >> 1);  // the map of a cubic grid is the map of its cells
   return texelFetch(cell_map, cell >> 1, 0).r;
 }
 #else
@@ -148,7 +148,7 @@ const uint HAS_CELLS = 0;
 uint block_word(int i, ivec3 cell) { return brick_word(i, cell >> 1); }
 #endif
 
-// Walks to the next cell that holds the level, by render/residency/cell_map.h.
+// Advances to the next cell that contains the level, by the cell map (render/residency/cell_map.h).
 bool next_cell_in_map(int i, inout CellTraversal traversal, FlippedRay flipped, float to) {
   bool found = false;
   while (!found && traversal.t < to) {
@@ -156,16 +156,16 @@ bool next_cell_in_map(int i, inout CellTraversal traversal, FlippedRay flipped, 
     const uint block = block_word(i, cell);
     found = (block >> (odd.x + 2 * odd.y + 4 * odd.z) & 1u) != 0u;
     if (!found) {
-      // out of the bricks without, the block without, or the cell
+      // skips the bricks without such cells, else the block without, else the cell
       const int distance = int(block >> 8);
-      const int within = distance > 0 ? 3 : (block & 255u) == 0u ? 1 : 0;
-      advance_past(traversal, flipped, (traversal.cell | within) + (distance > 0 ? 4 * distance - 3 : 1));
+      const int block_mask = distance > 0 ? 3 : (block & 255u) == 0u ? 1 : 0;
+      advance_past(traversal, flipped, (traversal.cell | block_mask) + (distance > 0 ? 4 * distance - 3 : 1));
     }
   }
   return found;
 }
 
-// The same by the bricks' ranges and the corners themselves.
+// Advances to the next cell that contains the level, by the brick map and the cells' corners.
 bool next_cell_by_corners(int i, inout CellTraversal traversal, FlippedRay flipped, float to) {
   bool found = false;
   while (!found && traversal.t < to) {
@@ -181,7 +181,7 @@ bool next_cell_by_corners(int i, inout CellTraversal traversal, FlippedRay flipp
   return found;
 }
 
-// The ray's piece in the walk's cell: where it begins and ends, within the cell and in depth.
+// Segment of the ray in the current cell: its ends as positions in the cell and as depths.
 struct RaySegment {
   vec3 a, b;
   float from, to;
@@ -190,7 +190,7 @@ struct RaySegment {
 RaySegment segment_in_cell(CellTraversal traversal, FlippedRay flipped, float to) {
   const vec3 leave = exits(flipped, traversal.cell + 1);
   const float out_at = min_component(leave), end = clamp(out_at, traversal.t, to);
-  const bool leaves = end == max(out_at, traversal.t);  // else it ends within the cell
+  const bool leaves = end == max(out_at, traversal.t);  // false: the segment ends inside the cell
   const bvec3 left = leaves ? min_axis(leave, out_at) : bvec3(false);
   const vec3 a = mix(clamp(flipped.origin + traversal.t * flipped.direction - vec3(traversal.cell), 0.0, 1.0), vec3(0.0), traversal.entered);
   const vec3 b = mix(clamp(flipped.origin + end * flipped.direction - vec3(traversal.cell), 0.0, 1.0), vec3(1.0), left);
@@ -202,9 +202,9 @@ RaySegment segment_in_cell(CellTraversal traversal, FlippedRay flipped, float to
 #include "shaders/lib/cubic_surface.glsl"
 #endif
 
-// The first depth in [from, to] at which the ray crosses the level of grid i; NO_DEPTH if there is none. An inner loop walks to the
-// next cell whose corners lie on both sides, the outer one asks its cubic for a root, which is solved for when all is found: on a
-// driver that executes both sides of every branch this keeps each stage out of the one within.
+// Returns the first depth in [from, to] at which the ray crosses the level of grid i; NO_DEPTH: none. The inner loop advances to the next
+// cell with corners on both sides, the outer one brackets a root of its cubic, and the root is solved after the loops: a driver that
+// executes both sides of every branch then does not execute a later stage inside an earlier one.
 float first_crossing(int i, LocalRay ray, float from, float to) {
   const FlippedRay flipped = make_flipped_ray(i, ray);
   CellTraversal traversal = CellTraversal(cell_of(i, ray.origin + from * ray.direction) ^ flipped.turned, from, bvec3(false));

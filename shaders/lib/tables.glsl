@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: MIT
-// Transfer functions: r, g, b, sigma (per world unit), or in the first component a factor; piecewise linear. Samples, even on the table's
-// scale; after them the function's own points, and the points' values four in a word (render/raycast/transfer_tables.h). Where interpolation
-// between two samples would err the first one's sigma has a minus, and the points count.
+// Transfer functions, piecewise linear: r, g, b, sigma (per world unit), or a factor in the first component. A table holds samples that are
+// evenly spaced on its scale, then the function's control points, and the values of these points, four per entry
+// (render/raycast/transfer_tables.h). A negative sigma of a sample marks an interval where interpolation of the samples is inaccurate;
+// there the control points are used.
 layout(scalar, binding = 1) readonly buffer Tables { vec4 table[]; };
 
-layout(constant_id = 11) const uint TABLE_FLAGS = 0;  // 1: there are points, 2: there are scales that are not linear
+layout(constant_id = 11) const uint TABLE_FLAGS = 0;  // 1: control points exist, 2: nonlinear scales exist
 
 float control_point_value(TableData of, uint point) { return table[of.start + of.last + 1u + of.control_points + point / 4u][point % 4u]; }
 
-// The place on the table's scale.
+// Returns a value's coordinate on the table's scale.
 float to_table_scale(TableData of, float value) {
   const float ratio = abs(value) * of.per_linear;
-  const float place = sign(value) * (min(ratio, 1.0) + log(max(ratio, 1.0)));
-  return of.per_linear > 0.0 ? place : value;
+  const float position = sign(value) * (min(ratio, 1.0) + log(max(ratio, 1.0)));
+  return of.per_linear > 0.0 ? position : value;
 }
 
-// The entry before the value, and the way to the next one.
+// Finds the entry before a value and the interpolation weight of the next one.
 void find_entry(TableData of, float value, out uint at, out float way) {
-  const float place = (TABLE_FLAGS & 2u) != 0u ? to_table_scale(of, value) : value;
-  const float x = clamp((place - of.lo) * of.entries_per_unit, 0.0, float(of.last));
+  const float position = (TABLE_FLAGS & 2u) != 0u ? to_table_scale(of, value) : value;
+  const float x = clamp((position - of.lo) * of.entries_per_unit, 0.0, float(of.last));
   const uint cell = min(uint(x), of.last - 1u);
   at = of.start + cell;
   way = x - float(cell);
@@ -40,6 +41,6 @@ void find_entry(TableData of, float value, out uint at, out float way) {
   }
 }
 
-// Without the mark.
+// Returns sigma without the mark.
 float entry_sigma(uint at) { return (TABLE_FLAGS & 1u) != 0u ? abs(table[at].a) : table[at].a; }
 vec4 interpolate_entry(uint at, float way) { return vec4(mix(table[at].rgb, table[at + 1u].rgb, way), mix(entry_sigma(at), entry_sigma(at + 1u), way)); }

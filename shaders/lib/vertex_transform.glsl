@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The place of a vertex of triangles in the picture, and its distances from the clip planes. The uniform `frame` (MeshFrameData) is there.
+// Position of a triangle vertex in the image, and its distances from the clip planes. The includer declares the uniform `frame`
+// (MeshFrameData).
 out float gl_ClipDistance[MAX_CLIP_PLANES];
 
-// The position turned to the view's axes: x right, y up, z forward; `frame.offset` is still to be added. The clip planes keep what
-// reaches into them from `middle` by `wall` or by -`wall`; `inside`: below zero where they take away what lies at +`wall`.
+// Returns the position in view axes (x right, y up, z forward), without `frame.offset`. The clip planes keep a vertex if they keep `middle`
+// + `wall` or `middle` - `wall`; `inside` < 0: they remove the point at +`wall`.
 vec3 transform_vertex(vec3 position, vec3 middle, vec3 wall, uint id, out float inside) {
   const vec3 turned = frame.view_from_world * position;
   const vec3 view = turned + frame.offset;
   const bool clipped = (id & UNCLIPPED) == 0u;
-  // planes beyond clip_count are zero: they keep everything. No branch on uniforms: a CPU driver builds such a shader at every draw
+  // planes beyond clip_count are zero and keep everything. No branch on uniforms: a CPU driver rebuilds such a shader at every draw
   const float counts = clipped ? 1.0 : 0.0;
   inside = 1.0e30;
   for (int i = 0; i < MAX_CLIP_PLANES; ++i) {

@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Two eyes into one picture for coloured glasses: sRGB to linear light, a matrix for each eye, clamped, back to sRGB. Light is weighted
-// with alpha; the alpha of a pixel is the greater of the two (what one eye alone covers is over black for the other).
+// Composes two eyes into an anaglyph: sRGB to linear light, a matrix per eye, clamped, back to sRGB. Light is weighted by alpha; the alpha
+// of a pixel is the maximum of both eyes (over an area that only one eye covers, the other counts as black).
 #include "shaders/shared/stereo_compose.h"
 
 layout(scalar, binding = 0) uniform Anaglyph { AnaglyphData anaglyph; };

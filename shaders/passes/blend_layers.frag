@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// As blend.frag, with translucent layers between them. Fewer grids: a device promises 32 pushed descriptors.
+// blend.frag with translucent layers. Fewer grids, because a device guarantees 32 push descriptors only.
 #include "shaders/shared/frame.h"
 #define NO_CUBIC
 #define GRID_COUNT MAX_GRIDS_WITH_LAYERS

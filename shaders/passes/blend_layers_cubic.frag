@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// As blend_layers.frag, where some grid is cubic.
+// blend_layers.frag with support for cubic grids.
 #include "shaders/shared/frame.h"
 #define GRID_COUNT MAX_GRIDS_WITH_LAYERS
 layout(constant_id = 4) const int LAYER_COUNT = 1;

@@ -3,7 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// occluded_overlay over volume over opaque over background, premultiplied floats; written as straight alpha. Display values are not converted.
+// Blends occluded_overlay over volume over opaque over background, premultiplied floats; writes straight alpha. Display values are not
+// converted.
 #include "shaders/shared/frame.h"
 
 layout(constant_id = 0) const uint HAS_OPAQUE = 0;
@@ -29,7 +30,7 @@ void main() {
     volume_alpha = c.a;
   }
   if (HAS_OCCLUDED_OVERLAY != 0u) {
-    // as much as is hidden: all behind something opaque, else (alpha below 0) the volume's share
+    // opacity of the occluder: 1 behind an opaque item, else (negative alpha) the volume's alpha
     const vec4 c = texelFetch(occluded_overlay_color, at, 0);
     const vec4 occluded_overlay = (c.a < 0.0 ? volume_alpha : 1.0) * vec4(c.rgb, abs(c.a));
     sum = occluded_overlay + (1.0 - occluded_overlay.a) * sum;

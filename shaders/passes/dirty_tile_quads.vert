@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// One instance a tile of 16 x 16 pixels: two triangles over it where it has changed (dirty_tiles.frag), or none.
+// One instance per tile of 16 x 16 pixels: two triangles if the tile is dirty (dirty_tiles.frag), else none.
 #include "shaders/shared/frame.h"
 layout(scalar, binding = 0) uniform Frame { FrameData frame; };
 layout(binding = 35) uniform utexture2D dirty_tiles;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
-// Tiles of 16 x 16 pixels. DILATION 0: 1 where the sign of one of its 4 x 4 blocks (opaque_tiles.frag) is another than before. DILATION > 0: 1
-// where a tile that near is 1.
+// Tiles of 16 x 16 pixels. DILATION 0: 1 if the hash of one of its 4 x 4 blocks (opaque_tiles.frag) has changed. DILATION > 0: 1 if a tile
+// within that distance is 1.
 layout(constant_id = 0) const int DILATION = 0;
-layout(binding = 0) uniform utexture2D before;  // signs; DILATION > 0: tiles
+layout(binding = 0) uniform utexture2D before;  // hashes of the previous image; DILATION > 0: tiles
 layout(binding = 1) uniform utexture2D now;
 layout(location = 0) out uint out_dirty;
 

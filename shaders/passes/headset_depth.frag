@@ -3,11 +3,11 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// The nearer of the opaque depth and that of rays, as a depth buffer in metres: d = f / (f - n) (1 - n / z), 1 where there is nothing.
+// Converts the nearer of the opaque depth and the rays' depth to a depth buffer in meters: d = f / (f - n) (1 - n / z); 1: no surface.
 #include "shaders/shared/headset.h"
 
 layout(constant_id = 0) const uint HAS_OPAQUE = 0;
-layout(constant_id = 1) const int RAY_SPACING = 0;  // pixels between the rays whose depths there are; 0: none
+layout(constant_id = 1) const int RAY_SPACING = 0;  // pixels between the rays with known depth; 0: none
 
 layout(scalar, binding = 0) uniform Depth { HeadsetDepthData depth; };
 layout(binding = 1) uniform texture2D opaque_depth;

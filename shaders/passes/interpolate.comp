@@ -3,14 +3,15 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Every pixel of a volume from every 2nd, before marked tiles are marched (volume_fast.frag). One invocation a lattice point.
+// Interpolates a volume at full resolution from every 2nd pixel, before marked tiles are marched (volume_fast.frag). One invocation per ray
+// grid point.
 #include "shaders/shared/fast_volume.h"
 
 layout(local_size_x = 16, local_size_y = 4) in;
 layout(scalar, binding = 0) uniform Upsample { UpsampleData upsample; };
 layout(binding = 1) uniform texture2D half_resolution;
 layout(binding = 2, rgba32f) uniform writeonly image2D volume;
-layout(constant_id = 0) const uint REUSES = 0;  // what has not changed stays
+layout(constant_id = 0) const uint REUSES = 0;  // unchanged tiles are kept
 layout(binding = 3) uniform utexture2D dirty_tiles;
 #include "shaders/lib/four_point.glsl"
 

@@ -3,13 +3,13 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// An opaque isosurface: the first crossing along the pixel's ray, lit, with its exact depth.
+// Opaque isosurface: the first crossing along the pixel's ray, shaded, with its exact depth.
 #include "shaders/shared/frame.h"
 #define GRID_COUNT 1
 #include "shaders/lib/grids.glsl"
 #include "shaders/lib/rays.glsl"
 #include "shaders/lib/lighting.glsl"
-layout(constant_id = 1) const uint HAS_CELLS = 0;  // 0: the map of cells would be too large, or is not wanted
+layout(constant_id = 1) const uint HAS_CELLS = 0;  // 0: there is no cell map
 #define SURFACE_CELLS
 #include "shaders/lib/surface.glsl"
 
@@ -17,7 +17,7 @@ layout(location = 0) out vec4 out_color;
 layout(location = 1) out float out_depth;
 layout(location = 2) out uint out_id;
 
-// The loops are taken once or not at all: this driver leaves out a loop that no pixel of a group enters, but not a branch.
+// Loops with at most one iteration replace branches: lavapipe skips a loop that no pixel of a group enters, but not a branch.
 void main() {
   const vec2 q = pixel_position();
   const LocalRay ray = local_ray(0, q);

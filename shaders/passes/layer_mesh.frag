@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Translucent triangles, into a layer.
+// Translucent triangles of a layer.
 #include "shaders/shared/layers.h"
 
 layout(scalar, binding = 0) uniform Frame { MeshFrameData frame; };

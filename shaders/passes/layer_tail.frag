@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
-// The last layer, from what peel.glsl has collected.
+// Resolves the last layer from the sums of peel.glsl.
 layout(binding = 0) uniform texture2D collected;
 layout(location = 0) out vec4 out_color;
 

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Layers alone, where there is neither a volume nor a translucent isosurface.
+// Translucent layers without a volume or translucent isosurface.
 #include "shaders/shared/frame.h"
 layout(constant_id = 0) const uint HAS_OPAQUE = 0;
 layout(constant_id = 1) const int LAYER_COUNT = 1;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
-// Tiles of 4 x 4 pixels: 1 where something opaque is seen; and a sign of their depths, by which those are known that have changed.
+// Tiles of 4 x 4 pixels: 1 if an opaque surface is visible; and a hash of the depths, which shows whether they have changed.
 layout(binding = 0) uniform texture2D opaque_depth;
 layout(location = 0) out uint out_mark;
 layout(location = 1) out uvec2 out_hash;
 
-// Two of the mixing steps of MurmurHash3 (A. Appleby), with other constants for the second half.
+// Mixing step of MurmurHash3 (A. Appleby), shortened; the second half of the hash uses another constant.
 uint mix_hash(uint h, uint word, uint by) {
   h ^= word;
   h *= by;

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// coverage from the signed distance to the shape's edge, half a pixel to either side; premultiplied, blended over
+// Coverage from the signed distance to the shape's edge, half a pixel to either side; premultiplied, blended over the image.
 #include "shaders/shared/overlay.h"
 
 layout(scalar, binding = 1) readonly buffer Shapes { OverlayShape shapes[]; };
@@ -28,14 +28,14 @@ float ellipse_distance(vec2 p, vec2 size) {
   return slope > 0.0 ? k * (k - 1.0) / slope : -min(size.x, size.y);
 }
 
-vec3 ramp(uint first, uint last, float place) {
+vec3 ramp(uint first, uint last, float position) {
   uint i = first;
-  while (i < last && stops[i + 1].position < place) ++i;
-  if (i == last || place <= stops[i].position) return stops[i].color;
-  return mix(stops[i].color, stops[i + 1].color, (place - stops[i].position) / (stops[i + 1].position - stops[i].position));
+  while (i < last && stops[i + 1].position < position) ++i;
+  if (i == last || position <= stops[i].position) return stops[i].color;
+  return mix(stops[i].color, stops[i + 1].color, (position - stops[i].position) / (stops[i + 1].position - stops[i].position));
 }
 
-// light from above left; the normal's part in the picture is `across`, y down
+// light from above left; `across`: component of the normal in the image, y down
 vec3 lit_round(vec3 color, vec2 across) {
   const vec3 normal = vec3(across, sqrt(max(0.0, 1.0 - dot(across, across))));
   const float diffuse = max(0.0, dot(normal, vec3(-0.40, -0.52, 0.755)));

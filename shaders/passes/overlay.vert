@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// six vertices a shape, grown by a pixel for its soft edge; a hidden label's shapes collapse
+// Six vertices per shape, enlarged by a pixel for its antialiased edge; shapes of a hidden label are degenerate.
 #include "shaders/shared/overlay.h"
 #include "shaders/shared/frame.h"
 
@@ -20,9 +20,9 @@ void main() {
   const vec2 lo = shapes[out_shape].lo, hi = shapes[out_shape].hi;
   const float soft = shapes[out_shape].kind == OVERLAY_GLYPH ? 0.0 : 1.0;
   out_local = mix(lo - soft, hi + soft, side);
-  const vec2 place = shapes[out_shape].origin + out_local.x * shapes[out_shape].axis_x + out_local.y * shapes[out_shape].axis_y;
-  gl_Position = vec4(place / data.half_size - 1.0, 0.0, 1.0);
-  const uint has_depth = data.has_depth + uint(out_local.x < -1e30);  // as as_nonuniform (rays.glsl)
+  const vec2 position = shapes[out_shape].origin + out_local.x * shapes[out_shape].axis_x + out_local.y * shapes[out_shape].axis_y;
+  gl_Position = vec4(position / data.half_size - 1.0, 0.0, 1.0);
+  const uint has_depth = data.has_depth + uint(out_local.x < -1e30);  // as in as_nonuniform (rays.glsl)
   if (has_depth != 0u && shapes[out_shape].occlusion_depth < NO_DEPTH) {
     const ivec2 at = ivec2(floor(shapes[out_shape].anchor));
     const ivec2 size = textureSize(opaque_depth, 0);

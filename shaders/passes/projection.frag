@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// One value a ray: the greatest or least that it meets, exactly, or the mean at the middles of its segments.
+// One value per ray: the exact maximum or minimum along it, or the mean of the values at the middles of its segments.
 #include "shaders/shared/frame.h"
 #define GRID_COUNT 1
 #include "shaders/lib/grids.glsl"

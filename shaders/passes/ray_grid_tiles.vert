@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// One instance a tile of 16 x 16 texels of a lattice: two triangles over it, or none. As the lattice says, only where one of its 4 x 4 blocks
-// is marked, only where a tile of the picture that it meets has changed, or both. Nothing branches on what only uniforms say (rays.glsl).
+// One instance per tile of 16 x 16 texels of a ray grid: two triangles, or none. As RayGridData states, only tiles with a marked 4 x 4
+// block, only tiles that overlap a dirty tile of the image, or both. No branch depends on uniforms only (rays.glsl).
 #include "shaders/shared/fast_volume.h"
 layout(scalar, binding = 1) uniform RayGrid { RayGridData ray_grid; };
 layout(binding = 7) uniform utexture2D blocks;

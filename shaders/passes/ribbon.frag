@@ -14,15 +14,15 @@ layout(location = 0) out vec4 out_color;
 layout(location = 1) out float out_depth;
 layout(location = 2) out uint out_id;
 
-// A ribbon lit as the round tube that it stands for; where it is cut open, as the hollow of its wall behind.
+// Ribbon, shaded as the round tube that it represents; where it is cut open, as the inner side of the tube's rear wall.
 void main() {
   const vec2 slope = (gl_FragCoord.xy * frame.pixel - 1.0 - frame.shift) / frame.scale;
   const vec3 to_camera = mix(normalize(vec3(-slope.x, slope.y, -1.0)), vec3(0.0, 0.0, -1.0), float(frame.orthographic));
   const vec3 tangent = normalize(in_tangent.xyz);
-  const vec3 aside = to_camera - dot(to_camera, tangent) * tangent;
-  const vec3 front = aside * inversesqrt(max(dot(aside, aside), 1.0e-12));
+  const vec3 lateral = to_camera - dot(to_camera, tangent) * tangent;
+  const vec3 front = lateral * inversesqrt(max(dot(lateral, lateral), 1.0e-12));
   const float across = clamp(in_tangent.w, -1.0, 1.0) * (in_inside < 0.0 ? -1.0 : 1.0);
-  // the view's axes are left-handed: the vertex shader's product of the world's axes is the opposite one here
+  // view axes are left-handed: the cross product has the opposite sign of the vertex shader's, in world axes
   const vec3 normal = sqrt(1.0 - across * across) * front - across * cross(tangent, front);
   out_color = vec4(fogged(lit(in_color.rgb, normal, to_camera), in_color.w), 1.0);
   out_depth = in_color.w;

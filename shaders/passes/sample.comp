@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Reads a grid at given local positions exactly as the raycast does; 1e30 in an invalid cell. The tests compare it with the truth.
+// Samples a grid at given local positions exactly as the raycast does; 1e30 in an invalid cell. Used by tests.
 #include "shaders/shared/frame.h"
 #define GRID_COUNT 1
 #include "shaders/lib/grids.glsl"

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// A plane through a grid: where the pixel's ray meets it, the value, coloured, with lines of constant value.
+// Plane through a grid: the value at the intersection with the pixel's ray, colored, with contour lines.
 #include "shaders/shared/layers.h"
 #define GRID_COUNT 1
 #include "shaders/lib/grids.glsl"
@@ -15,13 +15,13 @@ layout(scalar, binding = 1) uniform Slice { SliceData slice; };
 layout(scalar, binding = 2) readonly buffer Colors { vec4 colors[]; };  // value, r, g, b
 layout(scalar, binding = 4) readonly buffer Levels { float levels[]; };
 
-// What the ray of pixel place q meets, and how it changes from pixel to pixel.
+// Intersection of the plane and the ray of pixel coordinate q, and its derivatives by pixel.
 struct Hit {
-  bool seen;
+  bool is_visible;
   float t, value;
-  vec3 p;          // local
-  vec2 gradient;   // of the value, a pixel
-  vec2 slope;      // of t, a pixel
+  vec3 p;          // local position
+  vec2 gradient;   // gradient of the value, per pixel
+  vec2 slope;      // gradient of t, per pixel
 };
 
 vec3 table_color(float value) {
@@ -36,7 +36,7 @@ vec3 table_color(float value) {
   return mix(colors[a].yzw, colors[b].yzw, (value - colors[a].x) / max(colors[b].x - colors[a].x, 1e-37));
 }
 
-// The value and its gradient, local (0 where the nearest voxel counts); false in a cell or of a value that is not drawn.
+// Returns the value and its gradient in local axes (0 for nearest interpolation). Returns false for an invalid cell or a hidden value.
 bool value_at(vec3 p, out float value, out vec3 gradient) {
   value = 0.0;
   gradient = vec3(0.0);
@@ -70,7 +70,7 @@ bool is_clipped(vec2 q, float t) {
 }
 
 #define SLOPE_BIAS 0.0078125  // pixels
-#define FACE_SLACK 1e-3  // voxels: a plane in a face of the domain is drawn
+#define FACE_SLACK 1e-3  // voxels; a plane in a face of the domain is drawn
 
 Hit intersect_plane(vec2 q) {
   Hit hit;
@@ -79,17 +79,17 @@ Hit intersect_plane(vec2 q) {
   const LocalRay ray = local_ray(0, q);
   const float at = slice.plane.at + slice.plane.at_x * q.x + slice.plane.at_y * q.y;
   const float along = slice.plane.along + slice.plane.along_x * q.x + slice.plane.along_y * q.y;
-  hit.seen = abs(along) > MIN_DIRECTION;
-  hit.t = hit.seen ? -at / along : NO_DEPTH;
-  hit.seen = hit.seen && hit.t >= frame.front_depth && abs(hit.t) < NO_DEPTH;
-  hit.p = ray.origin + (hit.seen ? hit.t : 0.0) * ray.direction;
+  hit.is_visible = abs(along) > MIN_DIRECTION;
+  hit.t = hit.is_visible ? -at / along : NO_DEPTH;
+  hit.is_visible = hit.is_visible && hit.t >= frame.front_depth && abs(hit.t) < NO_DEPTH;
+  hit.p = ray.origin + (hit.is_visible ? hit.t : 0.0) * ray.direction;
   const vec3 lo = frame.grids[0].domain_lo, hi = frame.grids[0].domain_hi;
-  hit.seen = hit.seen && all(greaterThanEqual(hit.p, lo - FACE_SLACK)) && all(lessThanEqual(hit.p, hi + FACE_SLACK));
+  hit.is_visible = hit.is_visible && all(greaterThanEqual(hit.p, lo - FACE_SLACK)) && all(lessThanEqual(hit.p, hi + FACE_SLACK));
   hit.p = clamp(hit.p, lo, hi);
-  if (!hit.seen) return hit;
+  if (!hit.is_visible) return hit;
   vec3 local;
-  hit.seen = value_at(hit.p, hit.value, local);
-  // the plane's own ray from pixel to pixel
+  hit.is_visible = value_at(hit.p, hit.value, local);
+  // derivative of the intersection by pixel
   hit.slope = -(vec2(slice.plane.at_x, slice.plane.at_y) + hit.t * vec2(slice.plane.along_x, slice.plane.along_y)) / along;
   const vec3 x = frame.grids[0].origin_x + hit.t * frame.grids[0].direction_x + hit.slope.x * ray.direction;
   const vec3 y = frame.grids[0].origin_y + hit.t * frame.grids[0].direction_y + hit.slope.y * ray.direction;
@@ -99,22 +99,23 @@ Hit intersect_plane(vec2 q) {
 
 bool is_steep(Hit hit) { return any(greaterThan(abs(hit.gradient), vec2(0.0))); }
 
-// Pixels to the level by the value's tangent. Gradients of 1e24 or 1e-24 have no square: their direction is squared.
-vec2 step_to(Hit hit, float level) {
+// Returns the offset in pixels to the level, by the value's tangent. Normalizes the gradient first: 1e24 or 1e-24 squared would leave the
+// float range.
+vec2 offset_to(Hit hit, float level) {
   const float size = max(abs(hit.gradient.x), abs(hit.gradient.y));
   const vec2 along = hit.gradient / size;
   return (level - hit.value) / size / dot(along, along) * along;
 }
 
-// How much of the pixel a line of the level covers. Its distance is that of the foot on the value's tangent, measured again at
-// that foot (the value bends, and its gradient jumps from cell to cell).
+// Returns a contour line's coverage of the pixel. The line's distance is that of the foot point on the value's tangent, corrected at that
+// point (the value is curved, and its gradient is discontinuous between cells).
 float line_coverage(Hit hit, vec2 q, float level) {
   if (!is_steep(hit)) return 0.0;
-  vec2 foot = step_to(hit, level);
+  vec2 foot = offset_to(hit, level);
   if (length(foot) > slice.half_width + 2.0) return 0.0;
   const Hit there = intersect_plane(q + foot);
-  if (there.seen && is_steep(there)) {
-    const vec2 more = step_to(there, level);
+  if (there.is_visible && is_steep(there)) {
+    const vec2 more = offset_to(there, level);
     if (length(more) < 1.0) foot += more;
   }
   return clamp(slice.half_width + 0.5 - length(foot), 0.0, 1.0) * min(1.0, 2.0 * slice.half_width);
@@ -122,7 +123,7 @@ float line_coverage(Hit hit, vec2 q, float level) {
 
 float contour_coverage(Hit hit, vec2 q) {
   if (slice.level_count == 0u) return 0.0;
-  uint a = 0u, b = slice.level_count;  // levels before a are below the value, from b on above
+  uint a = 0u, b = slice.level_count;  // levels before a are at most the value, levels from b on are greater
   while (a < b) {
     const uint middle = (a + b) >> 1;
     if (levels[middle] <= hit.value) a = middle + 1u;
@@ -137,18 +138,18 @@ float contour_coverage(Hit hit, vec2 q) {
 void main() {
   const vec2 q = pixel_position();
   Hit hit = intersect_plane(q);
-  if (hit.seen && frame.grids[0].is_clipped != 0u) hit.seen = !is_clipped(q, hit.t);
+  if (hit.is_visible && frame.grids[0].is_clipped != 0u) hit.is_visible = !is_clipped(q, hit.t);
   vec3 color = vec3(0.0);
   float alpha = 0.0;
-  if (hit.seen) {
+  if (hit.is_visible) {
     const float line = contour_coverage(hit, q);
     vec3 surface = table_color(hit.value);
     if (slice.is_lit != 0u) surface = lit(surface, slice.normal, -normalize(world_direction(q)));
     color = mix(layer.opacity * fogged(surface, hit.t), fogged(slice.line_color, hit.t), line);
     alpha = mix(layer.opacity, 1.0, line);
   }
-  // both parts of the depth are rounded, also where their sum is small; a GPU moves the corners of triangles to 256ths of a pixel, and so
-  // those in this plane in depth
+  // bias: rounding of both terms of the depth, also if their sum is small; and a GPU rounds triangle corners to 1/256 pixel, which shifts
+  // the depth of triangles in this plane
   const float t = hit.t - slice.depth_bias * (abs(hit.t) + layer.reference_depth) - SLOPE_BIAS * (abs(hit.slope.x) + abs(hit.slope.y));
-  write_fragment(hit.seen && alpha > 0.0, color, alpha, t, frame.grids[0].id);
+  write_fragment(hit.is_visible && alpha > 0.0, color, alpha, t, frame.grids[0].id);
 }

@@ -15,25 +15,25 @@ layout(location = 0) out vec4 out_color;
 layout(location = 1) out float out_depth;
 layout(location = 2) out uint out_id;
 
-// Whether the clip planes keep a place of the view.
+// Returns whether the clip planes keep a position in view axes.
 bool is_inside_clip_planes(vec3 view, float counts) {
-  const vec3 position = (view - frame.offset) * frame.view_from_world;  // its inverse is its transpose
-  float least = 0.0;
-  for (int i = 0; i < MAX_CLIP_PLANES; ++i) least = min(least, counts * (dot(frame.clips[i].xyz, position) + frame.clips[i].w));
-  return least >= 0.0;
+  const vec3 position = (view - frame.offset) * frame.view_from_world;  // the inverse of a rotation is its transpose
+  float lowest = 0.0;
+  for (int i = 0; i < MAX_CLIP_PLANES; ++i) lowest = min(lowest, counts * (dot(frame.clips[i].xyz, position) + frame.clips[i].w));
+  return lowest >= 0.0;
 }
 
 void main() {
   const float flat_view = float(frame.orthographic);
   const vec3 ray = normalize(mix(in_view, vec3(0.0, 0.0, 1.0), flat_view));
-  // |c + s ray - center| = radius, from the place of the ray that is nearest to the middle
+  // solves |c + s ray - center| = radius, from the ray's nearest point to the center
   const vec3 off = in_view - in_center, across = off - dot(off, ray) * ray;
   const float root = in_radius * in_radius - dot(across, across);
   const float half_chord = sqrt(max(root, 0.0)), counts = (in_id & UNCLIPPED) == 0u ? 1.0 : 0.0;
   const vec3 front = across - half_chord * ray, back = across + half_chord * ray;
-  const bool front_kept = is_inside_clip_planes(in_center + front, counts);
-  if (root < 0.0 || !(front_kept || is_inside_clip_planes(in_center + back, counts))) discard;
-  const vec3 normal = front_kept ? front : back, view = in_center + normal;
+  const bool front_visible = is_inside_clip_planes(in_center + front, counts);
+  if (root < 0.0 || !(front_visible || is_inside_clip_planes(in_center + back, counts))) discard;
+  const vec3 normal = front_visible ? front : back, view = in_center + normal;
   const vec3 to_camera = mix(-ray, vec3(0.0, 0.0, -1.0), flat_view);
   const float depth = view.z + frame.offset_depth - frame.offset.z;
   out_color = vec4(fogged(lit(in_color, normal, to_camera), depth), 1.0);

@@ -7,13 +7,13 @@
 
 layout(scalar, binding = 0) uniform Frame { MeshFrameData frame; };
 layout(scalar, binding = 1) readonly buffer Spheres { SphereData spheres[]; };
-layout(location = 0) flat out vec3 out_center;  // in the view
+layout(location = 0) flat out vec3 out_center;  // in view axes
 layout(location = 1) flat out float out_radius;
 layout(location = 2) flat out vec3 out_color;
 layout(location = 3) flat out uint out_id;
 layout(location = 4) out vec3 out_view;
 
-// A square across the ray to the ball's middle, as wide there as the cone that touches the sphere.
+// Square across the ray to the sphere's center, as wide there as the cone tangent to the sphere.
 void main() {
   const SphereData sphere = spheres[gl_InstanceIndex];
   const vec3 center = frame.view_from_world * sphere.center + frame.offset;

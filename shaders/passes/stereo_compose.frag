@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// One view's finished image (straight alpha) into its part of the packed one: moved, averaged over a block, or every n-th pixel.
+// Copies one view's image (straight alpha) into its part of the packed image: shifted, averaged over blocks, or every n-th pixel.
 #include "shaders/shared/stereo_compose.h"
 
 layout(constant_id = 0) const uint PATTERN = STEREO_PATTERN_WHOLE;
@@ -14,8 +14,8 @@ layout(location = 0) out vec4 out_color;
 void main() {
   const uvec2 at = uvec2(gl_FragCoord.xy - compose.first);
   if (PATTERN != STEREO_PATTERN_WHOLE) {
-    const uint place = PATTERN == STEREO_PATTERN_ROWS ? at.y : PATTERN == STEREO_PATTERN_COLUMNS ? at.x : at.x + at.y;
-    if (place % compose.views != compose.view) discard;
+    const uint index = PATTERN == STEREO_PATTERN_ROWS ? at.y : PATTERN == STEREO_PATTERN_COLUMNS ? at.x : at.x + at.y;
+    if (index % compose.views != compose.view) discard;
   }
   const uvec2 block = uvec2(compose.block_x, compose.block_y);
   if (block == uvec2(1)) {

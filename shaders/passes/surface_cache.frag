@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Isosurfaces as an earlier picture met them (render/passes/surface_cache.h), among what is opaque now.
+// Isosurfaces of an earlier image (render/passes/surface_cache.h), drawn among the current opaque items.
 #include "shaders/shared/frame.h"
 layout(scalar, binding = 0) uniform Frame { FrameData frame; };
 layout(binding = 1) uniform texture2D colors;

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// The colour of an opaque isosurface (grid 0) by another field (grid 1), where it is the nearest thing.
+// Color of an opaque isosurface (grid 0) by another field (grid 1), at pixels where it is the nearest item.
 #include "shaders/shared/frame.h"
 #define GRID_COUNT 2
 #include "shaders/lib/grids.glsl"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #version 460
-// straight alpha, display values; blended over what is there
+// Straight alpha, display values; blended over the window.
 layout(binding = 1) uniform sampler2D image;
 layout(location = 0) in vec2 in_texture;
 layout(location = 1) in vec4 in_color;

@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-// pixels of the window, y down
+// Positions in window pixels, y down.
 #include "shaders/shared/ui.h"
 
 layout(scalar, binding = 0) uniform Data { UiData data; };

@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// The finished image from a volume on every 2nd pixel: interpolated by the four-point cubic (-1, 9, 9, -1) / 16, over opaque over
-// background (as compose.frag). One invocation a lattice point: its pixel, the ones to the right, below and diagonally below.
+// Output image from a volume on every 2nd pixel: interpolated by the four-point cubic (-1, 9, 9, -1) / 16, over opaque over background (as
+// in compose.frag). One invocation per ray grid point: its pixel, and those to the right, below and diagonally below.
 #include "shaders/shared/frame.h"
 #include "shaders/shared/fast_volume.h"
 

@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-// black that grows with the angle from the eye's axis; straight alpha, blended over what is there
+// Black that increases with the angle from the view axis; straight alpha, blended over the image.
 #include "shaders/shared/vignette.h"
 
 layout(scalar, binding = 0) uniform Data { VignetteData data; };

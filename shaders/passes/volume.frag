@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// One volume: the common case, kept small because drivers compile it at first use.
+// One volume: the most frequent case, in a small shader because drivers compile it at first use.
 #include "shaders/shared/frame.h"
 #define GRID_COUNT 1
 #define VOLUME_COUNT 1

@@ -3,11 +3,11 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Marks the blocks of 4 x 4 texels of a lattice that interpolation from the coarser one would not serve. The four-point cubic errs
-// at the middle by 3 / 128 of the fourth difference; the largest over the block's coarser rays, along both axes, decides. Where rays
-// differ from ray to ray as fast as they can (the fourth difference is four times the second then), they say little of what is between
-// them, and something thin may hide there: up to three times as much is expected. Where something opaque is near, rays end at different
-// depths: every such block is marked.
+// Marks the 4 x 4 blocks of a ray grid whose interpolation from the coarser one is expected to exceed the threshold. The error of the
+// four-point cubic at the midpoint is 3 / 128 of the fourth difference; the maximum over the block's coarser rays, along both axes, counts.
+// Where the rays alternate (the fourth difference is then four times the second), they tell little about the values between them, and thin
+// features may be hidden there: the expected error is up to three times as large. Near an opaque item rays end at different depths: every
+// such block is marked.
 #include "shaders/shared/fast_volume.h"
 
 layout(scalar, binding = 0) uniform RayGrid { RayGridData ray_grid; };
@@ -18,7 +18,7 @@ layout(location = 0) out uint out_mark;
 
 vec4 texel(ivec2 at) { return texelFetch(coarser, clamp(at, ivec2(0), ivec2(ray_grid.width, ray_grid.height) - 1), 0); }
 
-// In 3 / 128 of what is returned.
+// Returns the expected error times 128 / 3.
 vec4 expected_error(vec4 a, vec4 b, vec4 c, vec4 d, vec4 e) {
   const vec4 second = abs(b + d - 2.0 * c), fourth = abs(a + e - 4.0 * (b + d) + 6.0 * c);
   return fourth * (1.0 + 2.0 * min(vec4(1.0), fourth / max(4.0 * second, vec4(1e-6))));
@@ -30,7 +30,7 @@ vec4 max_error_along(ivec2 at, ivec2 step) {
   return max(expected_error(a, b, c, d, e), max(expected_error(b, c, d, e, f), expected_error(c, d, e, f, g)));
 }
 
-// Within reach of the block's interpolation, two coarser rays further.
+// Returns whether an opaque item lies within the reach of the block's interpolation, two coarser rays around it.
 bool opaque_near() {
   const int spacing = int(ray_grid.spacing);
   const ivec2 begin = spacing * (4 * ivec2(gl_FragCoord.xy) - int(ray_grid.apron)) - 4 * spacing, size = textureSize(opaque_tiles, 0);

@@ -3,9 +3,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// One level of the fast raycast: a lattice of rays. Without a coarser level every texel is marched. With one, its rays are taken
-// over; between them the four-point cubic (-1, 9, 9, -1) / 16 along each axis serves, except in blocks of 4 x 4 texels that
-// volume_blocks.frag has marked: those are marched.
+// One level of the fast raycast: a ray grid. Without a coarser level every texel is marched. With one, its rays are copied, and the texels
+// between them are interpolated by the four-point cubic (-1, 9, 9, -1) / 16 along each axis, except in the 4 x 4 blocks marked by
+// volume_blocks.frag: those are marched.
 #include "shaders/shared/frame.h"
 #include "shaders/shared/fast_volume.h"
 layout(constant_id = 3) const uint REFINES = 0;  // there is a coarser level

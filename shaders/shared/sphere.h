@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sphere impostor: a sphere rendered as one quad that covers it; the fragment shader intersects the pixel's ray with it.
-#ifndef CATENA_SHARED_BALL_H
-#define CATENA_SHARED_BALL_H
+#ifndef CATENA_SHARED_SPHERE_H
+#define CATENA_SHARED_SPHERE_H
 #include "shaders/shared/language.h"
 
 CATENA_SHARED_BEGIN

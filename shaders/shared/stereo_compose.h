@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Stereo composition of several views into one image: data of stereo_compose.frag and anaglyph.frag.
-#ifndef CATENA_SHARED_PACK_H
-#define CATENA_SHARED_PACK_H
+#ifndef CATENA_SHARED_STEREO_COMPOSE_H
+#define CATENA_SHARED_STEREO_COMPOSE_H
 #include "shaders/shared/language.h"
 
 #define STEREO_PATTERN_WHOLE 0

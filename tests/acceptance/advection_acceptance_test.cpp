@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Acceptance numbers 1 to 4: the advection function, and what the hand feels of it.
+// Acceptance tests of the advection function: drift, order, reversibility and grid errors, also as seen by the hand.
 #include <random>
 
 #include "engine/geometry/flow/curve.h"
@@ -9,13 +9,13 @@
 #include "tests/engine/geometry/flow/lambda_field.h"
 
 namespace catena::acceptance {
-namespace flow_numbers_test {
+namespace advection_acceptance_test {
 
 using catena::test::analytic_vector;
 using catena::test::lambda_field;
 using flow::Method;
 
-/// Drift, in mm, of a hand that goes once round the circle of R = 50 mm at 1 kHz.
+/// Drift in mm after one lap of the circle of R = 50 mm at 1 kHz.
 double drift_of_a_lap(const std::string& method, double speed) {
   const double radius = 0.05, step = speed * 1e-3;
   ChainRig chain(make_program(R"({"fields": {"v": {"analytic": "circle"}}, "chain": [{"name": "c", "type": "streamline", "field": "v",
@@ -55,8 +55,8 @@ TEST(AdvectionDrift, EulerDriftsByPiTimesTheStep) {
   }
 }
 
-// Figure 2's other half: under a still hand with 1 mm of tremor Euler creeps away, the paper's method stays.
-TEST(AdvectionDrift, TremorOfAStillHandForAMinute) {
+// paper, figure 2: under a still hand with 1 mm of tremor Euler drifts away, the paper's method does not
+TEST(AdvectionDrift, NoDriftUnderAMinuteOfTremor) {
   for (const char* method : {"euler", "rkf34"}) {
     ChainRig chain(make_program(std::string(R"({"fields": {"v": {"analytic": "circle"}}, "chain": [{"name": "c", "type": "streamline",
                                "field": "v", "seed": [0.05, 0, 0], "method": ")") +
@@ -99,7 +99,7 @@ TEST(IntegrationOrder, ObservedOrdersOnAbc) {
   }
 }
 
-TEST(AdvectionReversibility, ThereAndBackOnAbc) {
+TEST(AdvectionReversibility, ForwardAndBackwardOnAbc) {
   const auto field = lambda_field([](const Vec3& p) { return unit_direction(abc_flow(Real3(p))).rounded(); });
   const flow::Flow flow{field.get()};
   std::mt19937_64 random(3);
@@ -120,8 +120,8 @@ TEST(AdvectionReversibility, ThereAndBackOnAbc) {
   EXPECT_LE(dp54, 2e-8);
 }
 
-/// Hill's vortex on `nodes` an axis of [-1.2, 1.2]^3, followed for 3.2 from (0.5, 0, 0). On a grid as in the formula the line comes
-/// round, by the symmetry of the vortex, after 1.77: the second lap repeats the first.
+/// Hill's vortex with `nodes` per axis on [-1.2, 1.2]^3, followed over length 3.2 from (0.5, 0, 0). By the symmetry of the vortex the
+/// line closes after 1.77, on the grid as in the formula: the second lap repeats the first.
 void expect_grid_floor(int nodes, double floor) {
   const auto grid = field::sample_on_grid(*analytic_vector("hill"), nodes, -1.2, 1.2);
   const Vec3 seed(0.5, 0, 0);
@@ -135,7 +135,7 @@ void expect_grid_floor(int nodes, double floor) {
   double selected = 0;
   for (int i = 0; i <= 3200; ++i) selected = std::max(selected, hill_streamline_distance((*curve)->position(1e-3 * i), 0.5L));
 
-  // a hand that follows on line, ahead of the proxy on the line's own course
+  // a hand that leads the proxy along the line, integrated online
   haptics::tests::Fields fields;
   fields.named["v"].vector = grid;
   ChainRig chain(make_program({haptics::tests::build(R"({"name": "a", "type": "streamline", "field": "v", "seed": [0.5, 0, 0],
@@ -158,5 +158,5 @@ TEST(GridDiscretizationError, GridFloorOfHillsVortex64) { expect_grid_floor(64, 
 TEST(GridDiscretizationError, GridFloorOfHillsVortex128) { expect_grid_floor(128, 7.1e-5); }
 TEST(GridDiscretizationError, GridFloorOfHillsVortex256) { expect_grid_floor(256, 1.8e-5); }
 
-}  // namespace flow_numbers_test
+}  // namespace advection_acceptance_test
 }  // namespace catena::acceptance

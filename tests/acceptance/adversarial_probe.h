@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A hostile hand: jumps, rests, 1e300, denormals, probes that are not finite, buttons at random, clocks that stand still or go back.
+/// A hostile hand: jumps, rests, 1e300, denormals, non-finite probes, random buttons, clocks that stop or run backwards.
 #pragma once
 #include <limits>
 
@@ -22,12 +22,12 @@ class AdversarialProbe {
                                      2.0, 1e6,  -1e9,   1e154,   -1e160, 1e300, -1e300, 1.7e308};
     const auto from_odd = [&] { return odd[static_cast<std::size_t>(random_.uniform(0, 16))]; };
     switch (behavior_) {
-      case 0:  // a hand
+      case 0:  // a smooth motion
       case 1:
         velocity_ = velocity_ * 0.95 + random_.box(2e-4);
         p = norm(position_ + velocity_) < 2.2 ? position_ + velocity_ : Vec3(0.3, 0.2, 0.1);
         break;
-      case 2:  // a trembling one
+      case 2:  // a trembling motion
         p = position_ + random_.box(1e-9);
         break;
       case 3:  // at rest
@@ -35,7 +35,7 @@ class AdversarialProbe {
       case 4:  // jumps
         p = random_.box(2.5);
         break;
-      case 5:  // odd numbers
+      case 5:  // extreme numbers
         p = {from_odd(), from_odd(), from_odd()};
         break;
       case 6:  // far away
@@ -68,7 +68,7 @@ class AdversarialProbe {
   double t_s_ = 0;
 };
 
-/// What may never be, after any tick: the first word of it, or null.
+/// Checks the invariants after a tick: the first violated one, or null.
 inline const char* find_violation(const HapticProgram& program, const haptics::ProbeSample& probe, const HapticState& out) {
   const bool bad = !is_finite(probe.position) || !std::isfinite(probe.t_s);
   if (!is_finite(out.force_n)) return "force";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Acceptance numbers 9 and 11: the chain of Figure 3(c), and what the scale of a field, or its bad values, may change: nothing.
+// Acceptance tests of the chain of figure 3(c) of the paper, and of its invariance under the scale of a field and under bad values.
 #include <limits>
 
 #include "tests/acceptance/chain_fixture.h"
@@ -8,7 +8,7 @@
 #include "tests/engine/geometry/flow/lambda_field.h"
 
 namespace catena::acceptance {
-namespace chain_numbers_test {
+namespace chain_acceptance_test {
 
 using catena::test::analytic_vector;
 using catena::test::lambda_field;
@@ -27,19 +27,19 @@ std::string number(double v) {
   return text;
 }
 
-/// Where the chain curve -> penetrable surface was in the tick in which the surface let go.
+/// State of the chain curve -> penetrable surface in the tick of the surface's release.
 struct Release {
-  double depth = 0;        ///< of the curve's proxy below the surface
-  double travel = 0;       ///< of the curve's proxy in that tick
-  double off_curve = 0;    ///< worst distance of the curve's proxy from the closed form, in all ticks
-  double off_surface = 0;  ///< worst distance of the surface's proxy from the level, while it was held
-  double lag = 0;          ///< worst distance between the surface's proxy and the foot of the curve's proxy
+  double depth = 0;        ///< depth of the curve's proxy below the surface
+  double travel = 0;       ///< step of the curve's proxy in that tick
+  double off_curve = 0;    ///< maximum distance of the curve's proxy from the closed form over all ticks
+  double off_surface = 0;  ///< maximum distance of the surface's proxy from the level while held
+  double lag = 0;          ///< maximum distance between the surface's proxy and the closest surface point of the curve's proxy
   bool let_go = false;
   bool early = false;
 };
 
-/// Drives the probe along `path(s)` (aside of it by `aside`) until the surface lets go. `on_curve`: distance from the closed form;
-/// `foot`: the closest point of the surface; free is the side where `height` > 0.
+/// Drives the probe along `path(s)` (with offset `aside`) until the surface's release. `on_curve`: distance from the closed form;
+/// `foot`: the closest point of the surface; the free side is `height` > 0.
 template <class Path, class OnCurve, class Height, class Foot>
 Release drive(ChainRig& chain, const Path& path, const OnCurve& on_curve, const Height& height, const Foot& foot, double s, double step,
               const Vec3& aside) {
@@ -74,7 +74,7 @@ void expect_release(const Release& r, const std::string& who, double curve_goal)
   EXPECT_LE(r.lag, 1e-6 * kL) << who;
 }
 
-TEST(StreamlineIntoSurface, StraightCurveIntoAPlane) {
+TEST(StreamlineIntoSurface, AStraightCurveIntoAPlane) {
   for (const std::string surface :
        {R"({"name": "s", "type": "isosurface", "field": "z", "level": 0, "free": "above", "release": 0.05})",
         R"({"name": "s", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "free": "above", "release": 0.05})"})
@@ -102,7 +102,7 @@ TEST(StreamlineIntoSurface, StraightCurveIntoAPlane) {
       }
 }
 
-TEST(StreamlineIntoSurface, StraightCurveIntoASphereAndATorus) {
+TEST(StreamlineIntoSurface, AStraightCurveIntoASphereAndATorus) {
   struct Body {
     const char* name;
     double level;
@@ -119,8 +119,8 @@ TEST(StreamlineIntoSurface, StraightCurveIntoASphereAndATorus) {
   };
   for (const Body& body : bodies)
     for (const double degrees : {20.0, 45.0, 90.0}) {
-      if (body.level < 1 && degrees < 30) continue;  // such a chord of the tube is nowhere as deep as the limit
-      // meets the body from outside in (1 (.4), 0, 0), at the angle to its tangent plane
+      if (body.level < 1 && degrees < 30) continue;  // such a chord of the tube is shallower than the limit
+      // enters the body at (1, 0, 0) (the torus at (1.4, 0, 0)), at the angle to its tangent plane
       const double a = degrees * M_PI / 180, x0 = body.level == 1 ? 1 : 1.4;
       const Vec3 way(-std::sin(a), 0.6 * std::cos(a), 0.8 * std::cos(a)), hit(x0, 0, 0), seed = hit - 0.5 * way;
       ChainRig chain(make_program(R"({"fields": {"v": {"analytic": "uniform", "direction": [)" + number(way.x) + "," + number(way.y) + "," +
@@ -141,8 +141,8 @@ TEST(StreamlineIntoSurface, StraightCurveIntoASphereAndATorus) {
     }
 }
 
-TEST(StreamlineIntoSurface, CurvedLineIntoAPlane) {
-  // a circle of radius 0.8 tilted about x: it dips below z = 0 at the angle of the tilt
+TEST(StreamlineIntoSurface, ACurvedLineIntoAPlane) {
+  // a circle of radius 0.8 tilted about x, which crosses z = 0 at the tilt angle
   for (const double degrees : {20.0, 35.0, 50.0, 70.0, 90.0}) {
     const double a = degrees * M_PI / 180;
     const Vec3 e1(1, 0, 0), e2(0, std::cos(a), std::sin(a)), axis = cross(e1, e2);
@@ -167,17 +167,17 @@ TEST(StreamlineIntoSurface, CurvedLineIntoAPlane) {
       record_result("depth of release, " + who, r.depth);
       record_result("residuals / L: curve", r.off_curve / kL);
       record_result("residuals / L: surface", r.off_surface / kL);
-      // a selected curve is its cache: 1e-11 of L between the knots
+      // a selected curve is a cached curve: error 1e-11 L between the knots
       expect_release(r, who, 1.1e-11);
     }
   }
 }
 
-// ---- 11 ----
+// ---- scaled fields and bad values ----
 
 constexpr double kScales[] = {1e-300, 1e-200, 1e-100, 1e-30, 1e-10, 3.0, 1e10, 1e30, 1e100, 1e200, 1e300};
 
-TEST(FieldScaleAndBadValues, TheSameStreamlineProxiesAtAnyScaleOfTheField) {
+TEST(FieldScaleAndBadValues, StreamlineProxiesAreInvariantUnderScalingOfTheField) {
   for (const char* name : {"circle", "hill", "abc", "helix", "saddle"}) {
     double worst = 0, tangent = 0;
     for (const char* follow : {"selected", "online"})
@@ -210,7 +210,7 @@ TEST(FieldScaleAndBadValues, TheSameStreamlineProxiesAtAnyScaleOfTheField) {
   }
 }
 
-TEST(FieldScaleAndBadValues, TheSameSurfaceProxiesAtAnyScaleOfTheField) {
+TEST(FieldScaleAndBadValues, SurfaceProxiesAreInvariantUnderScalingOfTheField) {
   for (const auto& [name, level] :
        {std::pair{"sphere", 1.0}, std::pair{"torus", 0.4}, std::pair{"gaussian", 0.5}, std::pair{"tanh", 0.3}}) {
     double worst = 0;
@@ -232,12 +232,12 @@ TEST(FieldScaleAndBadValues, TheSameSurfaceProxiesAtAnyScaleOfTheField) {
   }
 }
 
-/// Half of the space has the value `bad`.
+/// A field with the value `bad` in a half-space.
 field::VectorFieldPtr half_bad(double bad) {
   return lambda_field([bad](const Vec3& p) { return p.x > 0.5 ? Vec3(bad, bad, bad) : Vec3(1, 0.2 * p.y, -0.1); });
 }
 
-TEST(FieldScaleAndBadValues, BadValuesNeverComeOut) {
+TEST(FieldScaleAndBadValues, InvalidValuesNeverReachTheOutput) {
   const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
   const double far[] = {0.0, -0.0, 0.4, 0.5, 0.51, 3.0, -5.0, 5e-324, 1e-310, 1e9, -1e160, 1e300, 1.7e308, inf, -inf, nan};
   for (const double bad : {0.0, -0.0, inf, -inf, nan, 5e-324, -1e-310, 1e308, -1.7e308})
@@ -295,5 +295,5 @@ TEST(FieldScaleAndBadValues, BackwardEqualsTheReversedFieldBitForBit) {
   EXPECT_GT(runs, 30000);
 }
 
-}  // namespace chain_numbers_test
+}  // namespace chain_acceptance_test
 }  // namespace catena::acceptance

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A whole chain driven through the tick: from the text of a scene, or from constraints made by hand.
+/// A whole chain driven in the tick, from a scene's text or from given constraints.
 #pragma once
 #include "haptics/build/build_program.h"
 #include "haptics/chain/tick.h"
@@ -39,7 +39,7 @@ inline std::shared_ptr<const HapticProgram> make_program(const std::vector<hapti
 
 struct ChainRig {
   explicit ChainRig(std::shared_ptr<const HapticProgram> p) : program(std::move(p)) {}
-  /// The next tick, 1 ms after the last.
+  /// Runs the next tick, 1 ms after the last.
   const HapticState& step_to(const Vec3& probe, std::uint32_t buttons = 0) {
     return step_at(1e-3 * static_cast<double>(state.ticks), probe, buttons);
   }

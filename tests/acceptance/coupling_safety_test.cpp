@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whole scenes on the simulated device: what a switch, a snap or another program puts into the springs is booked, the hand gets
-// no more than that, and a trembling hand on a streamline through an isosurface feels no shaking.
+// Whole scenes on the simulated device: the energy that a switch, a snap or a program change adds to the springs is accounted, the hand
+// gets no more than that, and a trembling hand on a streamline through an isosurface is stable.
 #include "haptics/device/registry.h"
 #include "haptics/servo/device_limits.h"
 #include "tests/acceptance/chain_fixture.h"
@@ -28,8 +28,8 @@ HapticProgram limited(const std::string& scene, const haptics::DeviceLimits& lim
   return p;
 }
 
-/// The mechanism alone, no hand: what it gains is what it was given.
-SimulatedDeviceParameters nobody() {
+/// The mechanism without a hand: its energy gain equals the energy that it was given.
+SimulatedDeviceParameters without_hand() {
   SimulatedDeviceParameters p = haptics::desktop_device_parameters();
   p.grip_stiffness_n_per_m = p.grip_damping_ns_per_m = p.friction_n = p.encoder_step_m = 0;
   p.max_force_n = 1e6;
@@ -48,68 +48,68 @@ std::string pin_at(double x) {
          std::to_string(x) + ", 0, 0]}]}";
 }
 
-double most_kinetic(ClosedLoop& loop, int ticks) {
-  double most = 0;
+double max_kinetic_of(ClosedLoop& loop, int ticks) {
+  double maximum = 0;
   for (int i = 0; i < ticks; ++i) {
     loop.step();
-    most = std::max(most, loop.kinetic_j());
+    maximum = std::max(maximum, loop.kinetic_j());
   }
-  return most;
+  return maximum;
 }
 
-TEST(CouplingSafety, AnotherProgramIsBookedAndGivesNoMore) {
+TEST(CouplingSafety, AProgramChangeGivesNoMoreThanItsAccountedEnergy) {
   for (const bool passivity : {false, true}) {
     const HapticProgram here = limited(pin_at(0), above_the_limit(passivity)), there = limited(pin_at(0.02), above_the_limit(passivity));
-    ClosedLoop loop(here, nobody());
-    EXPECT_EQ(most_kinetic(loop, 500), 0);
+    ClosedLoop loop(here, without_hand());
+    EXPECT_EQ(max_kinetic_of(loop, 500), 0);
     EXPECT_EQ(loop.state->passivity.exempt_j, 0);
     loop.switch_program(there);
     loop.step();
     const double booked = loop.state->passivity.exempt_j;
     EXPECT_NEAR(booked, 0.5 * 4000 * 0.02 * 0.02, 1e-9);
-    const double most = most_kinetic(loop, 3000);
+    const double maximum = max_kinetic_of(loop, 3000);
     EXPECT_NEAR(loop.state->passivity.exempt_j, booked, 1e-9) << "once";
     if (passivity) {
-      EXPECT_LE(most, 1.001 * booked);
+      EXPECT_LE(maximum, 1.001 * booked);
     } else {
-      EXPECT_GT(most, 100 * booked) << "the same spring without the controller";
+      EXPECT_GT(maximum, 100 * booked) << "the same spring without the controller";
     }
   }
 }
 
-TEST(CouplingSafety, ASnapIsBookedAndGivesNoMore) {
+TEST(CouplingSafety, ASnapGivesNoMoreThanItsAccountedEnergy) {
   const std::string scene = R"({"coupling": {"stiffness": 4000, "max_force": 1e6},
     "chain": [{"name": "pin", "type": "point", "position": [0, 0, 0], "snap": 0.01, "release": 0.03}]})";
   const HapticProgram p = limited(scene, above_the_limit(true));
-  SimulatedDeviceParameters moving = nobody();
+  SimulatedDeviceParameters moving = without_hand();
   moving.velocity_m_per_s = {-0.1, 0, 0};
   ClosedLoop loop(p, moving, {{0, {0.02, 0, 0}}});
   const double brought = loop.kinetic_j();
-  const double most = most_kinetic(loop, 4000);
+  const double maximum = max_kinetic_of(loop, 4000);
   const double booked = loop.state->passivity.exempt_j;
   EXPECT_NEAR(booked, 0.5 * 4000 * 0.01 * 0.01, 0.03 * 0.2) << "within a tick's way of the snap";
   EXPECT_GT(booked, 0.15);
   EXPECT_TRUE(loop.out.links[0].active);
-  EXPECT_LE(most, 1.001 * (booked + brought));
+  EXPECT_LE(maximum, 1.001 * (booked + brought));
 }
 
-TEST(CouplingSafety, ModesThatSwitchWhileTheHandIsHeldBookEachSwitch) {
+TEST(CouplingSafety, EachModeSwitchUnderLoadIsAccounted) {
   const std::string scene = R"({"coupling": {"stiffness": 4000, "max_force": 1e6, "ramp_s": 0.02},
     "chain": [{"name": "a", "type": "point", "position": [0, 0, 0]}, {"name": "b", "type": "point", "position": [0.01, 0, 0]}],
     "modes": [{"name": "first", "links": ["a"], "active_when": {"button": 1}}, {"name": "second", "links": ["b"], "active_when": {"button": 2}}]})";
   const HapticProgram p = limited(scene, above_the_limit(true));
   std::vector<haptics::SimulatedDevice::Waypoint> path;
   for (int k = 0; k < 20; ++k) path.push_back({0.1 * k, Vec3(0.0), k % 2 == 0 ? 1u : 2u});
-  SimulatedDeviceParameters slack = nobody();
-  slack.grip_damping_ns_per_m = 5;  // a hand that damps, and wants nowhere
+  SimulatedDeviceParameters slack = without_hand();
+  slack.grip_damping_ns_per_m = 5;  // a hand with damping and without stiffness
   ClosedLoop loop(p, slack, path);
   double before = 0;
   for (int k = 0; k < 20; ++k) {
-    const double most = most_kinetic(loop, 100), granted = loop.state->passivity.exempt_j;
+    const double maximum = max_kinetic_of(loop, 100), granted = loop.state->passivity.exempt_j;
     if (k > 0) {
       EXPECT_GT(granted, before) << "switch " << k;
     }
-    EXPECT_LE(most, 1.01 * granted) << "switch " << k;
+    EXPECT_LE(maximum, 1.01 * granted) << "switch " << k;
     before = granted;
   }
   EXPECT_LT(before, 20 * 4 * 0.5 * 4000 * 1e-4) << "no more than the switches could";
@@ -125,11 +125,11 @@ std::string chain_scene(int stiffness) {
   return text.replace(text.find("STIFF"), 5, std::to_string(stiffness));
 }
 
-/// A trembling hand that follows the circle, 1 cm inside it, 3 mm above: most of the kinetic energy beyond its own way.
-struct Felt {
-  double most_j = 0, dissipated_j = 0, most_force_n = 0, least_energy_j = 0;
+/// A trembling hand that follows the circle, 1 cm inside and 3 mm above it: maximum energies and forces.
+struct Extremes {
+  double max_kinetic_j = 0, dissipated_j = 0, peak_force_n = 0, min_energy_j = 0;
 };
-Felt follow(const HapticProgram& p) {
+Extremes follow(const HapticProgram& p) {
   std::vector<haptics::SimulatedDevice::Waypoint> path;
   for (int k = 0; k <= 300; ++k) {
     const double a = 2 * M_PI * k / 300;
@@ -141,41 +141,41 @@ Felt follow(const HapticProgram& p) {
   hand.tremor_m = 1e-4;
   ClosedLoop loop(p, hand, path);
   loop.run(500);
-  Felt felt;
+  Extremes result;
   for (int k = 0; k < 3000; ++k) {
     loop.step();
-    felt.most_j = std::max(felt.most_j, loop.kinetic_j());
-    felt.most_force_n = std::max(felt.most_force_n, norm(loop.out.force_n));
-    felt.least_energy_j = std::min(felt.least_energy_j, loop.out.energy_j);
+    result.max_kinetic_j = std::max(result.max_kinetic_j, loop.kinetic_j());
+    result.peak_force_n = std::max(result.peak_force_n, norm(loop.out.force_n));
+    result.min_energy_j = std::min(result.min_energy_j, loop.out.energy_j);
   }
-  felt.dissipated_j = loop.out.dissipated_j;
-  return felt;
+  result.dissipated_j = loop.out.dissipated_j;
+  return result;
 }
 
-TEST(CouplingSafety, ATremblingHandOnTheChainFeelsNoShaking) {
-  const double own_j = 0.5 * 0.159 * 0.084 * 0.084;  // of its way around
-  // the default limits: a scene that asks for too much gets the safe stiffness
-  const Felt safe = follow(limited(chain_scene(20000), simulated_limits()));
-  EXPECT_LT(safe.most_j, 8 * own_j);
-  EXPECT_LE(safe.most_force_n, 8 + 1e-12);
-  EXPECT_GT(safe.most_force_n, 0.5);
-  EXPECT_GT(safe.least_energy_j, -1e-3);
+TEST(CouplingSafety, ATremblingHandOnTheChainIsStable) {
+  const double own_j = 0.5 * 0.159 * 0.084 * 0.084;  // kinetic energy of the hand's motion
+  // with the default limits a scene with a too large stiffness gets the safe one
+  const Extremes safe = follow(limited(chain_scene(20000), simulated_limits()));
+  EXPECT_LT(safe.max_kinetic_j, 8 * own_j);
+  EXPECT_LE(safe.peak_force_n, 8 + 1e-12);
+  EXPECT_GT(safe.peak_force_n, 0.5);
+  EXPECT_GT(safe.min_energy_j, -1e-3);
 
-  // without any: it shakes as hard as the force allows; the controller alone quiets that
+  // without limits the hand shakes up to the maximum force; the controller alone suppresses that
   haptics::DeviceLimits none;
-  const Felt shaken = follow(limited(chain_scene(20000), none));
-  EXPECT_GT(shaken.most_j, 20 * own_j);
-  const Felt controlled = follow(limited(chain_scene(20000), simulated_limits(20000)));
-  EXPECT_LT(controlled.most_j, 0.2 * shaken.most_j);
+  const Extremes shaken = follow(limited(chain_scene(20000), none));
+  EXPECT_GT(shaken.max_kinetic_j, 20 * own_j);
+  const Extremes controlled = follow(limited(chain_scene(20000), simulated_limits(20000)));
+  EXPECT_LT(controlled.max_kinetic_j, 0.2 * shaken.max_kinetic_j);
   EXPECT_GT(controlled.dissipated_j, 0);
 }
 
-TEST(CouplingSafety, TheSameBitsAgain) {
+TEST(CouplingSafety, IsRepeatableBitForBit) {
   const HapticProgram p = limited(chain_scene(3000), simulated_limits(3000));
-  const Felt a = follow(p), b = follow(p);
-  EXPECT_EQ(a.most_j, b.most_j);
+  const Extremes a = follow(p), b = follow(p);
+  EXPECT_EQ(a.max_kinetic_j, b.max_kinetic_j);
   EXPECT_EQ(a.dissipated_j, b.dissipated_j);
-  EXPECT_EQ(a.least_energy_j, b.least_energy_j);
+  EXPECT_EQ(a.min_energy_j, b.min_energy_j);
 }
 
 }  // namespace coupling_safety_test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What nobody had examined before: thin sheets, a probe tangential to the isosurface, leaving the grid in
-// the middle of a step, a NaN met on the way. Each test says first what is right.
+// Edge cases: thin sheets, probes tangential to the isosurface, steps that leave the grid, and NaN on the path. Each section begins
+// with the expected behaviour.
 #include <limits>
 
 #include "haptics/constraints/streamline/online_streamline.h"
@@ -10,7 +10,7 @@
 #include "tests/engine/geometry/flow/lambda_field.h"
 
 namespace catena::acceptance {
-namespace unexamined_test {
+namespace edge_cases_test {
 
 using catena::test::lambda_field;
 using flow::Method;
@@ -42,9 +42,8 @@ class LambdaScalar final : public field::ScalarField {
 };
 
 // ---- thin sheets ----
-// A sheet |z| <= half, free above its level on both faces. Right: a hand cannot pass it by being fast nor by being slow: it is held
-// on the face that it came from until the limit of thin sheets (0.02 L), where it lets go on the far side; the force grows with
-// the depth all the while and drops once.
+// A sheet |z| <= half, free above its level on both faces. Expected: a hand of any speed is held on its face of entry until the limit of
+// thin sheets (0.02 L), where it is released on the far side; the force grows with the depth and drops once.
 
 enum class Kind { formula, grid };
 constexpr double kHalf = 0.01;
@@ -55,7 +54,7 @@ field::ScalarFieldPtr sheet(Kind kind) {
       g = Vec3(0, 0, p.z < 0 ? -1 : 1);
       return std::fabs(p.z);
     });
-  // 0.04 a voxel, nodes at z = 0: the sheet is a quarter of a voxel on each side
+  // 0.04 per voxel, nodes at z = 0: the sheet is a quarter of a voxel on each side
   return haptics::tests::sample_scalar_grid(field::Mapping::from_linear(Mat3(0.04), Vec3(-2.0)), {101, 101, 101},
                                             [](const Vec3& p) { return std::fabs(p.z); });
 }
@@ -66,7 +65,7 @@ class ThinSheet : public testing::TestWithParam<std::tuple<Kind, double>> {
   double step() const { return std::get<1>(GetParam()); }
 };
 
-TEST_P(ThinSheet, OneSidedHoldsOnTheNearFaceHoweverFarBehind) {
+TEST_P(ThinSheet, OneSidedHoldsOnTheNearFaceAtAnyDepth) {
   Rig rig(isosurface(sheet(kind()), kHalf, R"(, "free": "above")"));
   bool held = false;
   double last_gap = 0;
@@ -74,7 +73,7 @@ TEST_P(ThinSheet, OneSidedHoldsOnTheNearFaceHoweverFarBehind) {
     const Vec3 probe(0.31, -0.27, z);
     rig.tick(probe);
     const double gap = norm(rig.state.proxy - probe), depth = kHalf - z;
-    if (std::fabs(depth) < 1e-8) continue;  // the grid's values are floats
+    if (std::fabs(depth) < 1e-8) continue;  // within the float precision of the grid
     if (depth < 0) {
       EXPECT_EQ(rig.state.status, LinkStatus::free) << z;
       continue;
@@ -88,7 +87,7 @@ TEST_P(ThinSheet, OneSidedHoldsOnTheNearFaceHoweverFarBehind) {
   EXPECT_TRUE(held);
 }
 
-TEST_P(ThinSheet, OneSidedComesBackThroughTheFaceItWasHeldOn) {
+TEST_P(ThinSheet, OneSidedReturnsThroughItsFace) {
   Rig rig(isosurface(sheet(kind()), kHalf, R"(, "free": "above")"));
   double z = 0.05;
   rig.tick({0.31, -0.27, z});
@@ -104,7 +103,7 @@ TEST_P(ThinSheet, OneSidedComesBackThroughTheFaceItWasHeldOn) {
   }
 }
 
-TEST_P(ThinSheet, OneSidedSlidesAlongWhileBehind) {
+TEST_P(ThinSheet, OneSidedSlidesAlongTheFaceFromBehind) {
   Rig rig(isosurface(sheet(kind()), kHalf, R"(, "free": "above")"));
   double z = 0.05, x = -1;
   rig.tick({x, 0.2, z});
@@ -116,8 +115,8 @@ TEST_P(ThinSheet, OneSidedSlidesAlongWhileBehind) {
   }
 }
 
-TEST_P(ThinSheet, OneSidedReleaseBelowTheThicknessLetsGoWithin) {
-  // a release that is smaller than the sheet is thick works as on any body
+TEST_P(ThinSheet, OneSidedReleaseBelowTheThicknessReleasesInside) {
+  // a release below the thickness acts as on any body
   Rig rig(isosurface(sheet(kind()), kHalf, R"(, "free": "above", "release": 0.015)"));
   for (double z = 0.05; z > -0.05; z -= step()) {
     const Vec3 probe(0.31, -0.27, z);
@@ -135,7 +134,7 @@ TEST_P(ThinSheet, OneSidedReleaseBelowTheThicknessLetsGoWithin) {
 }
 
 TEST_P(ThinSheet, TwoSidedStaysOnItsFace) {
-  // held from both sides: which face is decided where the link begins; the other one is another surface
+  // two-sided: the face is the one at the link's start; the other face is another surface
   for (const double from : {0.05, -0.05}) {
     Rig rig(isosurface(sheet(kind()), kHalf));
     for (int k = 0; k * step() < 0.1; ++k) {
@@ -147,7 +146,7 @@ TEST_P(ThinSheet, TwoSidedStaysOnItsFace) {
   }
 }
 
-// steps a tick: 0.05 L/s, 0.2 L/s, and two that cross the sheet at once
+// steps per tick: 0.05 L/s, 0.2 L/s, and two that cross the sheet at once
 INSTANTIATE_TEST_SUITE_P(Hands, ThinSheet,
                          testing::Combine(testing::Values(Kind::formula, Kind::grid), testing::Values(2e-4, 8e-4, 0.033, 0.061)),
                          [](const auto& test) {
@@ -156,12 +155,12 @@ INSTANTIATE_TEST_SUITE_P(Hands, ThinSheet,
                          });
 
 // ---- a probe tangential to the isosurface ----
-// Right: outside it is free, bit for bit; inside it is held, and the gap is the depth, however shallow. One entry and one exit a
-// pass over a convex body, no force where there is no depth.
+// Expected: free outside, bit for bit; held inside with the gap equal to the depth, at any depth. One entry and one exit per pass over a
+// convex body, no force without depth.
 
-constexpr double kStop = 1e-8 * 4;  ///< where the projector stops, across the normal
+constexpr double kStop = 1e-8 * 4;  ///< tangential tolerance of the projector
 
-TEST(GrazingContact, GrazingASphere) {
+TEST(GrazingContact, GrazingASphereIsContinuous) {
   for (const bool grid : {false, true})
     for (const bool below : {false, true})
       for (const double miss : {0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-9, -1e-9, 1e-6, -1e-6, 1e-4, -1e-4, 3e-3, -3e-3})
@@ -188,15 +187,15 @@ TEST(GrazingContact, GrazingASphere) {
             changes += x > -0.4 && rig.state.status != before;
             before = rig.state.status;
           }
-          // of a formula: in and out once (where the miss is above round-off); a sampled sphere is wavy by 1e-4
+          // on a formula one entry and one exit (above round-off); a sampled sphere has waves of 1e-4
           if (!grid && std::fabs(miss) >= 1e-12) {
             EXPECT_LE(changes, 2) << miss << " " << step;
           }
         }
 }
 
-TEST(GrazingContact, AlongTheSurfaceItself) {
-  // every probe is on the level but for round-off: free or held, the proxy is the probe as closely as the projector stops
+TEST(GrazingContact, AProbeOnTheSurfaceKeepsItsProxy) {
+  // every probe is on the level up to round-off: free or held, the proxy equals the probe within the projector's tolerance
   const auto f = haptics::tests::analytic_field("sphere");
   for (const char* side : {"", R"(, "free": "above")", R"(, "free": "below")"}) {
     Rig rig(isosurface(f, 1, side));
@@ -214,7 +213,7 @@ TEST(GrazingContact, AlongTheSurfaceItself) {
 }
 
 TEST(GrazingContact, ReleaseIsNotReachedByGrazing) {
-  // deeper than nothing, shallower than the release: it never lets go
+  // depth between zero and the release: never released
   Rig rig(isosurface(haptics::tests::analytic_field("sphere"), 1, R"(, "free": "above", "release": 0.01)"));
   for (double x = -0.5; x <= 0.5; x += 2e-4) {
     rig.tick({x, 0, 0.995});
@@ -223,10 +222,10 @@ TEST(GrazingContact, ReleaseIsNotReachedByGrazing) {
   }
 }
 
-// ---- leaving the grid in the middle of a step ----
+// ---- steps that leave the grid ----
 
-// A line that bends back before the wall, though stages of a step may lie beyond it: right is to follow it, not to stop.
-TEST(GridBoundary, AStageBeyondTheWallIsNotTheLineBeyondIt) {
+// A line that turns back before the boundary although stages of a step are beyond it. Expected: the line is followed.
+TEST(GridBoundary, AStageBeyondTheBoundaryDoesNotEndTheLine) {
   for (const double radius : {0.9, 0.99, 0.999, 0.99999}) {
     const auto walled = lambda_field([](const Vec3& p) { return Vec3(-p.y, p.x, 0); },
                                      [](const Vec3& p) { return std::fabs(p.x) <= 1 && std::fabs(p.y) <= 1; });
@@ -254,8 +253,8 @@ field::VectorFieldPtr slanted_grid() {
                                           [](const Vec3& p) { return Vec3(1, 0.5 * p.x, 0.25 * p.y); });
 }
 
-// Out through the wall by a jump or step by step, and back in: right is BOUNDARY, the proxy on the wall, then the same line again.
-TEST(GridBoundary, AStreamlineHoldsOnTheWallAndComesBack) {
+// A probe leaves through the boundary by a jump or in steps, and returns. Expected: BOUNDARY with the proxy on it, then the same line.
+TEST(GridBoundary, AStreamlineHoldsOnTheBoundaryAndReturns) {
   const auto grid = slanted_grid();
   for (const char* follow : {"selected", "online"})
     for (const double step : {1e-3, 0.02, 0.7, 5.0}) {
@@ -285,8 +284,8 @@ TEST(GridBoundary, AStreamlineHoldsOnTheWallAndComesBack) {
     }
 }
 
-TEST(GridBoundary, AnIsosurfaceEndsAtTheWallAndGoesOnBehindIt) {
-  // z = 0.1 x within |x| <= 2. Right: beyond the wall the proxy keeps to the domain and still slides along it; nothing jumps
+TEST(GridBoundary, AnIsosurfaceSlidesAlongTheBoundaryAndReturns) {
+  // z = 0.1 x within |x| <= 2. Expected: beyond the boundary the proxy stays in the domain and slides along it without jumps
   const auto grid = haptics::tests::sample_scalar_grid(field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)), {17, 17, 17},
                                                        [](const Vec3& p) { return p.z - 0.1 * p.x; });
   for (const char* side : {"", R"(, "free": "above")", R"(, "free": "below")"})
@@ -315,11 +314,11 @@ TEST(GridBoundary, AnIsosurfaceEndsAtTheWallAndGoesOnBehindIt) {
     }
 }
 
-// ---- a NaN met on the way ----
-// Right: cells with a corner that is not finite are outside. A line ends before them (BOUNDARY) and goes on when the hand turns back;
-// a surface has a wall there; nothing that comes out is a NaN.
+// ---- NaN on the path ----
+// Expected: cells with a non-finite corner are outside of the domain. A line ends before them (BOUNDARY) and continues when the hand
+// returns; a surface has a boundary there; no output is NaN.
 
-TEST(NanRegion, AStreamlineEndsBeforeItAndComesBack) {
+TEST(NanRegion, AStreamlineEndsBeforeTheNanRegionAndReturns) {
   for (const bool formula : {false, true}) {
     const auto value = [](const Vec3& p) {
       if (p.x > 0.55 && p.x < 0.7) return Vec3(kNan, 1, 0);
@@ -328,7 +327,7 @@ TEST(NanRegion, AStreamlineEndsBeforeItAndComesBack) {
     const field::VectorFieldPtr f = formula ? lambda_field(value)
                                             : field::VectorFieldPtr(catena::test::sample_vector_grid(
                                                   field::Mapping::from_linear(Mat3(0.125), Vec3(-1.0)), {17, 17, 17}, value));
-    // the last good cell ends at 0.5; a formula is good up to 0.55
+    // the last valid cell ends at 0.5; the formula is valid up to 0.55
     const double wall = formula ? 0.55 : 0.5;
     for (const char* more : {"", R"(, "follow": "online")", R"(, "method": "dp54")", R"(, "method": "euler")", R"(, "kind": "line")"})
       for (const double step : {1e-3, 0.03, 0.9}) {
@@ -355,7 +354,7 @@ TEST(NanRegion, AStreamlineEndsBeforeItAndComesBack) {
   }
 }
 
-TEST(NanRegion, AnIsosurfaceHasAWallThere) {
+TEST(NanRegion, AnIsosurfaceEndsAtTheNanRegion) {
   const auto value = [](const Vec3& p) { return p.x > 0.4 && p.x < 0.9 ? kNan : p.z - 0.1 * p.x; };
   const auto grid = haptics::tests::sample_scalar_grid(field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)), {17, 17, 17}, value);
   for (const char* side : {"", R"(, "free": "above")", R"(, "free": "below")"})
@@ -368,7 +367,7 @@ TEST(NanRegion, AnIsosurfaceHasAWallThere) {
       for (double x = -0.5; x < 1.5; x += step) {
         rig.tick({x, 0.1, z});
         ASSERT_TRUE(is_finite(rig.state.proxy) && std::isfinite(rig.state.residual)) << side << " " << x;
-        // cells up to 0.25 are good; what lies behind the gap is another piece of the surface
+        // cells up to 0.25 are valid; behind the gap is another part of the surface
         if (rig.state.proxy.x <= 0.25 + 1e-12 && rig.state.status != LinkStatus::free) {
           ASSERT_NEAR(rig.state.proxy.z, 0.1 * rig.state.proxy.x, 1e-7) << side << " " << x;
         }
@@ -383,13 +382,13 @@ TEST(NanRegion, AnIsosurfaceHasAWallThere) {
     }
 }
 
-TEST(NanRegion, AFreeHandThatEntersNanStaysFreeAndIsCaughtBehind) {
-  // free above; the probe goes through broken voxels and comes out on the held side: held there, at once
+TEST(NanRegion, AFreeHandThroughTheNanRegionIsHeldBehindIt) {
+  // free above; the probe passes through invalid voxels to the held side and is held there at once
   const auto value = [](const Vec3& p) { return p.x > 0.4 && p.x < 0.9 ? kNan : p.z - 0.1 * p.x; };
   const auto grid = haptics::tests::sample_scalar_grid(field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)), {17, 17, 17}, value);
   Rig rig(isosurface(grid, 0, R"(, "free": "above")"));
   for (double x = 0; x < 1.6; x += 0.005) {
-    const double z = x < 0.6 ? 0.3 : -0.2;  // sinks within the gap
+    const double z = x < 0.6 ? 0.3 : -0.2;  // the probe descends within the gap
     const Vec3 probe(x, 0.1, z);
     rig.tick(probe);
     ASSERT_TRUE(is_finite(rig.state.proxy));
@@ -405,5 +404,5 @@ TEST(NanRegion, AFreeHandThatEntersNanStaysFreeAndIsCaughtBehind) {
   }
 }
 
-}  // namespace unexamined_test
+}  // namespace edge_cases_test
 }  // namespace catena::acceptance

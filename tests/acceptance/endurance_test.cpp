@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Endurance: no allocation in a million ticks of a chain, and nothing that is not finite in ten million hostile ticks over every
-// constraint type of the conformance table, on good fields, fields ridden with NaN, and fields scaled to the ends of the doubles.
+// Endurance: no allocation in a million ticks of a chain, and only finite outputs in ten million hostile ticks over every constraint type
+// of the conformance table, on valid fields, fields with NaN, and fields scaled to the limits of doubles.
 #include "engine/base/memory_limit.h"
 #include "tests/acceptance/adversarial_probe.h"
 #include "tests/acceptance/reference_numerics.h"
@@ -20,11 +20,11 @@ constexpr int kHostileTicks = 100000, kQuietTicks = 100000;
 #else
 constexpr int kHostileTicks = 10000000, kQuietTicks = 1000000;
 #endif
-constexpr int kParts = 20;  ///< tests that share the hostile ticks
+constexpr int kParts = 20;  ///< number of test cases that share the hostile ticks
 
 std::string text_of(const Example& e) { return R"({"name": "a", "type": ")" + e.type + "\", " + e.body + "}"; }
 
-/// The table's fields, each sampled coarsely with every fifteenth voxel NaN or infinite.
+/// The table's fields, sampled coarsely with every fifteenth voxel NaN or infinite.
 const Fields& ridden_fields() {
   static const Fields all = [] {
     Fields made;
@@ -60,7 +60,7 @@ const Fields& ridden_fields() {
   return all;
 }
 
-/// The table's analytic vector fields at the ends of the doubles; scalar fields as they are.
+/// The table's analytic vector fields scaled to the limits of doubles; scalar fields unchanged.
 Fields scaled_fields(double scale) {
   Fields made = haptics::tests::fields();
   for (auto& [name, any] : made.named) {
@@ -72,7 +72,7 @@ Fields scaled_fields(double scale) {
   return made;
 }
 
-/// Every example that can be built, on all these fields; and isosurfaces of scaled fields, which have scaled levels.
+/// Every example that can be built, on all these fields, and isosurfaces of scaled fields with scaled levels.
 const std::vector<ConstraintPtr>& constraints() {
   static const std::vector<ConstraintPtr> all = [] {
     std::vector<ConstraintPtr> made;
@@ -83,7 +83,7 @@ const std::vector<ConstraintPtr>& constraints() {
         if (fields != &haptics::tests::fields() && !names_field) continue;
         auto constraint = haptics::tests::try_build(text_of(example), *fields);
         if (constraint) made.push_back(*constraint);
-        // on good fields every example builds
+        // on valid fields every example builds
         if (fields == &haptics::tests::fields()) {
           EXPECT_TRUE(constraint) << text_of(example);
         }
@@ -97,7 +97,7 @@ const std::vector<ConstraintPtr>& constraints() {
   return all;
 }
 
-/// A chain of one to three constraints with switches, cues, ramps and, at times, modes.
+/// A random chain of one to three constraints with switches, cues, ramps and possibly modes.
 std::shared_ptr<const HapticProgram> random_program(Random& random, std::size_t first) {
   const auto pick = [&] { return static_cast<std::size_t>(random.uniform(0, static_cast<double>(constraints().size()))); };
   auto program = std::make_shared<HapticProgram>();
@@ -139,7 +139,7 @@ std::string state_of(const HapticProgram& program, const HapticState& out) {
 
 class Endurance : public testing::TestWithParam<int> {};
 
-TEST_P(Endurance, NothingBreaksInHostileTicks) {
+TEST_P(Endurance, HostileTicksKeepTheStateValid) {
   const int part = GetParam(), total = kHostileTicks / kParts;
   Random random(1000 + static_cast<std::uint64_t>(part));
   AdversarialProbe hand(2000 + static_cast<std::uint64_t>(part));

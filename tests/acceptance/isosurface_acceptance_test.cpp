@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Acceptance number 8: the projector onto an isosurface, on formulas and on grids, judged by closed forms in long double and by the
-// grid's own corner values.
+// Acceptance tests of the projector onto an isosurface, on formulas and on grids, against closed forms in long double and the grid's
+// corner values.
 #include "tests/acceptance/reference_numerics.h"
 #include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::acceptance {
-namespace surface_numbers_test {
+namespace isosurface_acceptance_test {
 
 using catena::LinkStatus;
 using haptics::bitwise_equal;
@@ -50,7 +50,7 @@ struct Judged {
   bool minimum;
 };
 
-/// Distances in L; minimum: no place on the surface around, 1e-3 L away, is nearer to the probe.
+/// Distances in L; `minimum`: no neighbour on the surface at distance 1e-3 L is nearer to the probe.
 Judged judge(const Formula& f, const Vec3& probe, const Vec3& proxy) {
   const Real3 x(probe), p(proxy);
   const Slope s = f.at(p);
@@ -124,12 +124,12 @@ TEST(IsosurfaceProjection, FormulasReachTheLocalClosestPointWithinATick) {
     record_result(who + "ticks above 32 evaluations", above_32);
     EXPECT_EQ(failures, 0) << f.name;
     EXPECT_EQ(no_minimum, 0) << f.name;
-    EXPECT_LE(above_32, starts / 1000) << f.name;  // jumps across a torus
+    EXPECT_LE(above_32, starts / 1000) << f.name;  // for jumps across a torus
     EXPECT_LE(hand.at_quantile(0.99), 8) << f.name;
   }
 }
 
-TEST(IsosurfaceProjection, AStillProbeLeavesTheProxyStill) {
+TEST(IsosurfaceProjection, TheProxyRestsWhileTheProbeRests) {
   for (const bool grid : {false, true}) {
     const field::ScalarFieldPtr f = grid ? field::ScalarFieldPtr(haptics::tests::sampled_field("sphere", 41, 3)) : analytic_field("sphere");
     for (const double d : {0.1, 0.3, 0.7, 0.999, 1.001, 1.9, 2.1, 2.5, 4.0, 7.0, 12.0, 20.0}) {
@@ -146,7 +146,7 @@ TEST(IsosurfaceProjection, AStillProbeLeavesTheProxyStill) {
   }
 }
 
-// Eqs. 6 + 5 as printed chatter there for ever: 0.71 R a tick at d = 2.5 R.
+// Eqs. 5 and 6 as printed chatter permanently: 0.71 R per tick at d = 2.5 R.
 TEST(IsosurfaceProjection, Equations5And6AsPrintedChatter) {
   const Vec3 probe(2.5, 0, 0);
   Vec3 p = direction(Vec3(1, 0.4, 0));
@@ -161,14 +161,14 @@ TEST(IsosurfaceProjection, Equations5And6AsPrintedChatter) {
   EXPECT_GT(motion, 0.5);
 }
 
-/// A grid as the test itself knows it: corner values, spacing, trilinear cells.
+/// The test's own trilinear grid: corner values and spacing.
 struct Samples {
   int nodes;
   double lo, h;
   std::vector<float> values;
   double corner(int x, int y, int z) const { return values[static_cast<std::size_t>((z * nodes + y) * nodes + x)]; }
 
-  /// Value and gradient (by index) of the cell at (i, j, k), at the place f.
+  /// Value and index-space gradient of cell (i, j, k) at the local position f.
   double cell(const int (&base)[3], const double (&f)[3], double (&gradient)[3]) const {
     double value = 0;
     gradient[0] = gradient[1] = gradient[2] = 0;
@@ -185,8 +185,8 @@ struct Samples {
     return value;
   }
 
-  /// The steepest way down |x - p| that an adjoining cell offers along its own surface, or along that surface within faces
-  /// that p lies on; and the distance off the level. In world units.
+  /// Maximum descent of |x - p| along the surface over the adjoining cells, also along the surface within faces that contain p, and the
+  /// distance from the level. In world units.
   void judge(double level, const Vec3& probe, const Vec3& proxy, double& off_level, double& descent) const {
     double index[3];
     int low[3], high[3];
@@ -211,7 +211,7 @@ struct Samples {
           for (int held = 0; held < 8; ++held) descent = std::max(descent, along(f, g, held, probe - proxy));
         }
   }
-  /// |t| of the part of e along the level within the axes that are not held, if it leads into the cell.
+  /// |t| of the component of e along the level and the free axes, if it points into the cell.
   static double along(const double (&f)[3], const double (&g)[3], int held, const Vec3& e) {
     double gg = 0, ge = 0, t[3], square = 0;
     for (int a = 0; a < 3; ++a) {
@@ -271,7 +271,7 @@ void expect_on_samples(const Formula& f, int nodes) {
   jumps.tick({0.9, 0.3, 0.4});
   for (int i = 0; i < 3000; ++i) {
     const Vec3 probe = random.box(1.6);
-    // a probe that is thrown may take a few ticks
+    // a jumping probe may need a few ticks
     jumps.tick(probe);
     for (int k = 0; k < 3 && jumps.state.status == LinkStatus::budget; ++k) jumps.tick(probe);
     count(jumps, probe);
@@ -308,5 +308,5 @@ TEST(IsosurfaceProjection, SampledTorusReachesTheLocalClosestPoint) {
 }
 TEST(IsosurfaceProjection, SampledGaussianReachesTheLocalClosestPoint) { expect_on_samples(kFormulas[2], 48); }
 
-}  // namespace surface_numbers_test
+}  // namespace isosurface_acceptance_test
 }  // namespace catena::acceptance

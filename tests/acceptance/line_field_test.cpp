@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Line fields: fibres of a synthetic heart whose vectors flip sign at random, with noise of 10 degrees and seams of 90.
+// Line fields: fibres of a synthetic heart with random signs, noise of 10 degrees and seams of 90 degrees.
 #include <numbers>
 #include <random>
 
@@ -37,7 +37,7 @@ struct Heart {
 struct Damage {
   double noise_deg = 0;
   bool flips = false;
-  bool seams = false;  ///< four sectors; in every other one the fibres run across
+  bool seams = false;  ///< true: four sectors with perpendicular fibres in every other one
 };
 
 Heart make_heart(const Damage& damage, int nodes = 72, unsigned seed = 1) {
@@ -55,7 +55,7 @@ Heart make_heart(const Damage& damage, int nodes = 72, unsigned seed = 1) {
           const Vec3 outward = direction(Vec3(p.x, p.y, p.z / 2.25));
           const int sector = static_cast<int>(std::floor((std::atan2(p.y, p.x) + std::numbers::pi) / (0.5 * std::numbers::pi)));
           if (damage.seams && sector % 2 == 1) v = cross(outward, v);
-          // turned by a normally distributed angle about a random axis across it
+          // rotated by a normally distributed angle about a random perpendicular axis
           double angle = 0;
           for (int k = 0; k < 12; ++k) angle += random.uniform(-0.5, 0.5);
           angle *= damage.noise_deg * std::numbers::pi / 180;
@@ -71,9 +71,9 @@ Heart make_heart(const Damage& damage, int nodes = 72, unsigned seed = 1) {
   return heart;
 }
 
-/// The dyads at a place, summed here from the stored numbers; the leading eigenvector by 200 squarings and products.
+/// Interpolated dyads at a position, computed from the stored numbers; the leading eigenvector by 200 iterations of squaring.
 struct Truth {
-  double share = 0;  ///< l1 of the trace
+  double share = 0;  ///< largest eigenvalue divided by the trace
   Vec3 axis{0.0};
   Truth(const Heart& heart, const Vec3& p) {
     const Vec3 index = (p - Vec3(heart.lo)) / heart.spacing;
@@ -176,7 +176,7 @@ TEST(LineFieldSignInvariance, NoLineCrossesToOtherFibres) {
   EXPECT_GT(seams.ends.at("INCOHERENT"), static_cast<int>(kLines) / 2);
 }
 
-/// A hand that goes along a selected line; the online link follows from the same seed.
+/// A hand follows a selected line; the online link starts from the same seed.
 TEST(LineFieldSignInvariance, OnlineAndSelectedAgree) {
   const Heart heart = make_heart({10, true, true});
   const double length = heart.grid->domain_length();
@@ -201,7 +201,7 @@ TEST(LineFieldSignInvariance, OnlineAndSelectedAgree) {
         worst = std::max(worst, norm(selected.state.proxy - online.state.proxy));
         ++compared;
       }
-      // beyond the end both hold and say why
+      // beyond the end both hold with the same status
       const flow::LineEnd& how = way > 0 ? (*curve)->last_end() : (*curve)->first_end();
       if (std::fabs(end) < 2 * length && how.termination != flow::Termination::length && how.termination != flow::Termination::lap) {
         const flow::Knot& last = way > 0 ? (*curve)->knots().back() : (*curve)->knots().front();
@@ -216,7 +216,7 @@ TEST(LineFieldSignInvariance, OnlineAndSelectedAgree) {
         EXPECT_LE(norm(online.state.proxy - selected.state.proxy), 1e-6 * length);
         ++held;
       }
-      // and let go on the way back to the seed
+      // both continue on the way back to the seed
       for (int i = 20; i >= 0; --i) {
         const Vec3 probe = (*curve)->position(way * (std::fabs(end) * i / 20));
         for (int k = 0; k < 40; ++k) selected.tick(probe), online.tick(probe);

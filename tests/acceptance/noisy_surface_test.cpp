@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A slow hand on noisy data: a proxy keeps to its sheet and to its travel, so that the force never jumps; friction keeps its proxy.
+// A slow hand on noisy data: the proxy stays on its sheet with bounded steps, so that the force never jumps; friction keeps its proxy.
 #include "tests/acceptance/chain_fixture.h"
 #include "tests/acceptance/reference_numerics.h"
 
@@ -17,7 +17,7 @@ constexpr int kTicks = 6000;
 constexpr int kTicks = 60000;
 #endif
 
-/// A ball whose every voxel is off by up to 0.05: shells, islands and holes about the level.
+/// A ball with voxel noise of up to 0.05, which gives shells, islands and holes near the level.
 std::shared_ptr<const field::ScalarGrid> noisy_ball() {
   Random random(7);
   const double h = 2.0 / (kNodes - 1);
@@ -25,7 +25,7 @@ std::shared_ptr<const field::ScalarGrid> noisy_ball() {
                                             [&](const Vec3& p) { return norm(p) + random.uniform(-0.05, 0.05); });
 }
 
-/// 0.2 L/s about the shell, into it and out of it.
+/// A hand's path at 0.2 L/s around the shell, in and out of it.
 struct Hand {
   Random random{11};
   Vec3 at{0.55, 0.1, 0.1}, way{0.0, 1.0, 0.0};
@@ -62,7 +62,7 @@ void follow(const std::string& side) {
     unlimited.tick(probe);
     const double gap = norm(probe - last_proxy), dx = norm(probe - last_probe);
     if (i > 0) {
-      // in units of what is allowed
+      // in units of the bound
       const double slip = std::max(0.05 * kMaxForce / newtons_per_unit, 0.05 * gap);
       worst_move = std::max(worst_move, (norm(chain.proxy() - last_proxy) - dx) / slip);
       worst_step = std::max(worst_step, norm(force - last_force) / (0.05 * kMaxForce));
@@ -89,13 +89,13 @@ void follow(const std::string& side) {
 #endif
 }
 
-TEST(NoisySurface, TheProxyKeepsToItsTravelFromBothSides) { follow(""); }
-TEST(NoisySurface, TheProxyKeepsToItsTravelFromAbove) { follow(R"(, "free": "above")"); }
-TEST(NoisySurface, TheProxyKeepsToItsTravelFromBelow) { follow(R"(, "free": "below")"); }
+TEST(NoisySurface, TwoSidedTheProxysStepsAreBounded) { follow(""); }
+TEST(NoisySurface, FreeAboveTheProxysStepsAreBounded) { follow(R"(, "free": "above")"); }
+TEST(NoisySurface, FreeBelowTheProxysStepsAreBounded) { follow(R"(, "free": "below")"); }
 
-// A hand between two sheets of a gyroid: what is held stops being the closest point of its own sheet, and the next one lies far along it.
-// A place that was nearer to the last probe already is no closest point that has moved, however short the hand's step: it is walked to.
-TEST(NoisySurface, OnlyTheClosestPointItselfMayOutrunTheTravel) {
+// A hand between two sheets of a gyroid: the held point stops being the closest of its own sheet, and the next one is far along it.
+// A point that was already nearer to the last probe is not a moved closest point: the proxy walks to it, at any step of the hand.
+TEST(NoisySurface, OnlyAMovingClosestPointMayExceedTheStepBound) {
   const auto grid =
       haptics::tests::sample_scalar_grid(field::Mapping::from_linear(Mat3(2.0 / 47), Vec3(-1.0)), {48, 48, 48}, [](const Vec3& p) {
         const Vec3 q = p * 6.0;
@@ -123,7 +123,7 @@ TEST(NoisySurface, OnlyTheClosestPointItselfMayOutrunTheTravel) {
   EXPECT_LT(moved, kTicks / 1000);
 }
 
-TEST(NoisySurface, FrictionKeepsItsProxyThroughAFailedReprojection) {
+TEST(NoisySurface, FrictionKeepsItsProxyIfAReprojectionFails) {
   const auto grid = noisy_ball();
   haptics::tests::Fields fields;
   fields.named["f"].scalar = grid;
@@ -132,19 +132,19 @@ TEST(NoisySurface, FrictionKeepsItsProxyThroughAFailedReprojection) {
   ChainRig chain(program_on({surface, drag}));
   Hand hand(grid->domain_length());
   LinkStatus before = LinkStatus::ok;
-  int lost = 0, at_once = 0, kept = 0;
+  int lost = 0, at_once = 0, budget_ticks = 0;
   for (int i = 0; i < kTicks; ++i) {
     chain.step_to(hand.next());
     const LinkStatus now = chain.status(1);
     lost += now == LinkStatus::no_surface;
     at_once += now == LinkStatus::no_surface && before == LinkStatus::ok;
-    kept += now == LinkStatus::budget;
+    budget_ticks += now == LinkStatus::budget;
     before = now;
   }
-  record_result("noisy ball, drag: ticks with a proxy kept", kept);
+  record_result("noisy ball, drag: ticks with a proxy kept", budget_ticks);
   record_result("noisy ball, drag: ticks that lose it", lost);
 #ifndef CATENA_SANITIZED
-  EXPECT_GT(kept, 0) << "no reprojection fails on this path";
+  EXPECT_GT(budget_ticks, 0) << "no reprojection fails on this path";
 #endif
   EXPECT_EQ(at_once, 0);
 }

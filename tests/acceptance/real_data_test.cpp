@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A minute's exploration of real data at 1 kHz: a hand that wanders along and around a streamline at 0.05 to 0.2 L/s, with the chain
-// streamline -> isosurface, selected and on line. No tick may run out of budget; the proxy's distance from a streamline that is
-// traced here, by Dormand-Prince 5(4) on a trilinear sampler of this file's own, is stated and bounded. At a tolerance of 1e-12 a
-// step that knows nothing of cells is itself 1e-10 to 2e-7 L off, for its error estimate does not see a face pass: both are stated,
-// and the bound is on the distance from the same method at 1e-17, in long double.
+// One minute of exploration of real data at 1 kHz: a hand wanders along and around a streamline at 0.05 to 0.2 L/s, with the chain
+// streamline -> isosurface, selected and online. No tick may run out of budget; the proxy's distance from a reference streamline, by
+// Dormand-Prince 5(4) on this file's own trilinear sampler, is printed and bounded. At a tolerance of 1e-12 a method without cell
+// boundaries is itself 1e-10 to 2e-7 L off, because its error estimate misses the faces: both figures are printed, and the bound is
+// on the distance from the same method at 1e-17 in long double.
 #include "engine/io/volume/load_field.h"
 #include "haptics/constraints/streamline/selected_streamline.h"
 #include "tests/acceptance/chain_fixture.h"
@@ -20,7 +20,7 @@ constexpr int kTicks = 60000;
 #endif
 constexpr int kEvery = 60;  ///< ticks between two comparisons with the reference
 
-/// The raw voxels, read as a trilinear field in long double; only axis-aligned grids.
+/// The raw voxels as a trilinear field in long double, for axis-aligned grids.
 class Trilinear {
  public:
   Trilinear(const field::VectorGrid& grid, bool line) : line_(line) {
@@ -36,11 +36,11 @@ class Trilinear {
   }
   Real3 direction(const Real3& p, const Real3& last) const {
     const Real at[3] = {(p.x - origin_.x) / voxel_.x, (p.y - origin_.y) / voxel_.y, (p.z - origin_.z) / voxel_.z};
-    const int most[3] = {size_.x - 2, size_.y - 2, size_.z - 2};
+    const int maximum[3] = {size_.x - 2, size_.y - 2, size_.z - 2};
     int b[3];
     Real f[3];
     for (int a = 0; a < 3; ++a) {
-      b[a] = std::clamp(static_cast<int>(std::floor(at[a])), 0, most[a]);
+      b[a] = std::clamp(static_cast<int>(std::floor(at[a])), 0, maximum[a]);
       f[a] = at[a] - b[a];
     }
     Real3 sum;
@@ -55,7 +55,7 @@ class Trilinear {
     }
     return line_ ? leading(dyads, last) : unit_direction(sum);
   }
-  /// Power iteration from the last direction until it stands still.
+  /// Power iteration from the last direction until convergence.
   static Real3 leading(const Real (&m)[3][3], const Real3& last) {
     Real3 u = unit_direction(last);
     for (int i = 0; i < 5000; ++i) {
@@ -75,7 +75,7 @@ class Trilinear {
   bool line_;
 };
 
-/// The streamline of the reference, as stations along it from which a foot is found by going on exactly.
+/// The reference streamline as stations, from which the closest point is found by exact integration.
 class Reference {
  public:
   Reference(const Trilinear& field, const Vec3& seed, const Vec3& u_seed, double back, double ahead, double length, Real tolerance)
@@ -130,7 +130,7 @@ struct Quantiles {
 };
 
 struct Data {
-  std::string file, vector_grid, scalar_grid, more;  ///< more: keys of the streamline
+  std::string file, vector_grid, scalar_grid, more;  ///< `more`: further keys of the streamline
   flow::Flow flow;
   Vec3 seed{0.0};
 };
@@ -187,10 +187,10 @@ void explore(const Data& data) {
   const Reference reference(sampler, data.seed, u_seed, std::max(first, lo), std::min(last, hi), domain, 1e-12L * domain);
   const Reference truth(sampler, data.seed, u_seed, std::max(first, lo), std::min(last, hi), domain, 1e-17L * domain);
 
-  // on line at the default tolerance (1e-9 L a step), errors add up over the sixty thousand steps
+  // online at the default tolerance (1e-9 L per step), errors accumulate over 60 000 steps
   struct Follow {
     std::string name, keys;
-    double goal;  ///< of the distance from the reference, in L
+    double goal;  ///< bound of the distance from the reference, in L
   };
   for (const Follow& follow : {Follow{"selected", "", 1e-10}, Follow{"online", R"(, "follow": "online")", 3e-6},
                                Follow{"online, tolerance 1e-12", R"(, "follow": "online", "tolerance": 1e-12)", 5e-8}})
@@ -231,7 +231,7 @@ void explore(const Data& data) {
       std::printf("    isosurface: OK %d FREE %d RELEASED %d CRITICAL %d BOUNDARY %d NO_SURFACE %d\n", count[0], count[1], count[2],
                   count[4], count[5], count[6]);
       EXPECT_EQ(budget[0], 0) << who;
-      // on a rough surface that is pressed beyond max_force the proxy may lag: the limit of its travel
+      // on a rough surface pressed beyond max_force the proxy may lag by its step limit
       EXPECT_LE(budget[1], kTicks / 20) << who;
       EXPECT_LE(residual.at(1), 1e-9) << who;
       if (!side.empty()) continue;
@@ -241,22 +241,22 @@ void explore(const Data& data) {
     }
 }
 
-/// Of a lattice of seeds the one with the longest line (at most 3 L each way): the hand needs room.
+/// The seed of a lattice with the longest line (at most 3 L in each direction).
 Vec3 seed_of_longest(flow::Flow flow, const field::VectorGrid& grid) {
   flow.field = &grid;
   const field::Box& box = grid.index_box();
   flow::TraceOptions options;
   options.length = 3 * grid.domain_length();
   Vec3 best(0.0);
-  double most = -1;
+  double maximum = -1;
   for (int z = 1; z < 6; ++z)
     for (int y = 1; y < 6; ++y)
       for (int x = 1; x < 6; ++x) {
         const Vec3 part(x / 6.0 + 0.01, y / 6.0 + 0.02, z / 6.0 + 0.015);
         const Vec3 seed = grid.mapping().world_from_index(box.lo + part * (box.hi - box.lo));
         const auto curve = flow::trace(flow, seed, options);
-        if (!curve || (*curve)->is_closed() || (*curve)->period() <= most) continue;
-        most = (*curve)->period();
+        if (!curve || (*curve)->is_closed() || (*curve)->period() <= maximum) continue;
+        maximum = (*curve)->period();
         best = seed;
       }
   return best;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What the acceptance tests compare with, written without the product's numerics: long double vectors, a Runge-Kutta march,
-/// Dormand-Prince 5(4) with step control, and the closed forms.
+/// References of the acceptance tests, independent of the product's numerics: long double vectors, Runge-Kutta integration,
+/// Dormand-Prince 5(4) with step control, and closed forms.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ inline Real dot(const Real3& a, const Real3& b) { return a.x * b.x + a.y * b.y +
 inline Real length(const Real3& a) { return std::sqrt(dot(a, a)); }
 inline Real3 unit_direction(const Real3& a) { return (1 / length(a)) * a; }
 
-/// The classical method in `steps` steps of the rate `v`, over the time t.
+/// The classical Runge-Kutta method with rate `v` over time t in `steps` steps.
 template <class Rate>
 Real3 integrate_rk4(const Rate& v, Real3 p, Real t, int steps) {
   const Real h = t / steps;
@@ -41,8 +41,8 @@ Real3 integrate_rk4(const Rate& v, Real3 p, Real t, int steps) {
   return p;
 }
 
-/// Dormand-Prince 5(4) from p over the signed length s of the unit rate u(p, last direction); the error of a step is at most
-/// `tolerance`. Returns the end; `last` is the direction there.
+/// Dormand-Prince 5(4) from p over the signed length s of the unit rate u(p, last direction), with an error of at most `tolerance` per
+/// step. Returns the end; `last` is the direction there.
 template <class Rate>
 Real3 dormand_prince(const Rate& u, Real3 p, Real s, Real tolerance, Real3& last, Real& h) {
   const Real sign = s < 0 ? -1 : 1;
@@ -85,8 +85,8 @@ inline Real3 abc_flow(const Real3& p) {
   return {a * std::sin(p.z) + c * std::cos(p.y), b * std::sin(p.x) + a * std::cos(p.z), c * std::sin(p.y) + b * std::cos(p.x)};
 }
 
-/// Distance of p from the closed streamline of Hill's vortex through (r0, 0, 0), within the plane y = 0 and across it:
-/// the level set of the stream function r^2 (1 - r^2 - z^2).
+/// Distance of p from the closed streamline of Hill's vortex through (r0, 0, 0), within the plane y = 0 and perpendicular to it, by the
+/// level set of the stream function r^2 (1 - r^2 - z^2).
 inline double hill_streamline_distance(const Vec3& at, Real r0) {
   const Real3 p(at);
   const auto psi = [](Real r, Real z) { return r * r * (1 - r * r - z * z); };
@@ -100,7 +100,7 @@ inline double hill_streamline_distance(const Vec3& at, Real r0) {
   return static_cast<double>(std::sqrt((r - r_at) * (r - r_at) + (z - p.z) * (z - p.z) + p.y * p.y));
 }
 
-/// Prints a figure that was attained and keeps it in the test's record.
+/// Prints a measured figure and records it as a property of the test.
 inline void record_result(const std::string& what, double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.3g", value);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Acceptance numbers 5, 6, 7 and 10: the projector onto a streamline, on line and selected, and what happens at critical points.
+// Acceptance tests of the projector onto a streamline, online and selected, and of critical points.
 #include "haptics/constraints/streamline/online_streamline.h"
 #include "haptics/constraints/streamline/selected_streamline.h"
 #include "tests/acceptance/chain_fixture.h"
@@ -7,7 +7,7 @@
 #include "tests/engine/geometry/flow/lambda_field.h"
 
 namespace catena::acceptance {
-namespace streamline_numbers_test {
+namespace streamline_acceptance_test {
 
 using catena::test::analytic_vector;
 using catena::test::lambda_field;
@@ -33,7 +33,7 @@ constexpr double kFarness[] = {0.2, 0.35, 0.5, 0.7, 0.9, 1.0, 1.1, 1.5, 1.9, 2.1
 
 TEST(StreamlineProjection, NoDistanceIncreaseFromRandomStarts) {
   Random random(5);
-  int increases = 0, under_way = 0, runs = 0, most = 0;
+  int increases = 0, under_way = 0, runs = 0, max_evaluations = 0;
   for (const char* name : {"circle", "abc", "hill", "saddle", "helix", "rankine", "lamb-oseen", "node"}) {
     const auto field = analytic_vector(name);
     for (int i = 0; i < 500; ++i) {
@@ -45,7 +45,7 @@ TEST(StreamlineProjection, NoDistanceIncreaseFromRandomStarts) {
         const double now = norm(probe - rig.state.proxy);
         increases += now > distance * (1 + 1e-15);
         distance = now;
-        most = std::max(most, rig.state.evaluations);
+        max_evaluations = std::max(max_evaluations, rig.state.evaluations);
       }
       ++runs;
       under_way += rig.state.status == LinkStatus::budget;
@@ -53,17 +53,17 @@ TEST(StreamlineProjection, NoDistanceIncreaseFromRandomStarts) {
   }
   record_result("starts", runs);
   record_result("distance increases", increases);
-  record_result("most evaluations a tick (cap 257)", most);
+  record_result("most evaluations a tick (cap 257)", max_evaluations);
   record_result("starts still under way after 8 ticks", under_way);
   EXPECT_EQ(increases, 0);
-  EXPECT_LE(most, kMaxEvaluations);
+  EXPECT_LE(max_evaluations, kMaxEvaluations);
   EXPECT_LE(under_way, runs / 100);
 }
 
-TEST(StreamlineProjection, CircleFromTwentyDegreesOff) {
-  // each iteration is one march step; its field fetches: Dormand-Prince 6, and 6 more where it lands on the root
+TEST(StreamlineProjection, ACircleFromTwentyDegreesOff) {
+  // each iteration is one integration step of 6 samples (Dormand-Prince), and 6 more where it lands on the root
   double worst = 0, worst_place = 0;
-  int most = 0, most_paper = 0;
+  int max_evaluations = 0, most_paper = 0;
   for (const double d : kFarness) {
     Rig rig = online(analytic_vector("circle"), {1, 0, 0}, Method::dp54);
     const Vec3 probe = on_circle(d, 20);
@@ -72,7 +72,7 @@ TEST(StreamlineProjection, CircleFromTwentyDegreesOff) {
     const Vec3 e = probe - rig.state.proxy;
     worst = std::max(worst, std::fabs(dot(direction(Vec3(-rig.state.proxy.y, rig.state.proxy.x, 0)), e)));
     worst_place = std::max(worst_place, norm(rig.state.proxy - on_circle(1, 20)));
-    most = std::max(most, rig.state.evaluations);
+    max_evaluations = std::max(max_evaluations, rig.state.evaluations);
 
     Rig paper = online(analytic_vector("circle"), {1, 0, 0});
     paper.tick(probe);
@@ -82,16 +82,16 @@ TEST(StreamlineProjection, CircleFromTwentyDegreesOff) {
   }
   record_result("tangential residual, d = 0.2-6 R, one tick", worst);
   record_result("distance from the closed form / R, DP5(4)", worst_place);
-  record_result("evaluations, DP5(4)", most);
+  record_result("evaluations, DP5(4)", max_evaluations);
   record_result("evaluations, RKF3(4) at tolerance 1e-9", most_paper);
   EXPECT_LE(worst, 1e-9);
   EXPECT_LE(worst_place, 1e-7);
-  EXPECT_LE(most, 8 * 2 * 6);
+  EXPECT_LE(max_evaluations, 8 * 2 * 6);
   EXPECT_LE(most_paper, kMaxEvaluations);
 }
 
-TEST(StreamlineProjection, TypicalEvaluationsATick) {
-  // a hand of 0.2 L/s on and off the line, then one eight march steps away in every tick
+TEST(StreamlineProjection, TypicalEvaluationsPerTick) {
+  // a hand at 0.2 L/s on and off the line, then one that is eight integration steps away in every tick
   for (const auto& [farness, method] : {std::pair{1, Method::rkf34}, std::pair{8, Method::rkf34}, std::pair{1, Method::dp54}}) {
     Quantiles spread;
     for (const char* name : {"circle", "abc", "hill", "helix"}) {
@@ -116,7 +116,7 @@ TEST(StreamlineProjection, TypicalEvaluationsATick) {
   }
 }
 
-/// Eq. 3 as printed on the circle, with the exact advection function: f_V(p, dt) turns p by the angle dt.
+/// Eq. 3 as printed on the circle, with the exact advection function: f_V(p, dt) rotates p by the angle dt.
 int iterations_as_printed(const Vec3& probe, double goal) {
   Vec3 p(1, 0, 0);
   for (int j = 0; j < 64; ++j) {
@@ -131,9 +131,9 @@ int iterations_as_printed(const Vec3& probe, double goal) {
 TEST(PublishedEquation3, Equation3AsPrintedFailsAtTwoAndAHalfRadii) {
   EXPECT_EQ(iterations_as_printed(on_circle(2.5, 20), 1e-9), -1);
   EXPECT_EQ(iterations_as_printed(on_circle(4.0, 20), 1e-9), -1);
-  // the control's own control: where theory says that it converges, it does
+  // check of the control: it converges where the theory predicts it
   for (const double d : {0.5, 0.9, 1.2, 1.6}) EXPECT_GT(iterations_as_printed(on_circle(d, 20), 1e-9), 0) << d;
-  // and from random starts in [-4R, 4R]^2 it is as bad as was measured: 16 % converge, 37 % end further away
+  // from random starts in [-4R, 4R]^2 16 % converge and 37 % end further away
   Random random(6);
   int converged = 0;
   for (int i = 0; i < 4000; ++i) converged += iterations_as_printed({random.uniform(-4, 4), random.uniform(-4, 4), 0}, 1e-9) >= 0;
@@ -146,9 +146,9 @@ TEST(PublishedEquation3, Equation3AsPrintedFailsAtTwoAndAHalfRadii) {
   EXPECT_LE(norm(rig.state.proxy - on_circle(1, 20)), 1e-7);
 }
 
-// ---- 7: the selected line ----
+// ---- selected lines ----
 
-/// Twenty sweeps over the curve, out and back: the same proxy at the same place of the hand, bit for bit.
+/// Twenty forward and backward sweeps over the curve: the same proxy at the same probe, bit for bit.
 struct Sweeps {
   double hysteresis = 0;
   int knots = 0;
@@ -174,7 +174,7 @@ Sweeps sweep(const flow::CurvePtr& curve, double from, double to, double step, c
   return out;
 }
 
-TEST(SelectedStreamline, SelectedLineAgainstClosedForms) {
+TEST(SelectedStreamline, MatchesClosedForms) {
   const auto circle = flow::trace({analytic_vector("circle").get()}, {0.9, 0, 0});
   double error = 0;
   for (int i = 0; i < 20000; ++i) error = std::max(error, std::fabs(norm((*circle)->position(6 * i / 20000.0)) - 0.9));
@@ -210,7 +210,7 @@ TEST(SelectedStreamline, SelectedLineAgainstClosedForms) {
   EXPECT_LE(error / 4, 1e-9);
 }
 
-TEST(SelectedStreamline, NoHysteresisAndFewKnotsATick) {
+TEST(SelectedStreamline, HasNoHysteresisAndVisitsFewKnotsPerTick) {
   struct Case {
     const char* name;
     field::VectorFieldPtr field;
@@ -237,7 +237,7 @@ TEST(SelectedStreamline, NoHysteresisAndFewKnotsATick) {
   }
 }
 
-// ---- 10: critical points ----
+// ---- critical points ----
 
 struct Zero {
   std::string name;
@@ -257,7 +257,7 @@ std::vector<Zero> zeros_with_straight_ways() {
   return out;
 }
 
-TEST(CriticalPoints, StraightWaysStopOnTheZeroAndLetGo) {
+TEST(CriticalPoints, StraightPathsStopOnTheZeroAndLeaveIt) {
   double worst = 0, back = 0;
   int slowest = 0;
   for (const Zero& zero : zeros_with_straight_ways())
@@ -275,7 +275,7 @@ TEST(CriticalPoints, StraightWaysStopOnTheZeroAndLetGo) {
       rig.tick(-0.2 * zero.seed);
       EXPECT_TRUE(bitwise_equal(held, rig.state.proxy)) << zero.name;
       EXPECT_EQ(rig.state.status, LinkStatus::critical) << zero.name;
-      // the hand turns back
+      // the hand reverses
       for (int k = 0; k < 4; ++k) rig.tick(0.4 * zero.seed);
       EXPECT_EQ(rig.state.status, LinkStatus::ok) << zero.name << " " << flow::to_string(method);
       back = std::max(back, norm(rig.state.proxy - 0.4 * zero.seed) / 4);
@@ -288,7 +288,7 @@ TEST(CriticalPoints, StraightWaysStopOnTheZeroAndLetGo) {
   EXPECT_LE(back, 1e-6);
 }
 
-TEST(CriticalPoints, SelectedLinesEndOnTheZeroToo) {
+TEST(CriticalPoints, SelectedLinesEndOnTheZero) {
   for (const Zero& zero : zeros_with_straight_ways()) {
     if (zero.name == "slow zero") continue;
     const auto curve = flow::trace({zero.field.get()}, zero.seed);
@@ -304,8 +304,8 @@ TEST(CriticalPoints, SelectedLinesEndOnTheZeroToo) {
 }
 
 TEST(CriticalPoints, CurvedManifoldsAreReachedWhenDragged) {
-  // x = bend y^2 / 3 is the stable manifold of the saddle at 0; the hand goes 0.005 L a tick
-  // (a line that has drifted by eps turns at sqrt(eps) from the zero: the third order holds up to a bend of 1.5 so, the fifth further)
+  // x = bend y^2 / 3 is the stable manifold of the saddle at 0; the hand moves 0.005 L per tick
+  // (a line that has drifted by eps turns at sqrt(eps) from the zero: third order suffices up to a bend of 1.5, fifth order further)
   double worst = 0, back = 0;
   for (const double bend : {-1.5, -0.7, 0.3, 1.0, 2.0})
     for (const Method method : {Method::rkf34, Method::dp54}) {
@@ -326,5 +326,5 @@ TEST(CriticalPoints, CurvedManifoldsAreReachedWhenDragged) {
   EXPECT_LE(back, 1e-6);
 }
 
-}  // namespace streamline_numbers_test
+}  // namespace streamline_acceptance_test
 }  // namespace catena::acceptance

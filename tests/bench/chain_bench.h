@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the benchmarks of the tick share: fields sampled on 256^3, links from JSON, a hand's path, quantiles as counters.
+/// Shared helpers of the tick's benchmarks: fields sampled on 256^3, links from JSON, a hand's path, quantiles as counters.
 #pragma once
 #include <benchmark/benchmark.h>
 
@@ -23,7 +23,7 @@ namespace catena::bench {
 
 using namespace catena::haptics;
 
-/// An analytic field on 256 nodes an axis of the box -half..half, made once.
+/// An analytic field with 256 nodes per axis on the box -half..half, sampled once.
 inline const field::AnyField& sampled_grid_256(const std::string& name, double half = 2) {
   static std::map<std::pair<std::string, double>, field::AnyField> made;
   field::AnyField& grid = made[{name, half}];
@@ -35,7 +35,7 @@ inline const field::AnyField& sampled_grid_256(const std::string& name, double h
   return grid;
 }
 
-/// `hill_half`: the box of Hill's vortex; all others fill -2..2.
+/// `hill_half`: half size of the box of Hill's vortex; all other fields are on -2..2.
 inline BuildContext make_context_256(double hill_half = 1.2) {
   BuildContext context;
   context.field = [=](const json::Node&, const std::string& name) -> Result<field::AnyField> {
@@ -56,7 +56,7 @@ inline Link make_link(const json::Node& node, const BuildContext& context) {
 
 inline Link make_link(const std::string& text) { return make_link(*json::parse(text, "bench"), make_context_256()); }
 
-/// A hand at about 0.2 units/s with tremor, for 20 s at 1 kHz, around `centre`.
+/// A hand with tremor at about 0.2 units/s around `centre`, for 20 s at 1 kHz.
 inline std::vector<ProbeSample> probe_path(const Vec3& centre = Vec3(0.6, 0, 0), double radius = 0.2) {
   std::vector<ProbeSample> path;
   for (int k = 0; k < 20000; ++k) {
@@ -69,15 +69,15 @@ inline std::vector<ProbeSample> probe_path(const Vec3& centre = Vec3(0.6, 0, 0),
   return path;
 }
 
-/// Ticks of the program along the path. Counters, in nanoseconds and in loads of a chase (chase.h): quantiles of a tick's time, the worst
-/// of five replays, with what the machine does beside it; "alone_": of the least time of each tick in the five; evaluations a link.
+/// Ticks of the program along the path. Counters in nanoseconds and in loads (pointer_chase.h): quantiles of the tick's time, the maximum
+/// of five replays, including other load; "alone_": quantiles of the minimum of each tick over the five; evaluations per link.
 inline void run_chain(benchmark::State& state, const HapticProgram& program, const std::vector<ProbeSample>& path = probe_path()) {
   const double load_ns = load_latency_ns();
   state.counters["T_ns"] = load_ns;
   constexpr int kReplays = 5;
   constexpr std::pair<const char*, double> kQuantiles[] = {{"p50", 0.5}, {"p99", 0.99}, {"p999", 0.999}, {"max", 1.0}};
   std::map<std::string, double> worst;
-  std::vector<double> least(path.size(), std::numeric_limits<double>::infinity()), times(path.size());
+  std::vector<double> fastest(path.size(), std::numeric_limits<double>::infinity()), times(path.size());
   for (auto _ : state)
     for (int k = 0; k < kReplays; ++k) {
       auto chain = std::make_unique<ChainState>();
@@ -87,11 +87,11 @@ inline void run_chain(benchmark::State& state, const HapticProgram& program, con
         const std::int64_t start = now_ns();
         tick(program, path[i], *chain, *scratch, out);
         times[i] = static_cast<double>(now_ns() - start);
-        least[i] = std::min(least[i], times[i]);
+        fastest[i] = std::min(fastest[i], times[i]);
       }
       for (const auto& [name, part] : kQuantiles) worst[name] = std::max(worst[name], quantile(times, part));
     }
-  for (const auto& [name, part] : kQuantiles) worst[std::string("alone_") + name] = quantile(least, part);
+  for (const auto& [name, part] : kQuantiles) worst[std::string("alone_") + name] = quantile(fastest, part);
   for (const auto& [name, ns] : worst) {
     state.counters[name + "_ns"] = ns;
     state.counters[name + "_T"] = ns / load_ns;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Every constraint alone, one benchmark each, on 256^3 grids where it feels a field: nanoseconds a tick and evaluations against
-/// the budget of 257, as counters. A type of the registry without a link here is said at the start.
+/// Every constraint alone, one benchmark each, on 256^3 grids for constraints of fields: nanoseconds per tick, and evaluations against
+/// the budget of 257, as counters. Registered types without a link here are listed at the start.
 #include <cstdio>
 
 #include "tests/bench/chain_bench.h"

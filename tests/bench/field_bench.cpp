@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One fetch: value and gradient, of linear and of cubic cells, on a haptic walk (steps of 0.05 voxel) and at random places of a 256^3 grid.
+// One sample of value and gradient, linear and cubic, on a haptic walk (steps of 0.05 voxel) and at random positions of a 256^3 grid.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

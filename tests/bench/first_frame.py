@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""First frames and GPU memory of `catena render`, each in a process of its own: with the driver's cache of compiled shaders empty (cold)
-and filled (warm), wall times in milliseconds, and GPU bytes a voxel of the grid's box beside the NanoVDB's bytes on the host.
-needs: nothing beside python3; a driver that honours MESA_SHADER_CACHE_DIR (others: warm times only mean something)
-usage: first_frame.py CATENA [N [ROUNDS]]            (N: grid, default 128; ROUNDS: processes a row, default 3, medians)
-Fields: noise (dense), fog (a few balls: about 5 % of the voxels), mask (the left half of the noise is not a number). 512x384, one volume.
-pipelines_ms: first_frame_ms less loading and mirroring: device, pipelines, the frame itself. Prints one JSON line each."""
+"""First frames and GPU memory of `catena render`, each in a new process: with an empty (cold) and a filled (warm) shader cache of the
+driver, wall times in milliseconds, and GPU bytes per voxel of the grid's box compared with the NanoVDB's bytes on the host.
+needs: python3 only; a driver that honours MESA_SHADER_CACHE_DIR (with others only warm times are meaningful)
+usage: first_frame.py CATENA [N [ROUNDS]]            (N: grid, default 128; ROUNDS: processes per row, default 3, medians)
+Fields: noise (dense), fog (a few balls, about 5 % of the voxels), mask (the left half of the noise is NaN). 512x384, one volume.
+pipelines_ms: first_frame_ms without loading and upload: device, pipelines, the frame itself. Prints one JSON line each."""
 import array, json, math, os, statistics, subprocess, sys, tempfile
 
 catena = os.path.abspath(sys.argv[1])
@@ -48,7 +48,7 @@ def run(folder, scene, quality, cache):
 
 
 with tempfile.TemporaryDirectory() as folder:
-    # what a picture takes that holds next to no voxels
+    # baseline: an image with almost no voxels
     small = {"fields": {"d": {"analytic": "tanh", "resolution": 5}}, "volumes": [{"field": "d", "color": [[0, 1, 1, 1]], "opacity": [[0, 0.1]]}]}
     empty = {q: run(folder, small, q, os.path.join(folder, "cache"))["gpu_bytes"] for q in ("step=1", "balanced", "reference")}
     for kind in ("noise", "fog", "mask"):

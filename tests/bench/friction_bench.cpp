@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The anisotropic friction mode (three links) on 256^3 grids, and each of its links alone: quantiles of a tick and of the
-/// evaluations a link as counters, beside the hand-written floor, one value + gradient fetch on the same walk.
+/// The preset anisotropic_friction (three links) on 256^3 grids, and each of its links alone: quantiles of the tick and of the
+/// evaluations per link as counters, compared with a lower bound: one sample of value and gradient on the same walk.
 #include "haptics/constraints/presets/mode_presets.h"
 #include "tests/bench/chain_bench.h"
 
@@ -13,12 +13,12 @@ struct Data {
   const char* surface;
   double level;
   const char* field;
-  Vec3 centre;    ///< of the hand's path
-  double radius;  ///< of it
+  Vec3 centre;    ///< centre of the hand's path
+  double radius;  ///< radius of the hand's path
 };
 const Data kSphere{"sphere", 1, "circle", {0.75, 0, 0.6}, 0.3}, kTorus{"torus", 0.4, "hill", {1, 0, 0.4}, 0.3};
 
-/// The mode's links, or one of them.
+/// The preset's links, or one of them.
 HapticProgram program_of(const Data& data, int only = -1) {
   const BuildContext context = make_context_256(2);
   char text[200];
@@ -34,7 +34,7 @@ HapticProgram program_of(const Data& data, int only = -1) {
   return program;
 }
 
-/// A hand at about 0.2 units/s with tremor, in and out of the surface.
+/// A hand with tremor at about 0.2 units/s, in and out of the surface.
 std::vector<ProbeSample> path_of(const Data& data) {
   std::vector<ProbeSample> path;
   for (int k = 0; k < 20000; ++k) {
@@ -60,7 +60,7 @@ BENCHMARK(IsosurfaceAloneTorus256)->Unit(benchmark::kMillisecond)->Iterations(1)
 BENCHMARK(IsosurfaceAndDirectionTorusHill256)->Unit(benchmark::kMillisecond)->Iterations(1);
 BENCHMARK(IsosurfaceAndModulatedTorusHill256)->Unit(benchmark::kMillisecond)->Iterations(1);
 
-/// The floor: what one fetch of value and gradient costs on the same walk.
+/// The lower bound: the cost of one sample of value and gradient on the same walk.
 void FetchOnTheWalkTorus256(benchmark::State& state) {
   const field::ScalarField& grid = *sampled_grid_256(kTorus.surface).scalar;
   const std::vector<ProbeSample> path = path_of(kTorus);

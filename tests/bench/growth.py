@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""How time and memory of one picture grow: the whole program, file to PNG, 1024x768, over grids of 64^3 to 512^3 (--most) and a sparse one
+"""Growth of time and memory of one image: the whole program, file to PNG, 1024x768, over grids of 64^3 to 512^3 (--most) and a sparse one
 of 1024^3, as a volume and as an isosurface, and over 1 to 100,000 streamlines (--lines).
 needs: python3-numpy
 usage: growth.py --catena PROGRAM -o DIR [--most N] [--sparse] [--lines N] [--rounds N]
-The fields are made in DIR: a ball with waves on it, float32; the sparse one is shells of spheres, imported as .vdb; the lines are of an ABC
-flow of 64^3, seeds at random, in the thin tubes of the default. One row a picture: the
-seconds of load, upload (mirror), choose, draw and write as --stats has them, wall and processor seconds of the whole program, its largest
-memory, and that by the grid's own bytes; the least of the rounds. Then the exponent by which each grew from row to row, in voxels or lines."""
+The fields are created in DIR: a ball with waves, float32; the sparse one has spherical shells, imported as .vdb; the lines are of an ABC
+flow on 64^3 with random seeds and default tubes. One row per image: seconds of load, upload, choose, draw and write as in --stats, wall
+and processor seconds of the whole program, its maximum memory, also divided by the grid's bytes; minima over the rounds. Then the growth
+exponent of each from row to row, in voxels or lines."""
 import argparse, json, math, os, subprocess, time
 import numpy as np
 
@@ -25,7 +25,7 @@ def waves(n, path):
 
 
 def shells(n, path):
-    """110 shells of five voxels; the rest is 0."""
+    """110 spherical shells, five voxels thick; 0 elsewhere."""
     if os.path.exists(path):
         return
     rng = np.random.default_rng(3)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// Times and depths of one opaque isosurface, on the fields and camera of the comparison with VTK (raw float32 volumes, 1024 x 768).
+/// Times and depths of one opaque isosurface, with the fields and the camera of the comparison with VTK (raw float32 volumes, 1024 x 768).
 ///   isosurface_table RAW N LEVEL [VIEWS [DEPTH_FILE [MODE]]]      MODE: exact (default) | r16f | draft      see isosurface_vs_vtk.py
-/// One JSON line: medians over an orbit of VIEWS pictures, wall and process CPU milliseconds (two threads: half of the CPU time is the
-/// ideal wall time); `level_ms`: what a new level costs once. DEPTH_FILE: view depth at azimuth 30, raw float32, row 0 at the top.
+/// One JSON line: medians over an orbit of VIEWS images, wall and process CPU milliseconds (two threads: half of the CPU time is the
+/// ideal wall time); `level_ms`: one-time cost of a new level. DEPTH_FILE: view depth at azimuth 30, raw float32, row 0 at the top.
 #include <fmt/core.h>
 #include <sys/resource.h>
 
@@ -31,7 +31,7 @@ double cpu_ms() {
   return ms(use.ru_utime) + ms(use.ru_stime);
 }
 
-/// VTK's camera of the comparison.
+/// The camera of the comparison, as in VTK.
 render::View view_at(double azimuth_deg, int n) {
   const double a = azimuth_deg * kPi / 180, e = 20 * kPi / 180, centre = (n - 1) / 2.0, distance = 2.7 * n;
   render::View view;

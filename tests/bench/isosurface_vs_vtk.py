@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""An opaque isosurface beside VTK's isosurface mode (vtkGPUVolumeRayCastMapper, sample distance 0.5 voxel), in one run on one machine, in
-alternating rounds: processor and wall time a picture, and the errors of both depths against an independent intersection (numpy,
+"""An opaque isosurface compared with VTK's isosurface mode (vtkGPUVolumeRayCastMapper, sample distance 0.5 voxel), in one run on one
+machine, in alternating rounds: processor and wall time per image, and depth errors of both against an independent intersection (numpy,
 double precision: the trilinear field every 0.05 voxel along the pixel's ray, bisection of the first change of sign; see `reference`).
-As context: vtkFlyingEdges3D once and its triangles drawn (depth errors of a triangle mesh are not taken).
+For context: vtkFlyingEdges3D once, and drawing of its triangles (without depth errors).
 needs: python3-vtk9 numpy, an X display (xvfb-run -a, LIBGL_ALWAYS_SOFTWARE=1); fields of raw float32
 usage: isosurface_vs_vtk.py ISOSURFACE_TABLE RAW N LEVEL [ROUNDS [VIEWS]]
 1024x768, vertical field of view 30 degrees, an orbit of VIEWS at elevation 20; errors at azimuth 30 over every 23rd pixel, in voxels
@@ -88,7 +88,7 @@ def timed(draw):
 
 
 def rays():
-    """Pixels (rows, columns) and their rays: eye, direction of one unit of view depth, where they enter and leave the grid."""
+    """Pixels (rows, columns) and their rays: eye, direction per unit of view depth, entry and exit of the grid."""
     a, e = np.radians(30), np.radians(20)
     towards = np.array([np.sin(a) * np.cos(e), -np.cos(a) * np.cos(e), np.sin(e)])
     right = np.cross([0, 0, 1], towards); right /= np.linalg.norm(right)
@@ -113,7 +113,7 @@ def value(p):
 
 
 def first_crossings(o, d, enter, leave, voxels):
-    """View depths of the first changes of sign between samples `voxels` apart; infinite where there is none."""
+    """View depths of the first sign changes between samples `voxels` apart; infinite if there is none."""
     depth = np.full(len(d), np.inf)
     live = np.flatnonzero(enter < leave)
     at, step = enter[live], voxels / np.linalg.norm(d[live], axis=1)
@@ -135,8 +135,8 @@ def first_crossings(o, d, enter, leave, voxels):
 
 
 def reference(ours):
-    """The depths of the chosen pixels. Where ours is nearer, or ours alone, the samples may have stepped over two crossings: there the
-    last half voxel before our depth is asked again every 0.0005 voxel. What is not found so stays an error of ours."""
+    """Reference depths of the chosen pixels. If ours is nearer, or only ours has a hit, the samples may have missed two crossings: then the
+    last half voxel before our depth is sampled every 0.0005 voxel. A crossing that is still not found counts as our error."""
     rows, columns, o, d, enter, leave = rays()
     depth = first_crossings(o, d, enter, leave, .05)
     found = ours[rows, columns]

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Ten thousand streamlines as a picture: the whole program, file to PNG, beside VTK (vtkStreamTracer, vtkTubeFilter, a picture off screen).
+"""Ten thousand streamlines in an image: the whole program, file to PNG, compared with VTK (vtkStreamTracer, vtkTubeFilter, off screen).
 needs: python3-vtk9 numpy, an X server (xvfb-run -a)
 usage: many_streamlines.py CATENA FIELD.vti [LINES] [LENGTH] [RADIUS] [ROUNDS]
-FIELD.vti: point data, one vector array. Seeds: places drawn at random where it flows (a tenth of the largest speed). LENGTH: of each
-direction, world units (the box's diagonal); RADIUS of the tubes (0.0015 of it). VTK: RK45 with the same tolerance of a step (1e-7 of the
-box's longest edge), steps of cells, 2000 at most, as ParaView's defaults, and ParaView's own tolerance (1e-6); tubes of 6 sides. Processor seconds, wall
-seconds and the largest memory of each process, the median of ROUNDS (3) in turn."""
+FIELD.vti: point data, one vector array. Seeds: random positions with at least a tenth of the maximum speed. LENGTH: per direction, world
+units (default: the box's diagonal); RADIUS: of the tubes (default: 0.0015 of it). VTK: RK45 with the same tolerance per step (1e-7 of the
+box's longest edge), steps in cells, at most 2000, as in ParaView's defaults, and with ParaView's tolerance (1e-6); tubes of 6 sides.
+Processor seconds, wall seconds and maximum memory of each process, medians of ROUNDS (3) alternating rounds."""
 import json, os, statistics, subprocess, sys, tempfile, time
 
 PEER = r'''

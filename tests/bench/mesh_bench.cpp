@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The tick on a mesh of 100,820 triangles (a sphere of radius 1): a hand that slides inside it and taps it, at 0.2 and 1 unit/s.
+// The tick on a mesh of 100,820 triangles (a sphere of radius 1): a hand slides inside and taps, at 0.2 and 1 unit/s.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ const mesh::MeshPtr& sphere() {
   return made;
 }
 
-/// On a great spiral at `speed`, 0.01 to 0.04 deep; `tapping`: ten times a second out and in again.
+/// A path on a spiral at `speed`, at depths of 0.01 to 0.04; `tapping`: out and in ten times per second.
 std::vector<Vec3> hand(double speed, bool tapping) {
   std::vector<Vec3> path;
   for (int k = 0; k < 20000; ++k) {

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""One picture, whole programs: from the file to the PNG. Catena's default and each setting that it can name beside VTK's mapper.
+"""One image by whole programs, from file to PNG: Catena's default and each of its settings, compared with VTK's mapper.
 needs: python3-numpy, python3-scipy, python3-pil, python3-vtk9, xvfb-run; cases made by volume_cases.py
 usage: xvfb-run -a one_picture.py --catena PROGRAM --cases DIR [--rounds N] [--goal E] [--no-vtk] [--processor] [CASE ...]
-For each case: wall seconds (the least of the rounds, settings in turn) and the covered error (peers/picture_error.py) beside that program's
-own converged picture, which is kept in DIR for the next time. Of each program, settings finer than the first that meets half of the goal
-or takes twice as long as the default are left out. The last columns are the default's time by that of the cheapest setting that meets the goal, and VTK's by the
-default's: of VTK's settings the cheapest whose error is at most the default's, or the goal."""
+For each case: wall seconds (minimum over alternating rounds) and the error over covered pixels (baselines/picture_error.py) against that
+program's own converged image, which is cached in DIR. Of each program, settings finer than the first that meets half of the goal or takes
+twice the default's time are skipped. The last columns are the default's time divided by that of the cheapest setting that meets the goal,
+and VTK's time divided by the default's: the cheapest of VTK's settings with an error of at most the default's, or the goal."""
 import argparse, json, os, shutil, statistics, subprocess, sys, tempfile, time
 import numpy as np
 from PIL import Image
@@ -35,7 +35,7 @@ def scene_of(folder, name):
 
 
 def over(path, ground):
-    """A picture over an even grey, with its own alpha."""
+    """An image over uniform grey, with its own alpha."""
     picture = np.asarray(Image.open(path).convert("RGBA")).astype(float)
     alpha = picture[..., 3:]
     return np.concatenate([(picture[..., :3] * alpha / 255 + ground * (255 - alpha) / 255 + .5).astype(np.uint8), alpha.astype(np.uint8)], -1)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The time of one load that waits for the one before it: the unit, T, in which times of a tick are compared between machines.
+/// Latency T of a dependent load: the unit for comparing tick times between machines.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace catena::bench {
 
-/// A chase through 16 MB in lines of 64 bytes, every line once a round, in an order at random. ns a load: the median of nine rounds.
+/// A pointer chase through 16 MB in lines of 64 bytes, each line once per round in random order. Median ns per load of nine rounds.
 inline double load_latency_ns() {
   struct alignas(64) Line {
     std::uint32_t next;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// Isosurface links whose probe is thrown about at random (a device plugged in again, a mode changed): the time of a tick.
+/// Tick times of isosurface links with random jumps of the probe (as after a device's return or a change of mode).
 ///   random_probe_table [TICKS [NODES]]       default 1000000 256
-/// Each tick the probe is anywhere in a box 1.2 times the domain, in five identical replays: of each tick the least time, in us, so that
-/// what the machine does beside it does not count; of quantiles the worst of the five, in loads of a chase (chase.h). Then probes that are
-/// thrown ten times and held still: how many ticks pass until the link has come to rest (any status but BUDGET). One line a case: field,
-/// free side, p50 p99 p99.9 max in us, most evaluations, most work, share at rest within 20 ticks, the ticks that 99.9 % needed.
+/// In each tick the probe is at a random position in a box of 1.2 times the domain, in five identical replays. Times in us are the minimum
+/// of each tick over the replays, to exclude other load; quantiles in loads (pointer_chase.h) are the maximum of the five. Then probes
+/// jump ten times and rest: number of ticks until the link rests (any status but BUDGET). One line per case: field, free side, p50 p99
+/// p99.9 max in us, maximum evaluations, maximum work, fraction at rest within 20 ticks, 99.9 % quantile of the ticks to rest.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ struct Random {
   Vec3 box(double half) { return {in(-half, half), in(-half, half), in(-half, half)}; }
 };
 
-/// A number in -1..1 for a voxel.
+/// A pseudo-random number in -1..1 per voxel.
 double noise(int x, int y, int z) {
   std::uint64_t h = static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15ull ^ static_cast<std::uint64_t>(y) * 0xc2b2ae3d27d4eb4full ^
                     static_cast<std::uint64_t>(z) * 0x165667b19e3779f9ull;
@@ -43,7 +43,7 @@ double noise(int x, int y, int z) {
   return static_cast<double>((h ^ h >> 32) >> 11) * 0x1p-52 - 1;
 }
 
-/// Noise of a lattice of `step` voxels, interpolated by a cubic blend.
+/// Noise on a lattice of `step` voxels, interpolated by a cubic blend.
 double smooth_noise(double x, double y, double z, double step) {
   const double p[3] = {x / step, y / step, z / step};
   int base[3];
@@ -111,7 +111,7 @@ double quantile_of(std::vector<float>& values, double part) {
 
 void measure(const Case& c, const std::string& free, std::size_t ticks, double load_ns) {
   const auto constraint = link_on(c, free);
-  std::vector<float> least(ticks, 1e30f), times(ticks);
+  std::vector<float> fastest(ticks, 1e30f), times(ticks);
   double worst_999 = 0, worst = 0;
   int evaluations = 0, work = 0;
   for (int replay = 0; replay < kReplays; ++replay) {
@@ -122,7 +122,7 @@ void measure(const Case& c, const std::string& free, std::size_t ticks, double l
       const std::int64_t before = now_ns();
       link.tick(probe);
       times[i] = 1e-3f * static_cast<float>(now_ns() - before);
-      least[i] = std::min(least[i], times[i]);
+      fastest[i] = std::min(fastest[i], times[i]);
       evaluations = std::max(evaluations, link.state.evaluations);
       work = std::max(work, link.state.work());
     }
@@ -130,7 +130,7 @@ void measure(const Case& c, const std::string& free, std::size_t ticks, double l
     worst = std::max(worst, quantile_of(times, 1));
   }
 
-  // thrown, then held still
+  // jumps, then rests
   Random random{5};
   std::vector<float> rest;
   int within = 0;
@@ -154,7 +154,7 @@ void measure(const Case& c, const std::string& free, std::size_t ticks, double l
       "rest within 20: {:.4f}  99.9 "
       "%: {:.0f} "
       "ticks\n",
-      c.name, free, quantile_of(least, 0.5), quantile_of(least, 0.99), quantile_of(least, 0.999), quantile_of(least, 1),
+      c.name, free, quantile_of(fastest, 0.5), quantile_of(fastest, 0.99), quantile_of(fastest, 0.999), quantile_of(fastest, 1),
       1e3 * worst_999 / load_ns, 1e3 * worst / load_ns, evaluations, work, static_cast<double>(within) / kThrows, quantile_of(rest, 0.999));
   std::fflush(stdout);
 }

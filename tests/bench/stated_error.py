@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""The error that Catena states of one picture beside the true one, over random views of the cases of volume_cases.py.
+"""Catena's stated error of an image against the true one, over random views of the cases of volume_cases.py.
 needs: python3-numpy, python3-pil
 usage: stated_error.py --catena PROGRAM --cases DIR [--views N] [--goals 1,2,4] [--size WxH] [--seed S]
-Each view takes the next case and the next goal, and a direction, distance and field of view at random; its true error is that beside the
-same view by exact rays of a tenth of a voxel's step (picture_error.py: covered pixels; over black and over white, the larger). Of the
-views: how many state at least the truth, and the quantiles of the truth by what was stated."""
+Each view takes the next case and the next goal, and a random direction, distance and field of view; its true error is against exact
+rays with steps of a tenth of a voxel (picture_error.py: covered pixels; over black and over white, the larger). Prints the number of
+views whose stated error is at least the true one, and the quantiles of the true error divided by the stated one."""
 import argparse, json, os, re, subprocess, sys, tempfile
 import numpy as np
 

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Streamlines beside vtkStreamTracer, in one run on one machine: steps a second and the error of both against an independent
+"""Streamlines compared with vtkStreamTracer, in one run on one machine: steps per second and the error of both against an independent
 reference (numpy, double precision, RK4 in arc length at a hundredth of a voxel on the same trilinear field).
 needs: python3-vtk9 numpy
-usage: streamlines_vs_vtk.py CATENA [N] [ROUNDS]     the program, nodes an axis (128), alternating rounds (5)
-Times are CPU time of the tracing alone, without files; both programs' own: ours counts all threads. Errors are distances to the
-reference line, in voxels, over the first 50 voxels of 60 lines."""
+usage: streamlines_vs_vtk.py CATENA [N] [ROUNDS]     the program, nodes per axis (128), alternating rounds (5)
+Times are CPU times of the tracing alone, without files, as measured by each program; ours counts all threads. Errors are distances to
+the reference line, in voxels, over the first 50 voxels of 60 lines."""
 import json, os, statistics, subprocess, sys, tempfile, time
 import numpy as np
 import vtk
@@ -80,7 +80,7 @@ def lines_of(data):
 
 
 def voxels(data):
-    """The length of all lines together."""
+    """Total length of all lines."""
     xyz = numpy_support.vtk_to_numpy(data.GetPoints().GetData()).astype(float)
     offsets = numpy_support.vtk_to_numpy(data.GetLines().GetOffsetsArray())
     connectivity = numpy_support.vtk_to_numpy(data.GetLines().GetConnectivityArray())
@@ -140,7 +140,7 @@ cores = os.cpu_count()
 
 
 def rates(key):
-    """Steps and voxels of line a CPU second, times the cores that the tracer uses."""
+    """Steps and voxels of line per CPU second, times the number of cores of the tracer."""
     used = 1 if key[0] == "vtk" else cores
     return [used * statistics.median(t[i] / t[0] for t in rows[key]) for i in (2, 3)]
 

@@ -17,7 +17,7 @@ void run_with(benchmark::State& state, const char* curve) {
   run_chain(state, program);
 }
 
-/// With what a device adds: guard, ledger and controller at work.
+/// With the additional work for a device: force limiter, ledger and passivity controller.
 void with_limits(benchmark::State& state, const char* curve) {
   HapticProgram program;
   program.links = {make_link(curve), make_link(kSurface)};

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// Plans against the exhaustive sweep: for five fields and six targets each (error, error, time of the eye; the same of the hand) what a
-/// plan expects, what is observed, and what the chosen setting costs beside the cheapest of the sweep that is as exact.
+/// Plans against an exhaustive sweep: for five fields and six targets each (two errors and a time, for images and for haptics) the plan's
+/// expected and the observed values, and the cost of the chosen setting compared with the cheapest of the sweep that is as accurate.
 ///   tuning_table DIR > TABLE.csv       DIR: the folder of the data files (carotid_flow.vdb ...)
-/// The eye is observed on the whole picture against whole converged pictures, the hand along another motion than that of its curve; times
-/// of the chosen setting and of the sweep are of one run in turns. Columns: field, target, setting, stated error, observed error, their
-/// ratio, stated time, observed time, their ratio, cost by the cheapest's, cheapest; ms and 1/255, or us and world units.
+/// Images are compared with converged images over all pixels, haptics on another motion than that of the tuning curve; times of the chosen
+/// setting and of the sweep are from one run, alternating. Columns: field, target, setting, stated error, observed error, their ratio,
+/// stated time, observed time, their ratio, cost divided by the cheapest's, cheapest; ms and 1/255, or us and world units.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -42,7 +42,7 @@ void need(const Outcome& outcome) {
   if (!outcome) fmt::print(stderr, "{}\n", outcome.error().message), std::exit(1);
 }
 
-/// Somewhere in the flow, not near its end: of random places the one whose line is the longest.
+/// A seed away from the ends of the flow: of random positions the one with the longest line.
 Vec3 seed_in(const field::VectorField& flow) {
   std::mt19937 random(3);
   const Bounds box = flow.world_bounds();
@@ -87,7 +87,7 @@ void row(const std::string& field, const std::string& target, const std::string&
   std::fflush(stdout);
 }
 
-/// The chosen point and the cheapest of the sweep whose error is at most `error`; times of both in turns, as the last of the sweep.
+/// The chosen point and the cheapest of the sweep with an error of at most `error`; their times are measured alternating, after the sweep.
 int cheapest_within(const std::vector<tuning::Point>& sweep, double error) {
   int best = -1;
   for (std::size_t i = 0; i < sweep.size(); ++i)
@@ -111,7 +111,7 @@ std::vector<render::RenderSettings> all_settings(bool fast, bool shaded) {
   return all;
 }
 
-/// `coarser`: the same scene on coarser levels of its grid, which the sweep tries, too.
+/// `coarser`: the scene on coarser levels of its grid, which are part of the sweep.
 void eye_rows(const Case& c, scene::Scene& scene, std::vector<scene::Scene>& coarser) {
   const auto renderer = get(render::Renderer::create({}));
   const render::FramePacket packet = get(render::make_frame(scene, 400, 300));
@@ -119,18 +119,18 @@ void eye_rows(const Case& c, scene::Scene& scene, std::vector<scene::Scene>& coa
   clear.background[3] = 0;
   const tuning::ImageCurve curve =
       get(tuning::measure_image_curve(*renderer, packet, get(tuning::detect_quality_level_options(*renderer, packet)), [](double) {}));
-  const double told = tuning::min_resolvable_error(curve.curve);
+  const double resolvable = tuning::min_resolvable_error(curve.curve);
   need(renderer->draw(packet, render::balanced_settings()));
   const auto sweep = all_settings(renderer->can_draw_fast(packet), packet.volumes.front().is_shaded);
   const auto truth = get(tuning::render_image(*renderer, clear, render::converged_level(0.125)));
   std::vector<render::FramePacket> levels;
-  std::vector<std::unique_ptr<render::Renderer>> renderers;  // one a level, or each would make its mirrors again
+  std::vector<std::unique_ptr<render::Renderer>> renderers;  // one per level, so that grids are uploaded once
   for (scene::Scene& coarse : coarser) {
     levels.push_back(get(render::make_frame(coarse, 400, 300)));
     renderers.push_back(get(render::Renderer::create({})));
     levels.back().view = packet.view;
     const auto grid = levels.back().volumes.front().grid;
-    // opacities are those of the whole grid's voxels
+    // opacities refer to the voxels of the full grid
     levels.back().volumes = packet.volumes;
     levels.back().volumes.front().grid = grid;
   }
@@ -141,7 +141,7 @@ void eye_rows(const Case& c, scene::Scene& scene, std::vector<scene::Scene>& coa
         .rmse;
   };
   std::vector<scene::TuningTargets> wanted(3);
-  wanted[0].max_image_error = std::max(1.0, 1.5 * told);
+  wanted[0].max_image_error = std::max(1.0, 1.5 * resolvable);
   wanted[1].max_image_error = 4 * *wanted[0].max_image_error;
   double fast = 1e9, slow = 0;
   for (const tuning::Point& p : curve.curve.points) fast = std::min(fast, p.time.median), slow = std::max(slow, p.time.median);
@@ -165,11 +165,11 @@ void eye_rows(const Case& c, scene::Scene& scene, std::vector<scene::Scene>& coa
   need(tuning::time_points(times, repeats, 10, 5));
   for (std::size_t k = 0; k < plans.size(); ++k) {
     const tuning::Point& chosen = times.points[swept + k];
-    const double goal = std::max({told, wanted[k].max_image_error.value_or(chosen.error)});
+    const double goal = std::max({resolvable, wanted[k].max_image_error.value_or(chosen.error)});
     const int best = cheapest_within(times.points, goal);
     row(c.name,
         wanted[k].max_image_error
-            ? fmt::format("error={:.3g}{}", *wanted[k].max_image_error, *wanted[k].max_image_error < told ? " (floor)" : "")
+            ? fmt::format("error={:.3g}{}", *wanted[k].max_image_error, *wanted[k].max_image_error < resolvable ? " (floor)" : "")
             : fmt::format("time={:.3g}", *wanted[k].max_image_ms),
         chosen.setting, plans[k].expected_error(), chosen.error, plans[k].expected_ms(), chosen.time.median,
         best < 0 ? NAN : chosen.time.median / times.points[static_cast<std::size_t>(best)].time.median,
@@ -185,15 +185,15 @@ void hand_rows(const Case& c, scene::Scene scene) {
   const auto found = tuning::to_tick_curves(subject.scene, curves, 1000);
   if (!found || found->links.empty()) return;
   const tuning::LinkCurve& link = found->links.front();
-  const double told = tuning::min_resolvable_error(link.curve) * link.length;
+  const double resolvable = tuning::min_resolvable_error(link.curve) * link.length;
   std::vector<scene::TuningTargets> wanted(3);
-  wanted[0].max_proxy_error = std::max(1e-4 * link.length, 1.5 * told);
-  wanted[1].max_proxy_error = std::max(1e-9 * link.length, 1.5 * told);
+  wanted[0].max_proxy_error = std::max(1e-4 * link.length, 1.5 * resolvable);
+  wanted[1].max_proxy_error = std::max(1e-9 * link.length, 1.5 * resolvable);
   scene::TuningTargets quickest;
   quickest.max_tick_us = 1e-9;
   const tuning::TickTuning cheap(*found, quickest);
   wanted[2].max_tick_us = 1.6 * cheap.expected_us();
-  // another motion: slower, and a little beside
+  // another motion: slower, with an offset
   const tuning::NamedLink own = tuning::find_links(subject.scene, "streamline").front();
   const auto along = tuning::motion_along_streamline(subject.scene, own, 1);
   tuning::ProbeMotion motion = *along;
@@ -224,7 +224,7 @@ void hand_rows(const Case& c, scene::Scene scene) {
   };
   using flow::Method;
   add(*subject.program, "selected");
-  // not fixed steps, which no plan chooses: their error grows with the hand's speed and way
+  // excludes fixed steps, which no plan chooses: their error grows with the hand's speed and path
   for (const Method m : {Method::rkf34, Method::dp54})
     for (double digits = 2; digits <= 13; digits += 0.5)
       add(online(m, std::pow(10.0, -digits)), fmt::format("{} 1e-{}", flow::to_string(m), digits));
@@ -241,7 +241,7 @@ void hand_rows(const Case& c, scene::Scene scene) {
   need(tuning::time_points(times, repeats, 5, 15));
   for (std::size_t k = 0; k < plans.size(); ++k) {
     const tuning::Point& chosen = times.points[swept + k];
-    const double goal = std::max(told, wanted[k].max_proxy_error.value_or(chosen.error));
+    const double goal = std::max(resolvable, wanted[k].max_proxy_error.value_or(chosen.error));
     const int best = cheapest_within(times.points, goal);
     row(c.name,
         wanted[k].max_proxy_error ? fmt::format("max_proxy_error={:.3g}", *wanted[k].max_proxy_error)

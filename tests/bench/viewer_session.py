@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""A person at the window, for so many seconds, by real X events: orbits, zooms, takes the hand over the data, presses its button, changes
-views, shows and hides the panels. Prints the memory of the process every ten seconds, then the histograms of pictures and ticks.
+"""A simulated user at the window for SECONDS, by real X events: orbits, zooms, moves the cursor over the data, presses its button, changes
+views, shows and hides the panels. Prints the memory of the process every ten seconds, then the histograms of images and ticks.
 
     xvfb-run -a -s '-screen 0 1280x900x24' python3 tests/bench/viewer_session.py build/release/catena SCENE [SECONDS]
 
-Needs xdotool. The first line of memory counts from the tenth second on: fields, shaders and pictures have been made by then."""
+Needs xdotool. Memory is compared from the tenth second on, when fields, shaders and images have been created."""
 import json
 import random
 import subprocess
@@ -29,7 +29,7 @@ def resident_mb(pid):
 
 
 def somewhere(rng):
-    """On the picture, beside the panels."""
+    """A random position on the image, outside of the panels."""
     return rng.randrange(380, WIDTH - 60), rng.randrange(80, HEIGHT - 80)
 
 

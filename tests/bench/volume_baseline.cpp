@@ -2,8 +2,8 @@
 /// Catena as a peer of volume_peers.py (tests/bench/baselines/protocol.h):   volume_baseline CASE.json
 ///   mode: error=E | time=MS | draft | balanced | reference[=STEP] | exact=STEP |
 ///   fast=STEP,SPACING,REFINE_HALF,REFINE_FULL[,smooth][,end=T] (1/255; < 0: nowhere)
-/// The settings of error=E and time=MS are chosen once, at the azimuth of the picture that is kept. The note of an answer says which,
-/// what they were expected to take and to err, and the memory held on the device.
+/// The settings of error=E and time=MS are chosen once, at the azimuth of the saved image. The note of a reply has the settings, their
+/// expected time and error, and the device memory.
 #include <cstdio>
 #include <cstdlib>
 
@@ -16,7 +16,7 @@ namespace {
 
 using namespace catena;
 
-constexpr int kFinePoints = 64;  // from one opacity point to the next: opacity is linear there, extinction is not
+constexpr int kFinePoints = 64;  // points between two opacity points, where opacity is linear and extinction is not
 
 render::FramePacket packet_of(const peers::Case& given) {
   render::VolumeItem item;
@@ -90,7 +90,7 @@ class Ours : public peers::Baseline {
     const Kind kind = mode.starts_with("error=") ? Kind::error : Kind::time;
     packet_.view.position = given_.camera_position(azimuth_deg);
     render::FramePacket seen = packet_;
-    seen.background = {0, 0, 0, 1};  // what errors are told over
+    seen.background = {0, 0, 0, 1};  // background of the stated errors
     const std::int64_t start = now_ns();
     CATENA_TRY(const render::QualityChoice choice,
                render::choose_quality(*renderer_, seen, {kind, std::atof(mode.c_str() + mode.find('=') + 1)}));

@@ -8,10 +8,10 @@ usage: volume_cases.py -o DIR [--size N] [--ct Cranium.inv3] [NAME ...]
   fog            smooth noise, 95 % of it cut away
   head           T1 image (ch2), value / 160, at most 1
   bone           CT of a skull, Hounsfield units, made isotropic
-                 (both with two voxels of nothing around: where opaque things are cut by the box, renderers begin at different depths)
+                 (both with two empty voxels around, because renderers start at different depths where the box cuts opaque regions)
   angiogram      vessels of 1 to 4 voxels and measurement noise
   embryo, heart  thin membranes around soft bodies
-Every case is the same bytes each time."""
+The files of every case are reproducible byte by byte."""
 import argparse, gzip, json, os, plistlib, sys, tarfile
 import numpy as np
 from scipy import ndimage
@@ -23,7 +23,7 @@ CRANIUM = "/usr/share/doc/invesalius-examples/examples/Cranium.inv3"
 
 
 def waves(n, least, most, seed):
-    """Gaussian noise of the wave numbers least..most an edge."""
+    """Gaussian noise with wave numbers least..most per edge."""
     k = np.fft.fftfreq(n) * n
     size = np.sqrt(k[:, None, None] ** 2 + k[None, :, None] ** 2 + np.arange(n // 2 + 1)[None, None, :] ** 2)
     spectrum = np.fft.rfftn(np.random.default_rng(seed).normal(size=(n, n, n)))
@@ -65,14 +65,14 @@ def angiogram(n):
 
 
 def grid_of(n):
-    """x, y, z from -1 to 1, indexed z, y, x."""
+    """Coordinates x, y, z from -1 to 1, indexed z, y, x."""
     axis = np.linspace(-1, 1, n, dtype=np.float32)
     z, y, x = np.meshgrid(axis, axis, axis, indexing="ij", sparse=True)
     return x, y, z
 
 
 def soft(distance, width):
-    """1 inside, 0 outside, `width` wide."""
+    """A smooth step from 1 inside to 0 outside over `width`."""
     return 1 / (1 + np.exp(np.clip(4 * distance / width, -30, 30)))
 
 

@@ -1,19 +1,19 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Volume renderers side by side: what a picture takes at an equal error to each one's own converged picture.
-needs: python3-numpy, python3-scipy, what the peers need; cases made by volume_cases.py
+"""Comparison of volume renderers: time of an image at equal error against each renderer's own converged image.
+needs: python3-numpy, python3-scipy, the peers' requirements; cases by volume_cases.py
 usage: volume_peers.py --peer NAME=COMMAND ... --cases DIR -o OUT [--only CASE ...] [--rounds N] [--views N] [--modes NAME='MODE; MODE'] [--flicker]
-A peer is a program that draws what it is asked for (peers/protocol.h); NAME is ours, vtk-gpu, vtk-cpu or ospray and picks its settings
-below. The settings of all peers alternate; every round draws an orbit of `views` pictures of each (and one before that is not timed).
-Times are medians: processor milliseconds by two (two threads: the ideal wall time) and wall milliseconds. Errors are taken at azimuth 30
-against that peer's own converged picture (peers/picture_error.py): steps are halved until a picture is within an RMSE of 0.3 of the one
-before or takes longer than a minute; how far it is from the one before is given as `left`.
-The time at an error is read off the lower envelope of a peer's settings, straight in the logarithms of both; `<` means that the quickest
-setting is better already, `-` that none is as good. The converged pictures of two peers should agree within an RMSE of 1; otherwise the
-table says `differs` and why. Of ratios, `<` and `>` say where one of both times is that of a quickest setting, `~` where both are.
-Settings that take more than two seconds a picture are drawn in one round.
-Writes OUT/table.md and OUT/table.json, and OUT/CASE/ with the pictures and the results of that case: a run that was broken off goes on
-where it was, a case whose file, peers or settings changed is done again."""
+A peer is a program that draws images on request (baselines/protocol.h); NAME is ours, vtk-gpu, vtk-cpu or ospray and selects its settings
+below. The settings of all peers alternate; every round draws an orbit of `views` images of each (and an untimed one before).
+Times are medians: processor milliseconds divided by two (two threads: the ideal wall time) and wall milliseconds. Errors are taken at
+azimuth 30 against the peer's own converged image (baselines/picture_error.py): steps are halved until an image is within an RMSE of 0.3
+of the previous one or takes longer than a minute; the last difference is reported as `left`.
+The time at an error is interpolated on the lower envelope of a peer's settings, linearly in both logarithms; `<` means that the fastest
+setting is already better, `-` that none is as good. The converged images of two peers should agree within an RMSE of 1; otherwise the
+table has `differs` and the cause. For ratios, `<` and `>` mark that one of the times is that of a fastest setting, `~` that both are.
+Settings that take more than two seconds per image are drawn in one round only.
+Writes OUT/table.md and OUT/table.json, and OUT/CASE/ with the images and results of that case: an interrupted run is continued, and a
+case with changed file, peers or settings is repeated."""
 import argparse, hashlib, json, math, os, shlex, statistics, subprocess, sys, time
 import numpy as np
 
@@ -22,14 +22,14 @@ from picture_error import flicker, picture_error, rmse
 
 VIEW, LEVELS, AGREE = 30, (1, 2, 4), 1
 LEFT, SLOW_MS, LONG_MS = .3, 2000, 60000
-# peer -> settings that converge, each about twice as good as the one before; settings that are compared
+# peer -> converging settings, each about twice as accurate as the previous one; compared settings
 MODES = {
     "ours": ("reference=0.2; reference=0.1; reference=0.05; reference=0.025; reference=0.0125",
              "draft; balanced; error=8; error=4; error=2; error=1; error=0.5; exact=1; exact=0.5; "
              "fast=0.5,1,0,-1,smooth; fast=0.25,1,0,-1,smooth"),
     "vtk-gpu": ("gpu 0.2 1; gpu 0.1 1; gpu 0.05 1; gpu 0.025 1",
                 "gpu 4 2; gpu 2 2; gpu 1 2; gpu 0.5 2; gpu 4 1; gpu 2 1; gpu 1 1; gpu 0.5 1; gpu 0.25 1"),
-    # its fixed-point numbers lose more at every step: below 0.5 voxels it moves away from the others again
+    # its fixed-point numbers lose precision at every step, so that below 0.5 voxels the error increases
     "vtk-cpu": ("cpu 0.7 1; cpu 0.5 1", "cpu 4 2; cpu 2 2; cpu 1 2; cpu 0.5 2; cpu 4 1; cpu 2 1; cpu 1.4 1; cpu 1 1"),
     "ospray": ("samplingRate=4 pixelSamples=4 minContribution=0.0001; samplingRate=8 pixelSamples=4 minContribution=0.0001; "
                "samplingRate=16 pixelSamples=4 minContribution=0.0001; samplingRate=32 pixelSamples=4 minContribution=0.0001",
@@ -38,7 +38,7 @@ MODES = {
                "samplingRate=16 pixelSamples=1; samplingRate=1 pixelSamples=4"),
 }
 FLICKER = {"ours": ("reference=0.1", ("balanced", "error=2"))}
-# why converged pictures of a peer are others than ours: (peer, shaded)
+# causes of differences between a peer's converged images and ours: (peer, shaded)
 CAUSES = {
     ("ospray", False): "the last part of a way through what is seen, shorter than a step, is left out",
     ("ospray", True): "no highlight on volumes, the gradient of the cell for central differences, light from one direction for the whole picture",
@@ -82,13 +82,13 @@ class Peer:
 
 
 def modes_of(name, changed):
-    """Settings that converge, settings that are compared."""
+    """Converging settings, and compared settings."""
     best, modes = MODES[name]
     return [[m.strip() for m in text.split(";")] for text in (best, changed.get(name) or modes)]
 
 
 def curve(settings, key):
-    """Of (time, error) those that no other beats, from the quickest on."""
+    """Pareto front of (time, error), from the fastest on."""
     out = []
     for s in sorted(settings, key=lambda s: s[key]):
         if not out or s["rmse"] < out[-1][1]:
@@ -97,7 +97,7 @@ def curve(settings, key):
 
 
 def time_at(points, error):
-    """(milliseconds, mark)"""
+    """Time in milliseconds at an error, and its mark."""
     if points[0][1] <= error:
         return points[0][0], "<"
     for (t0, e0), (t1, e1) in zip(points, points[1:]):
@@ -118,7 +118,7 @@ def fingerprint(case, names, args):
 
 
 def converge(peer, ladder, folder):
-    """Better and better pictures, until one is as the one before, or takes too long."""
+    """Draws increasingly accurate images until one equals the previous one or takes too long."""
     last, tried = None, []
     for mode in ladder:
         tried.append({"mode": mode, "ms": peer.draw(mode, [VIEW], f"{folder}/{peer.name}.npy", 0)["wall_ms"][0]})
@@ -163,7 +163,7 @@ def run_case(peers, args, folder):
 
 
 def measure_flicker(peer, truth, modes, folder):
-    """0.2 degrees a frame, 20 frames."""
+    """Flicker over 20 frames of 0.2 degrees."""
     def frames(mode):
         out = []
         for k in range(20):
@@ -178,7 +178,7 @@ def measure_flicker(peer, truth, modes, folder):
 
 
 def judged(name, first, result, shaded):
-    """What the converged pictures say of a peer, beside the first one's."""
+    """Text about a peer's converged image compared with the first peer's."""
     left = result["converged"]["left"]
     words = [f"left {left:.2f}"] if left > .5 else []
     apart = result["apart"].get(first)
@@ -193,7 +193,7 @@ def show(time_mark):
 
 
 def ratio(theirs, first):
-    """Of two times that may be upper bounds."""
+    """Ratio of two times, which may be upper bounds."""
     if not theirs[0] or not first[0]:
         return "-"
     return {"": "", "<": "<", ">": ">", "<>": "~"}[theirs[1] + first[1].replace("<", ">")] + f"{theirs[0] / first[0]:.2g}"

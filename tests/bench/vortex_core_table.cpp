@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// Core lines of flows whose cores are known (engine/geometry/flow/vortex_cores.h), by criterion, cells and noise.
+/// Traced core lines of flows with known cores (engine/geometry/flow/vortex_cores.h), by criterion, cells and noise.
 ///   vortex_core_table [NODES]        default 49, over [-1.2, 1.2]^3
-/// Flows: Burgers' vortex about a tilted line, the same in a stream along it that is sheared, Lamb and Oseen's about an arc of radius 1.5
-/// with an axial stream, Hill's ring. Noise: uniform and independent at the nodes, its standard deviation by the greatest speed. One line a
-/// case: recall (the share of the core that a traced line passes within a voxel), root mean square and greatest distance of the traced
-/// lines from the core where they are within two voxels of it, in voxels; and the length that is not, by that of the core.
+/// Flows: Burgers' vortex about a tilted line, also in a sheared axial stream, the Lamb-Oseen vortex about an arc of radius 1.5 with an
+/// axial stream, Hill's ring. Noise: uniform and independent at the nodes, standard deviation relative to the maximum speed. One line per
+/// case: recall (fraction of the core within a voxel of a traced line), RMS and maximum distance in voxels of the traced lines from the
+/// core within two voxels of it, and the length of the other traced lines relative to the core's.
 #include <fmt/core.h>
 
 #include <cstdlib>

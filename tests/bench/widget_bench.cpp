@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a cutting plane adds to the tick of a streamline and an isosurface on 256^3 grids: in no mode, on the plane, turned.
+/// Cost of a cutting plane in the tick of a streamline and an isosurface on 256^3 grids: away from it, on the plane, and turning.
 #include "haptics/constraints/widget_link.h"
 #include "tests/bench/chain_bench.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// One replay, one state_hash: the committed constants hold in every preset, with and without the thread.
-/// The scenes use + - * / sqrt only (sampled grids, circle, sphere); a change of behaviour changes them, and must say so.
+/// The state_hash of each replay equals the committed constant in every preset, with and without the thread.
+/// The scenes use only + - * / sqrt (sampled grids, circle, sphere); a commit that changes behaviour must update the constants.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -25,8 +25,8 @@ struct Recorded {
   bool presses = false;
 };
 
-// A path without libm: a polygon with rational corners, a still stretch, a jump.
-/// `presses`: the button goes down and up again and again, rather than once for good.
+// A path without libm functions: a polygon with rational corners, a rest, a jump.
+/// `presses`: true: the button is pressed and released repeatedly; false: pressed once.
 std::vector<ProbeSample> probe_path(bool presses) {
   const Vec3 corners[] = {{0.6, 0.1, 0.0}, {0.1, 0.7, 0.2}, {-0.6, 0.2, -0.1}, {-0.2, -0.5, 0.3}, {0.5, -0.4, -0.2}, {0.45, 0.05, 0.1}};
   std::vector<ProbeSample> path;
@@ -92,7 +92,7 @@ constexpr const char* kBalance = R"({"fields": {"v": {"analytic": "circle"}, "s"
   "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1], "stiffness": 50},
             {"name": "surface", "type": "isosurface", "field": "s", "level": 0.55}], "coupling": {"method": "balance"}})";
 
-// Two of the corners of the path lie on the plane, two near the sphere; the path's buttons grab.
+// Two corners of the path are on the plane, two near the sphere; the path's buttons grab.
 constexpr const char* kWidgets = R"({"fields": {},
   "chain": [{"name": "floor", "type": "plane", "point": [0, 0, -0.3], "normal": [0, 1, 4]}],
   "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0.1, 0], "orientation": [0.8, 0, 0.6, 0], "radius": 0.45,
@@ -146,8 +146,8 @@ void PrintTo(const Recorded& recorded, std::ostream* out) { *out << recorded.nam
 
 class ReplayHash : public testing::TestWithParam<Recorded> {};
 
-// A hash of widgets that nobody took hold of would say little.
-TEST(WidgetReplay, TakesHoldAndMoves) {
+// Checks that the widgets' replay grabs and moves them.
+TEST(WidgetReplay, GrabsAndMovesWidgets) {
   const test::TemporaryFolder folder;
   const auto program = program_of({"widgets", kWidgets, 0}, folder);
   std::set<WidgetMode> plane, others;
@@ -163,7 +163,7 @@ TEST(WidgetReplay, TakesHoldAndMoves) {
   EXPECT_EQ(others, (std::set{Mode::idle, Mode::hover, Mode::drag}));
 }
 
-TEST_P(ReplayHash, IsTheCommittedOneWithAndWithoutTheThread) {
+TEST_P(ReplayHash, MatchesTheCommittedHashWithAndWithoutTheThread) {
   const test::TemporaryFolder folder;
   const auto program = program_of(GetParam(), folder);
   const std::vector<ProbeSample> path = probe_path(GetParam().presses);
@@ -180,7 +180,7 @@ TEST_P(ReplayHash, IsTheCommittedOneWithAndWithoutTheThread) {
   EXPECT_EQ(servo.state_hash(), stats.state_hash);
 }
 
-TEST_P(ReplayHash, IsTheProgramsToo) {
+TEST_P(ReplayHash, MatchesTheProgramsHash) {
   const test::TemporaryFolder folder;
   const auto program = program_of(GetParam(), folder);
   test::write_file(folder / "scene.json", GetParam().scene);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A drawable that only this test has, with one row in the scene and one in the extraction: it is read, drawn, picked, counted, named by
-// scalar bars and by the schema, with nothing said about it anywhere else.
+// A custom drawable of this test, registered with one row in the scene and one in the extraction: it is read, drawn, picked, counted, and
+// known to scalar bars and the schema without further code.
 #include <gtest/gtest.h>
 
 #include "engine/app/cli/scene_schema.h"
@@ -14,7 +14,7 @@ namespace drawable_test {
 
 using namespace catena;
 
-/// A bead: a ball at a place, colored by its height.
+/// A bead: a ball at a position, colored by its height.
 struct Bead {
   json::Node where;
   Vec3 position{0.0};
@@ -71,7 +71,7 @@ void register_beads() {
 
 const bool registered = (register_beads(), true);
 
-TEST(ADrawableOfATest, IsReadDrawnPickedAndCounted) {
+TEST(CustomDrawable, IsReadDrawnPickedAndCounted) {
   ASSERT_TRUE(registered);
   auto scene = scene::parse_scene(R"({"beads": [{"at": [0, 0, 0], "radius": 0.5}, {"at": [3, 0, 0], "visible": false}],
  "camera": {"position": [0, -5, 0], "target": [0, 0, 0]}})",
@@ -86,7 +86,7 @@ TEST(ADrawableOfATest, IsReadDrawnPickedAndCounted) {
   EXPECT_NEAR(render::packet_bounds(*packet).diagonal(), std::sqrt(3.0), 1e-9);
 }
 
-TEST(ADrawableOfATest, IsInTheSchemaAndRefusedWithItsLine) {
+TEST(CustomDrawable, IsInTheSchemaAndRefusedWithItsLine) {
   EXPECT_NE(app::scene_json_schema().find("\"beads\""), std::string::npos);
   const auto wrong = scene::parse_scene("{\"beads\": [\n{\"at\": [0, 0, 0], \"radius\": -1}]}", "s.json");
   ASSERT_FALSE(wrong);

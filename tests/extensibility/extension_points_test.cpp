@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A constraint and a file format that only this test has, each in one place and with one line of registration: they are in the reader, the
-// schema, the writer, the panel, the ruler and the document, with nothing said about them anywhere else.
+// A custom constraint and a custom file format of this test, each registered with one line: reader, schema, writer, panel, ruler and
+// document know them without further code.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -17,12 +17,12 @@
 #include "tests/extensibility/level_ball.h"
 #include "tests/support/support.h"
 
-namespace newcomer_test {
+namespace extension_points_test {
 
 using namespace catena;
 using namespace catena::haptics;
 
-// ---- the format: eight numbers as text, the corners of a cube of edge 1 ----
+// ---- the format: eight numbers as text, at the corners of a cube of edge 1 ----
 
 Result<std::vector<field::GridInfo>> describe_corners(const std::string&, int /*step*/) {
   field::GridInfo info;
@@ -32,7 +32,7 @@ Result<std::vector<field::GridInfo>> describe_corners(const std::string&, int /*
 Result<field::AnyField> load_corners(const field::LoadRequest& request) {
   field::LoadRequest like;
   CATENA_TRY(const std::string text, read_text_file(request.path, "eight numbers"));
-  // the numbers as a .raw file beside it: what a reader of a real format would make in memory
+  // writes the numbers as a .raw file, where a reader of a real format would build a grid in memory
   std::vector<float> values;
   std::istringstream in(text);
   for (float v = 0; in >> v;) values.push_back(v);
@@ -66,7 +66,7 @@ struct ExtensionPoints : testing::Test {
   }
 };
 
-TEST_F(ExtensionPoints, AreReadFeltAndLoaded) {
+TEST_F(ExtensionPoints, AreReadAndLoaded) {
   auto scene = scene::parse_scene(scene_text(), folder / "s.json");
   ASSERT_TRUE(scene) << scene.error().message;
   const auto program = build_program(*scene);
@@ -118,7 +118,7 @@ TEST_F(ExtensionPoints, AreInThePanelAndWritten) {
   EXPECT_TRUE(program) << program.error().message << *link;
 }
 
-TEST_F(ExtensionPoints, AreMeasuredAlong) {
+TEST_F(ExtensionPoints, ARulerMeasuresAlongThem) {
   auto scene = scene::parse_scene(scene_text(), folder / "s.json");
   ASSERT_TRUE(scene);
   const scene::Entity ruler = scene::find_widget(*scene, "u");
@@ -128,4 +128,4 @@ TEST_F(ExtensionPoints, AreMeasuredAlong) {
   EXPECT_NEAR(measure->length, 0.5 * 3.14159265, 0.01) << measure->note;
 }
 
-}  // namespace newcomer_test
+}  // namespace extension_points_test

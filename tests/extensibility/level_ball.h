@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// A constraint that only the tests have: a ball whose radius is the level of a field. A test program registers it; the same is a plug-in.
+/// A constraint of the tests: a ball whose radius is the level of a field. Registered by a test program, and built as a plug-in.
 #pragma once
 #include "haptics/constraints/common/link_schema.h"
 #include "haptics/constraints/registry.h"
 #include "haptics/constraints/shapes/closed_form.h"
 #include "haptics/constraints/shapes/surface_shapes.h"
 
-namespace newcomer_test {
+namespace extension_points_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -28,4 +28,4 @@ inline ConstraintType level_ball_constraint() {
           true};
 }
 
-}  // namespace newcomer_test
+}  // namespace extension_points_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The plug-in level_ball.so. Its initialiser leaves a mark, so that a test sees whether any of its code has run.
+// The plug-in level_ball.so. Its initializer creates the file CATENA_TEST_MARK, so that tests detect whether its code has run.
 #include <cstdio>
 #include <cstdlib>
 
@@ -14,4 +14,4 @@ const bool kRan = [] {
 }();
 }  // namespace
 
-CATENA_CONSTRAINT_PLUGIN(newcomer_test::level_ball_constraint)
+CATENA_CONSTRAINT_PLUGIN(extension_points_test::level_ball_constraint)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A plug-in that does what CATENA_TEST_WRONG says, and should not.
+// A plug-in with the error that CATENA_TEST_WRONG selects.
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
@@ -12,11 +12,11 @@ using namespace catena;
 using namespace catena::haptics;
 
 std::string wrong() {
-  const char* const said = std::getenv("CATENA_TEST_WRONG");
-  return said == nullptr ? "" : said;
+  const char* const value = std::getenv("CATENA_TEST_WRONG");
+  return value == nullptr ? "" : value;
 }
 
-/// Before main.
+/// Runs before main.
 struct Early {
   Early() {
     if (wrong() == "throws early") throw std::runtime_error("no such luck");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Plug-ins from the outside: the program loads a constraint that its tree does not have, and says in one sentence why it does not. As root
-// it loads none; where root runs the tests, the program is run as nobody.
+// External plug-ins: the program loads a constraint that is not part of its tree, or refuses it with an error in one line. As root it
+// loads none; if root runs the tests, the program is run as nobody.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
@@ -34,7 +34,7 @@ struct Plugin : testing::Test {
     test::write_file(folder / "path.csv", "t,x,y,z\n0,1.5,0,0\n0.001,0.9,0,0\n0.002,0.8,0.1,0\n");
   }
 
-  /// What env is told: the program as a user who is not root, with some variables ("NAME=VALUE") and the folder's own plug-ins.
+  /// Arguments of env: the program as a user other than root, with variables ("NAME=VALUE") and the folder's plug-ins.
   std::vector<std::string> words(const std::vector<std::string>& arguments, const std::vector<std::string>& variables = {}) const {
     std::vector<std::string> all{"-u", "CATENA_PLUGINS", "HOME=" + (folder / "out"), "XDG_DATA_HOME=" + (folder / "data"),
                                  "CATENA_TEST_MARK=" + mark};
@@ -51,13 +51,13 @@ struct Plugin : testing::Test {
     more.insert(more.begin(), {"info", "--keys", "chain"});
     return run(more, variables);
   }
-  /// Exit code 2 and one sentence with these words.
-  static void expect_refused(const test::ProgramResult& result, const std::string& said) {
-    EXPECT_EQ(result.exit_code, 2) << said << ": " << result.err;
+  /// Expects exit code 2 and one line with the expected text.
+  static void expect_refused(const test::ProgramResult& result, const std::string& expected) {
+    EXPECT_EQ(result.exit_code, 2) << expected << ": " << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    EXPECT_NE(result.err.find(said), std::string::npos) << "expected " << said << " in " << result.err;
+    EXPECT_NE(result.err.find(expected), std::string::npos) << "expected " << expected << " in " << result.err;
   }
-  /// A copy of level_ball.so in the folder with some of its bytes changed; as long, so that its parts stay where they are.
+  /// A copy of level_ball.so in the folder with a text replaced by one of equal length, so that offsets stay valid.
   std::string changed(const std::string& name, const std::string& from, const std::string& to) const {
     std::string bytes = test::read_file(shell);
     const std::size_t at = bytes.find(from);
@@ -72,12 +72,12 @@ struct Plugin : testing::Test {
                     strange = test::binary_dir() + "/misbehaving.so";
 };
 
-TEST_F(Plugin, OptionVariableAndFolderMakeItKnown) {
-  const std::string said = "Holds the proxy on a ball that is as large as a level. Paper: of no paper. Of the plug-in level_ball.so.";
+TEST_F(Plugin, IsLoadedByOptionVariableAndFolder) {
+  const std::string expected = "Holds the proxy on a ball that is as large as a level. Paper: of no paper. From the plug-in level_ball.so.";
   const std::string known = keys({}, {"--plugin", shell}).out;
   EXPECT_NE(known.find("shell"), std::string::npos) << known;
   EXPECT_EQ(keys({"CATENA_PLUGINS=:" + shell + ":" + shell}).out, known);
-  EXPECT_NE(run({"info", "--schema", "--plugin", shell}).out.find(said), std::string::npos);
+  EXPECT_NE(run({"info", "--schema", "--plugin", shell}).out.find(expected), std::string::npos);
   EXPECT_EQ(keys({}).out.find("shell"), std::string::npos);
   fs::copy_file(shell, folder / "data/catena/plugins/level_ball.so");
   EXPECT_EQ(keys({}).out, known);
@@ -87,7 +87,7 @@ TEST_F(Plugin, OptionVariableAndFolderMakeItKnown) {
   EXPECT_NE(run({"study", "simulate", "--help"}).out.find("--plugin"), std::string::npos);
 }
 
-TEST_F(Plugin, IsFeltAndReplayedToTheBitByItselfAlone) {
+TEST_F(Plugin, ReplayIsExactAndNeedsThePlugin) {
   const std::vector<std::string> along{"replay", scene, "--probe", folder / "path.csv", "-o", folder / "out/t.csv"};
   expect_refused(run(along), "unknown constraint type \"shell\"");
   std::vector<std::string> with = along;
@@ -104,13 +104,13 @@ TEST_F(Plugin, IsFeltAndReplayedToTheBitByItselfAlone) {
   EXPECT_NE(run({"info", record, "--json"}).out.find("\"plugins\":[\"level_ball.so ("), std::string::npos);
   const auto again = run({"replay", "--log", record, "--plugin", shell});
   EXPECT_EQ(again.exit_code, 0) << again.err;
-  EXPECT_NE(again.out.find("all equal to the bit"), std::string::npos) << again.out;
+  EXPECT_NE(again.out.find("all bit-identical"), std::string::npos) << again.out;
   expect_refused(run({"replay", "--log", record}), "link \"skin\" ran in the plug-in level_ball.so (");
   test::write_file(folder / "other.so", test::read_file(shell) + "another build");
-  expect_refused(run({"replay", "--log", record, "--plugin", folder / "other.so"}), "that file was expected, and other.so (");
+  expect_refused(run({"replay", "--log", record, "--plugin", folder / "other.so"}), "this file was expected, but other.so (");
 }
 
-TEST_F(Plugin, WhatDoesNotFitIsOneSentenceAndRunsNothing) {
+TEST_F(Plugin, IncompatibleFilesAreRefusedWithoutRunningThem) {
   const std::string bytes = test::read_file(shell);
   test::write_file(folder / "half.so", bytes.substr(0, bytes.size() / 2));
   test::write_file(folder / "text.so", "a text\n");
@@ -124,27 +124,27 @@ TEST_F(Plugin, WhatDoesNotFitIsOneSentenceAndRunsNothing) {
   ASSERT_NE(statement, std::string::npos);
   const std::string headers = bytes.c_str() + statement + 16, compiler = bytes.c_str() + statement + 80;
   struct Wrong {
-    std::string file, said;
+    std::string file, expected;
   };
   std::vector<Wrong> all{{changed("headers.so", headers, "9.9.9"), "was built for Catena 9.9.9"},
                          {changed("compiler.so", compiler, "XYZ"), "was built by XYZ"},
-                         {changed("mark.so", "Catena plug-in", "Catena plug-im"), "states no interface"},
-                         {folder / "half.so", "is cut off"},
-                         {folder / "text.so", "is no shared library"},
+                         {changed("mark.so", "Catena plug-in", "Catena plug-im"), "has no plug-in interface"},
+                         {folder / "half.so", "is truncated"},
+                         {folder / "text.so", "is not a shared library"},
                          {folder.path(), "a plug-in was expected"},
                          {folder / "pipe.so", "is a pipe"},
                          {folder / "none.so", "No such file"},
-                         {folder / "open.so", "may be written by others"},
-                         {folder / "all/level_ball.so", "may be written by others"},
+                         {folder / "open.so", "can be written by others"},
+                         {folder / "all/level_ball.so", "can be written by others"},
                          {"", "a plug-in was expected"}};
   if (::geteuid() == 0) {
     test::write_file(folder / "foreign.so", bytes);
     ASSERT_EQ(::chown((folder / "foreign.so").c_str(), 1, 1), 0);
-    all.push_back({folder / "foreign.so", "belongs to somebody else"});
+    all.push_back({folder / "foreign.so", "belongs to another user"});
   }
-  if (const std::string linked = test::binary_dir() + "/linked.so"; test::exists(linked)) all.push_back({linked, "a second Catena"});
+  if (const std::string linked = test::binary_dir() + "/linked.so"; test::exists(linked)) all.push_back({linked, "loads Catena twice"});
   for (const Wrong& wrong : all) {
-    expect_refused(run({"info", scene, "--plugin", wrong.file}), wrong.said);
+    expect_refused(run({"info", scene, "--plugin", wrong.file}), wrong.expected);
     EXPECT_FALSE(test::exists(mark)) << wrong.file;
   }
   expect_refused(run({"info", scene}, {"CATENA_PLUGINS=" + folder.path() + "/text.so"}), "CATENA_PLUGINS: ");
@@ -152,33 +152,33 @@ TEST_F(Plugin, WhatDoesNotFitIsOneSentenceAndRunsNothing) {
   fs::copy_file(folder / "compiler.so", folder / "data/catena/plugins/old.so");
   const auto noted = keys({});
   EXPECT_EQ(noted.exit_code, 0);
-  EXPECT_NE(noted.err.find("note: not loaded: "), std::string::npos) << noted.err;
+  EXPECT_NE(noted.err.find("note: plug-in not loaded: "), std::string::npos) << noted.err;
   EXPECT_FALSE(test::exists(mark));
   EXPECT_EQ(keys({}, {"--plugin", shell}).exit_code, 0);
   EXPECT_TRUE(test::exists(mark)) << "the mark shows what has run";
 }
 
-TEST_F(Plugin, WhatItGivesIsChecked) {
-  const std::pair<const char*, const char*> all[] = {{"throws early", "misbehaving.so: throws an exception as it is loaded"},
-                                                     {"crashes early", "misbehaving.so: crashes (signal 6) as it is loaded"},
+TEST_F(Plugin, ItsOutputsAreChecked) {
+  const std::pair<const char*, const char*> all[] = {{"throws early", "misbehaving.so: throws an exception when loaded"},
+                                                     {"crashes early", "misbehaving.so: crashes (signal 6) when loaded"},
                                                      {"throws", "threw an exception (no such luck)"},
                                                      {"throws a number", "threw an exception"},
-                                                     {"no word", "gives a type the name \"\""},
-                                                     {"no name", "gives a type the name \"Two Words\""},
-                                                     {"catena's", "\"plane\", which Catena has already"},
-                                                     {"a mode's", "\"anisotropic_friction\", which Catena has already"},
-                                                     {"shell's", "\"shell\", which the plug-in level_ball.so has given already"},
-                                                     {"no build", "without a function that builds it"},
+                                                     {"no word", "defines a type named \"\""},
+                                                     {"no name", "defines a type named \"Two Words\""},
+                                                     {"catena's", "\"plane\", which exists in Catena"},
+                                                     {"a mode's", "\"anisotropic_friction\", which exists in Catena"},
+                                                     {"shell's", "\"shell\", which the plug-in level_ball.so already defines"},
+                                                     {"no build", "without a build function"},
                                                      {"a key of every link", "the key \"snap\""},
                                                      {"twice", "\"strange\" twice"}};
-  for (const auto& [wrong, said] : all)
-    expect_refused(keys({std::string("CATENA_TEST_WRONG=") + wrong}, {"--plugin", shell, "--plugin", strange}), said);
+  for (const auto& [wrong, expected] : all)
+    expect_refused(keys({std::string("CATENA_TEST_WRONG=") + wrong}, {"--plugin", shell, "--plugin", strange}), expected);
   test::write_file(scene, R"({"chain": [{"name": "a", "type": "strange"}]})");
   expect_refused(run({"info", scene, "--plugin", strange}), "s.json:1: the plug-in misbehaving.so built nothing");
   expect_refused(run({"info", scene, "--plugin", strange}, {"CATENA_TEST_WRONG=build throws"}), "threw an exception (no such luck)");
 }
 
-TEST_F(Plugin, NoSceneNamesOne) {
+TEST_F(Plugin, AScenesKeyCannotLoadOne) {
   test::write_file(scene, R"({"plugin": ")" + shell + R"("})");
   expect_refused(run({"info", scene}), "plugin");
   test::write_file(scene,
@@ -187,7 +187,7 @@ TEST_F(Plugin, NoSceneNamesOne) {
   EXPECT_FALSE(test::exists(mark));
 }
 
-TEST_F(Plugin, NothingIsLoadedWithRightsOfOthers) {
+TEST_F(Plugin, NothingIsLoadedAsRootOrInSetIdPrograms) {
   if (::geteuid() != 0) GTEST_SKIP() << "only root has rights to give";
   fs::copy_file(shell, folder / "data/catena/plugins/level_ball.so");
   const std::string own = folder / "catena";
@@ -196,11 +196,11 @@ TEST_F(Plugin, NothingIsLoadedWithRightsOfOthers) {
     more.insert(more.begin(), as_root.begin(), as_root.end());
     return test::run_program("/usr/bin/env", more);
   };
-  expect_refused(root({test::program_path(), "info", scene, "--plugin", shell}), "nothing is loaded as root");
-  expect_refused(root({"CATENA_PLUGINS=" + shell, test::program_path(), "info", scene}), "nothing is loaded as root");
+  expect_refused(root({test::program_path(), "info", scene, "--plugin", shell}), "plug-ins are not loaded as root");
+  expect_refused(root({"CATENA_PLUGINS=" + shell, test::program_path(), "info", scene}), "plug-ins are not loaded as root");
   const auto folder_only = root({test::program_path(), "info", "--keys", "chain"});
   EXPECT_EQ(folder_only.exit_code, 0);
-  EXPECT_NE(folder_only.err.find("nothing is loaded as root"), std::string::npos) << folder_only.err;
+  EXPECT_NE(folder_only.err.find("plug-ins are not loaded as root"), std::string::npos) << folder_only.err;
   EXPECT_EQ(folder_only.out.find("shell"), std::string::npos);
 
   struct statvfs disk {};
@@ -211,12 +211,12 @@ TEST_F(Plugin, NothingIsLoadedWithRightsOfOthers) {
   for (const mode_t mode : {04755, 02755}) {
     ASSERT_EQ(::chmod(own.c_str(), mode), 0);
     const auto set_id = root({"setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", own, "info", scene, "--plugin", shell});
-    expect_refused(set_id, "rights that its user lacks");
+    expect_refused(set_id, "more rights than its user");
   }
   EXPECT_FALSE(test::exists(mark));
 }
 
-TEST_F(Plugin, TheWindowShowsIt) {
+TEST_F(Plugin, TheWindowListsIt) {
   if (!test::can_drive_windows()) GTEST_SKIP() << "no Xvfb or no xdotool here";
   std::string command = "timeout 90 " + test::on_display("640x480") + "env";
   for (const std::string& word :

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// Preloaded into the program `catena`: lets one thing of the machine fail, from the beginning of main on.
-///   CATENA_FAULT=alloc:N    the N-th allocation (malloc and its family, operator new) fails. Those that graphics drivers, the dynamic
-///                           linker and what they use ask for are not counted: they end the process by themselves
-///   CATENA_FAULT=space:N    the N-th write to a file and all after it fail with ENOSPC (standard output and error are spared)
-///   CATENA_FAULT=thread:N   the N-th thread cannot be made (EAGAIN)
-///   CATENA_FAULT=signal:US  every US microseconds a signal interrupts what a thread waits for (no SA_RESTART: EINTR)
-/// N = 0: nothing fails. CATENA_FAULT_COUNT=PATH: how often it could have failed, written at the end.
+/// Preloaded into the program `catena`: injects one fault, counted from the beginning of main.
+///   CATENA_FAULT=alloc:N    the N-th allocation (malloc and its family, operator new) fails. Allocations by graphics drivers, the
+///                           dynamic linker and their libraries are not counted, because they end the process on a failure
+///   CATENA_FAULT=space:N    the N-th write to a file and all later ones fail with ENOSPC (except standard output and error)
+///   CATENA_FAULT=thread:N   the N-th creation of a thread fails (EAGAIN)
+///   CATENA_FAULT=signal:US  every US microseconds a signal interrupts waiting system calls (no SA_RESTART: EINTR)
+/// N = 0: nothing fails. CATENA_FAULT_COUNT=PATH: file for the number of possible failures, written at the end.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -44,7 +44,7 @@ F next(const char* name) {
   return reinterpret_cast<F>(dlsym(RTLD_NEXT, name));
 }
 
-// A caller that this project has nothing to say about.
+// True for callers outside of this project.
 bool is_foreign(const void* caller) {
   Dl_info info{};
   if (dladdr(caller, &info) == 0 || info.dli_fname == nullptr) return true;
@@ -56,7 +56,7 @@ bool is_foreign(const void* caller) {
   return false;
 }
 
-// True for the one that is to fail, counted from 1; `lasting`: and all after it.
+// True for the call that fails, counted from 1; `lasting`: also for all later calls.
 bool fails(bool lasting = false) {
   const long now = count.fetch_add(1) + 1;
   return which > 0 && (lasting ? now >= which : now == which);
@@ -173,7 +173,7 @@ int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*
 
 }  // extern "C"
 
-// So that the caller is who asks, not the C++ library.
+// Operators new of the program, so that the caller is the requesting code and not the C++ library.
 void* operator new(std::size_t size) {
   void* const at = allocation_fails(__builtin_return_address(0)) ? nullptr : __libc_malloc(size > 0 ? size : 1);
   if (at == nullptr) throw std::bad_alloc();

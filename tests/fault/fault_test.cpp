@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Every command on a tiny file, while one thing of the machine fails (tests/fault/fault_injection.cpp): no signal ends it, exit code 0, 1
-/// or 2; with another than 0 one line that begins "catena: ", no output and nothing half-written. A sample here; all of it:
+/// Every command on a tiny file with one injected fault (tests/fault/fault_injection.cpp): no signal ends it; exit code 0, 1 or 2; for
+/// codes other than 0 one line that begins "catena: ", no output and no partial files. A sample by default; all faults:
 ///   CATENA_FAULT_FIRST=10000 CATENA_FAULT_EVERY=100 build/release/test_fault
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ struct Command {
   const char* name;
   std::vector<std::string> words;
   std::vector<std::string> outputs;
-  bool draws = false;  ///< through a graphics driver, which has threads and memory of its own
+  bool draws = false;  ///< true: uses a graphics driver, which has its own threads and memory
 };
 
 class FaultInjection : public testing::Test {
@@ -104,29 +104,30 @@ class FaultInjection : public testing::Test {
     std::vector<std::string> words{test::program_path()};
     words.insert(words.end(), command.words.begin(), command.words.end());
     std::vector<std::string> own{"LD_PRELOAD=" + test::binary_dir() + "/libcatena_faults.so", "CATENA_FAULT=" + fault,
-                                 "CATENA_FAULT_COUNT=" + (told_ / "count")};
+                                 "CATENA_FAULT_COUNT=" + (reports_ / "count")};
     std::vector<char*> arguments, environment;
     for (std::string& word : words) arguments.push_back(word.data());
     for (std::string& variable : own) environment.push_back(variable.data());
     for (char** e = environ; *e != nullptr; ++e) environment.push_back(*e);
     arguments.push_back(nullptr);
     environment.push_back(nullptr);
-    std::filesystem::remove(told_ / "count");
+    std::filesystem::remove(reports_ / "count");
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, 1, (told_ / "out").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    posix_spawn_file_actions_addopen(&actions, 2, (told_ / "err").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&actions, 1, (reports_ / "out").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&actions, 2, (reports_ / "err").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     pid_t child = 0;
     EXPECT_EQ(posix_spawn(&child, words[0].c_str(), &actions, nullptr, arguments.data(), environment.data()), 0);
     posix_spawn_file_actions_destroy(&actions);
     int status = 0;
     EXPECT_EQ(waitpid(child, &status, 0), child);
-    const bool told = test::exists(told_ / "count");
+    const bool was_counted = test::exists(reports_ / "count");
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
-            told ? std::strtol(test::read_file(told_ / "count").c_str(), nullptr, 10) : -1, own_lines(test::read_file(told_ / "err"))};
+            was_counted ? std::strtol(test::read_file(reports_ / "count").c_str(), nullptr, 10) : -1,
+            own_lines(test::read_file(reports_ / "err"))};
   }
-  /// Without what the NIfTI library says of an allocation that failed, whatever its level of talk: "** nifti_strdup: failed to alloc".
+  /// The program's lines, without the NIfTI library's "** nifti_strdup: failed to alloc", which it prints at any verbosity.
   static std::string own_lines(const std::string& text) {
     std::istringstream in(text);
     std::string own;
@@ -135,7 +136,7 @@ class FaultInjection : public testing::Test {
     return own;
   }
 
-  /// As promised; what it left is removed.
+  /// Checks the requirements above, and removes the output.
   void judge(const Command& command, const std::string& fault, const Ended& ended) {
     ++(ended.code == 0 ? survived_ : refused_);
     std::string found;
@@ -157,12 +158,12 @@ class FaultInjection : public testing::Test {
     ADD_FAILURE() << command.name << " with " << fault << ":" << found << " " << ended.err.substr(0, 300);
   }
 
-  /// All the ways in which `kind` can fail, as many as wanted.
+  /// Runs every command with faults of `kind`: number `first`, then every `every`-th.
   void fail_each(const std::string& kind, long first, long every) {
     for (const Command& command : commands()) {
       const char* only = std::getenv("CATENA_FAULT_COMMAND");
       if (only != nullptr && command.name != std::string(only)) continue;
-      // a Vulkan driver without memory may end the process by itself (Mesa: xmlconfig.c)
+      // a Vulkan driver may end the process if it has no memory (Mesa: xmlconfig.c)
       if (only == nullptr && kind == "alloc" && command.draws) continue;
       const Ended whole = run(command, kind + ":0");
       ASSERT_EQ(whole.code, 0) << command.name << ": " << whole.err;
@@ -179,7 +180,7 @@ class FaultInjection : public testing::Test {
     std::printf("%s: %ld survived, %ld refused in one sentence, %ld broken\n", kind.c_str(), survived_, refused_, broken_);
   }
 
-  test::TemporaryFolder folder_, told_;
+  test::TemporaryFolder folder_, reports_;
   std::set<std::string> inputs_;
   long survived_ = 0, refused_ = 0, broken_ = 0;
 };

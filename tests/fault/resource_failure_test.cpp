@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every command under what a machine, or a shell, may refuse it: exit code 1, or 0 where the command does without; one line that begins
-// "catena: " with the cause; no output. Never 2, which would blame the file, never a signal, never a wait without end.
+// Every command under refused resources of machine or shell: exit code 1, or 0 if the command does not need the resource; one line that
+// begins "catena: " with the cause; no output. Never exit code 2, which would blame the file, never a signal, never an endless wait.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -19,34 +19,34 @@
 #include "tests/support/support.h"
 
 namespace catena {
-namespace machine_test {
+namespace resource_failure_test {
 
 constexpr uid_t kNobody = 65534;
 
 struct Command {
-  std::vector<std::string> words;  ///< "FOLDER" stands for the folder of the outputs
-  std::string output;              ///< in it
-  bool keeps = false;              ///< what was written before a failure stays: a recording, the data of a study
+  std::vector<std::string> words;  ///< arguments; "FOLDER" stands for the output folder
+  std::string output;              ///< output file in that folder
+  bool keeps = false;              ///< true: data written before a failure is kept (a recording, a study's data)
 };
 
-/// What is refused: done in the new process before the program starts. False: it cannot be done here.
+/// A refused resource, set up in the new process before the program starts; returns false if that is not possible.
 struct Cause {
   const char* name;
   bool (*inject)(const std::string& outputs);
-  const char* said;        ///< of it in the message
-  bool every;              ///< no command does without
-  const char* never = "";  ///< is said of it: another cause
+  const char* message;     ///< part of the error message
+  bool every;              ///< true: every command needs the resource
+  const char* never = "";  ///< text that must not be in the message (another cause)
 };
 
-bool limit(__rlimit_resource what, rlim_t most) {
-  const rlimit both{most, most};
+bool limit(__rlimit_resource what, rlim_t process_limit) {
+  const rlimit both{process_limit, process_limit};
   return setrlimit(what, &both) == 0;
 }
 
 bool small_disk(const std::string& outputs) {
   if (unshare(CLONE_NEWNS) != 0 || mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0) return false;
   if (mount("none", outputs.c_str(), "tmpfs", 0, "size=4k,mode=777") != 0) return false;
-  // its one page is taken
+  // its only page is used
   const int file = open((outputs + "/full").c_str(), O_WRONLY | O_CREAT, 0600);
   const char page[4096]{};
   const bool full = write(file, page, sizeof page) == static_cast<ssize_t>(sizeof page);
@@ -149,14 +149,14 @@ class ResourceFailure : public testing::Test {
   }
 
   struct Ended {
-    int code = 0;  ///< 128 + signal; 255: the cause could not be made here
+    int code = 0;  ///< exit code; 128 + signal; 255: the cause could not be set up
     std::string err;
   };
   Ended run(const Command& command, const Cause& cause) {
     std::vector<char*> words{const_cast<char*>(program_.c_str())};
     for (const std::string& word : command.words) words.push_back(const_cast<char*>(word.c_str()));
     words.push_back(nullptr);
-    int ends[2];  // a file could not grow
+    int ends[2];  // a pipe, because a file could not grow
     EXPECT_EQ(pipe2(ends, O_CLOEXEC), 0);
     const pid_t child = fork();
     if (child == 0) {
@@ -164,7 +164,7 @@ class ResourceFailure : public testing::Test {
       dup2(ends[1], 2);
       unsetenv("DISPLAY");
       setenv("XDG_CACHE_HOME", "/dev/null/none", 1);
-      alarm(60);  // one that waits for ever is ended by SIGALRM
+      alarm(60);  // an endless wait is ended by SIGALRM
       if (!cause.inject(outputs_)) _exit(255);
       execv(program_.c_str(), words.data());
       _exit(127);
@@ -183,26 +183,26 @@ class ResourceFailure : public testing::Test {
   std::string outputs_ = folder_ / "outputs", program_ = test::program_path();
 };
 
-TEST_F(ResourceFailure, EveryCauseInEveryCommandIsExitCodeOneAndSaid) {
+TEST_F(ResourceFailure, EveryCauseInEveryCommandIsExitCodeOneWithItsMessage) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can take things away";
   for (const Cause& cause : causes()) {
     int refused = 0, done = 0;
     for (const Command& command : commands()) {
-      if (command.words[0] == "tradeoff" && !cause.every) continue;  // two seconds each
-      if (command.words[0] == "study" && !cause.every && !std::string_view(cause.said).starts_with("standard output")) continue;
+      if (command.words[0] == "tradeoff" && !cause.every) continue;  // takes two seconds each
+      if (command.words[0] == "study" && !cause.every && !std::string_view(cause.message).starts_with("standard output")) continue;
       const Ended ended = run(command, cause);
       const std::string words =
           std::string(cause.name) + ": catena " + command.words[0] + " " + (command.words.size() > 1 ? command.words[1] : "");
-      if (ended.code == 255 || ended.code == 127) continue;  // not possible here, or not even the libraries
+      if (ended.code == 255 || ended.code == 127) continue;  // not possible here, or the libraries could not be loaded
       const bool writes = !command.output.empty();
       EXPECT_TRUE(ended.code == 1 || (ended.code == 0 && !(cause.every && writes))) << words << ": " << ended.code << ": " << ended.err;
       ++(ended.code == 0 ? done : refused);
       if (ended.code == 1) {
         EXPECT_NE(ended.err.find("catena: "), std::string::npos) << words << ": " << ended.err;
-        EXPECT_NE(ended.err.find(cause.said), std::string::npos) << words << ": " << ended.err;
+        EXPECT_NE(ended.err.find(cause.message), std::string::npos) << words << ": " << ended.err;
         EXPECT_TRUE(*cause.never == 0 || ended.err.find(cause.never) == std::string::npos) << words << ": " << ended.err;
-        // a recording keeps what was written, and a file that is whole stays where only the words about it are lost
-        const bool whole = std::string_view(cause.said).starts_with("standard output");
+        // a recording keeps the written data, and a complete file is kept if only standard output fails
+        const bool whole = std::string_view(cause.message).starts_with("standard output");
         if (writes && !command.keeps && !whole) {
           EXPECT_FALSE(test::exists(outputs_ + "/" + command.output)) << words;
         }
@@ -214,25 +214,26 @@ TEST_F(ResourceFailure, EveryCauseInEveryCommandIsExitCodeOneAndSaid) {
   }
 }
 
-// Before: 2 threads a core more than lavapipe waits for were asked for.
-TEST_F(ResourceFailure, TheCpusDriverIsRefusedThreadsOnlyWhereItWouldWaitForThem) {
+TEST_F(ResourceFailure, TheCpuDriverRunsUnderAThreadLimitOrIsRefused) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can become another user";
-  static rlim_t most = 0;
-  const Cause cause{
-      "", [](const std::string&) { return setenv("CATENA_DEVICE", "cpu", 1) == 0 && limit(RLIMIT_NPROC, most) && setuid(kNobody) == 0; },
-      "", false};
+  static rlim_t process_limit = 0;
+  const Cause cause{"",
+                    [](const std::string&) {
+                      return setenv("CATENA_DEVICE", "cpu", 1) == 0 && limit(RLIMIT_NPROC, process_limit) && setuid(kNobody) == 0;
+                    },
+                    "", false};
   const Command draw{{"render", folder_ / "s.json", "-o", outputs_ + "/o.png", "--size", "16x16", "--quality", "draft"}, "o.png"};
   const rlim_t cores = std::max(1u, std::thread::hardware_concurrency());
-  // itself, TBB's workers, the driver's queue and one a core for drawing; one more that comes and goes
-  most = 1 + (cores - 1) + 1 + cores + 1;
+  // the main thread, TBB's workers, the driver's queue, one thread per core for drawing, and a temporary one
+  process_limit = 1 + (cores - 1) + 1 + cores + 1;
   const Ended enough = run(draw, cause);
-  EXPECT_EQ(enough.code, 0) << most << ": " << enough.err;
-  most = cores + 1;
+  EXPECT_EQ(enough.code, 0) << process_limit << ": " << enough.err;
+  process_limit = cores + 1;
   const Ended too_few = run(draw, cause);
-  EXPECT_EQ(too_few.code, 1) << most << ": " << too_few.err;
+  EXPECT_EQ(too_few.code, 1) << process_limit << ": " << too_few.err;
 }
 
-TEST_F(ResourceFailure, APartOfCatenaThatIsMissingIsNotTheFilesFault) {
+TEST_F(ResourceFailure, AMissingPartOfCatenaIsReportedAsSuch) {
   const std::string bin = folder_ / "bin", program = bin + "/catena";
   const auto take = [&](const std::string& name) {
     const std::string from = test::binary_dir() + "/" + name, to = bin + "/" + name;
@@ -260,7 +261,7 @@ TEST_F(ResourceFailure, APartOfCatenaThatIsMissingIsNotTheFilesFault) {
     }
 }
 
-TEST_F(ResourceFailure, ASignalThatEndsItIsSaid) {
+TEST_F(ResourceFailure, ATerminatingSignalIsReported) {
   for (const int signal_number : {SIGABRT, SIGSEGV, SIGXCPU}) {
     const pid_t child = fork();
     if (child == 0) {
@@ -282,5 +283,5 @@ TEST_F(ResourceFailure, ASignalThatEndsItIsSaid) {
   }
 }
 
-}  // namespace machine_test
+}  // namespace resource_failure_test
 }  // namespace catena

@@ -30,7 +30,7 @@ TEST(CsvFuzz, TheSeedsAreValid) {
   EXPECT_EQ(parse_seeds(kSeeds, "path.csv")->size(), 3u);
 }
 
-TEST(CsvFuzz, EveryTruncationAndEveryByteTurned) {
+TEST(CsvFuzz, EveryTruncationAndEveryByteFlip) {
   for (std::size_t n = 0; n < kPath.size(); ++n) {
     check(parse_probe_path(kPath.substr(0, n), "path.csv"), kPath.substr(0, n));
     std::string text = kPath;

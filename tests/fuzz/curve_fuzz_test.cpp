@@ -44,7 +44,7 @@ bool check(const Result<curves::CurveSet>& set) {
 bool tck(const std::string& bytes) { return check(curves::parse_tck(bytes, "file.curves")); }
 bool trk(const std::string& bytes) { return check(curves::parse_trk(bytes, "file.curves")); }
 
-TEST(CurveFuzz, EveryTruncationAndEveryByteTurned) {
+TEST(CurveFuzz, EveryTruncationAndEveryByteFlip) {
   const std::string a = test::tck_bytes(kLines, "Float32LE"), b = trk();
   EXPECT_TRUE(tck(a) && trk(b));
   for (std::size_t n = 0; n < a.size(); ++n) {
@@ -75,7 +75,7 @@ TEST(CurveFuzz, Mutations) {
     read += tck(test::mutate_bytes(files[1], random, 3, 0, 80)) ? 1 : 0;
     read += tck(test::mutate(files[0], random)) ? 1 : 0;
     read += trk(test::mutate_bytes(files[2], random)) ? 1 : 0;
-    // the header's numbers, and those of the first line
+    // the numbers of the header and of the first line
     read += trk(test::mutate_bytes(files[2], random, 2, inputs.count() % 2 == 0 ? 0 : 990, 1030)) ? 1 : 0;
   }
   EXPECT_GT(read, inputs.count() / 2);

@@ -17,7 +17,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint64_t kInputs = 100000;
 
-// flips, cuts, doublings, single bytes and words, of anything
+// random bit flips, cuts, duplications, and changes of bytes and words
 void mutate(Bytes& bytes, test::Random& random) {
   const std::size_t changes = 1 + random.below(4);
   for (std::size_t i = 0; i < changes; ++i) {
@@ -58,7 +58,7 @@ FalconFrame any_frame(test::Random& random) {
   return f;
 }
 
-// A reader without state: at each place, is a whole frame there? Frames cannot overlap but by a '<' in byte 14.
+// A stateless reader that looks for a complete frame at each position. Frames overlap only by a '<' in byte 14.
 std::vector<FalconFrame> by_hand(const Bytes& stream) {
   std::vector<FalconFrame> out;
   for (std::size_t at = 0; at + kFalconPacketBytes <= stream.size();) {
@@ -73,7 +73,7 @@ std::vector<FalconFrame> by_hand(const Bytes& stream) {
   return out;
 }
 
-TEST(FalconFuzz, TheFramerFindsWhatAReaderOfTheWholeStreamFinds) {
+TEST(FalconFuzz, TheFramerMatchesAReaderOfTheWholeStream) {
   test::FuzzInputs inputs(kInputs, 17);
   test::Random& random = inputs.random;
   std::uint64_t found = 0, dropped = 0;
@@ -125,7 +125,7 @@ TEST(FalconFuzz, PacketsOfAnyBytesAreRefusedOrRoundTrip) {
       ++frames;
       const FalconPacket again = encode_frame(f);
       ASSERT_TRUE(std::equal(again.begin(), again.end(), bytes.begin())) << "input " << i;
-      // whatever the encoders say: a finite place within reach, or a refusal
+      // any encoder counts give a finite position within reach, or are refused
       if (i % 64 == 0) {
         Vec3 p(0.0);
         if (falcon_forward_kinematics(falcon_angles(f.encoders), p)) {
@@ -161,7 +161,7 @@ Bytes good_image() {
   return image;
 }
 
-TEST(FalconFuzz, ImagesAreTakenOrRefusedWithTheByteAndWhatWasExpected) {
+TEST(FalconFuzz, ImagesAreAcceptedOrRefusedWithTheByteAndTheExpectation) {
   test::FuzzInputs inputs(kInputs, 29);
   test::Random& random = inputs.random;
   const Bytes good = good_image();

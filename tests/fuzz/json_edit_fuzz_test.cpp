@@ -16,7 +16,7 @@ constexpr std::string_view kPointers[] = {"",         "/fields", "/fields/a~1b/f
                                           "/fields/", "/-",      "/list/00",          "/last/x",      "list",     "/~"};
 constexpr std::string_view kValues[] = {"1", "[[0.2, 0], [0.7, 0.1]]", "{\"a\": {}}", "\"//\"", "null // no", "", "[", "/* */ {} ", "nan"};
 
-/// JSON, or one line that says the place.
+/// Checks that the result is JSON or an error in one line with its position.
 void check(const Result<std::string>& edited, const std::string& text) {
   if (edited) {
     EXPECT_TRUE(json::parse(*edited, "f.json")) << *edited << "\nfrom\n" << text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Tables of labels out of hostile hands: labels that can be shown, or one line with the file's name.
+/// Hostile label tables: labels that can be shown, or an error in one line with the file's name.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -44,7 +44,7 @@ TEST(LabelTableFuzz, TheSeedsAreValid) {
   for (const std::string& seed : kFormats) EXPECT_TRUE(check(seed)) << seed;
 }
 
-TEST(LabelTableFuzz, EveryTruncationAndByteTurned) {
+TEST(LabelTableFuzz, EveryTruncationAndEveryByteFlip) {
   for (const std::string& seed : kFormats)
     for (std::size_t n = 0; n < seed.size(); ++n) {
       check(seed.substr(0, n));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Changes of a recording's bytes that its hashes do not see: what lies behind them is reached.
+/// Changes of a recording's bytes with recomputed hashes, so that they reach the code behind the hash checks.
 #pragma once
 #include <algorithm>
 #include <cstring>
@@ -17,7 +17,7 @@ inline std::uint64_t block_hash(const char* data, std::size_t size) {
   return hash.value;
 }
 
-/// Makes the hashes of the blocks good again, as far as their lengths lead: what is behind the hashes is reached.
+/// Recomputes the hashes of all blocks that can be reached by their lengths.
 inline void rewrite_hashes(std::string& bytes) {
   for (std::size_t at = haptics::log::kPreambleBytes; at + sizeof(haptics::log::BlockHeader) <= bytes.size();) {
     haptics::log::BlockHeader head;
@@ -30,7 +30,7 @@ inline void rewrite_hashes(std::string& bytes) {
   }
 }
 
-/// Bytes and numbers changed in place, so that the blocks stay where they are.
+/// Changes bytes and numbers in place, so that the blocks keep their positions.
 inline std::string mutate_in_place(std::string bytes, Random& random, std::size_t from = haptics::log::kPreambleBytes,
                                    std::size_t behind = std::string::npos) {
   constexpr std::uint64_t kNumbers[] = {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The reader of recordings against bytes of all kinds: no crash, no large allocation, ticks in rising order, and what is whole is read.
+/// The reader of recordings on arbitrary bytes: no crash, no large allocation, ticks in increasing order, complete blocks are read.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -18,7 +18,7 @@ struct Counts {
   std::uint64_t ticks = 0;
 };
 
-// Every tick that is told has a number of its own, in rising order, and lies in no gap.
+// Tick numbers are increasing and outside of reported gaps.
 void read_through(std::string_view bytes, Counts& counts) {
   auto reader = LogReader::open(make_memory_source(bytes), "x.catlog");
   if (!reader) {
@@ -36,14 +36,14 @@ void read_through(std::string_view bytes, Counts& counts) {
       last += reader->gap().ticks;
       ++counts.gaps;
     }
-    if (event == LogEvent::state) last = reader->state().tick;  // it begins in mid-run
+    if (event == LogEvent::state) last = reader->state().tick;  // the recording begins mid-run
     if (event == LogEvent::program) {
       EXPECT_LE(reader->program().links.size(), 8u);
     }
     if (event != LogEvent::tick) continue;
     EXPECT_EQ(reader->tick().output.tick, ++last);
     EXPECT_EQ(static_cast<std::size_t>(reader->tick().output.link_count), reader->program().links.size());
-    // what a table prints of it
+    // the texts of a printed table
     EXPECT_NE(to_string(reader->tick().input.condition), nullptr);
     EXPECT_NE(to_string(reader->tick().output.force_state), nullptr);
     for (std::size_t i = 0; i < reader->program().links.size(); ++i) EXPECT_NE(to_string(reader->tick().output.links[i].status), nullptr);
@@ -58,7 +58,7 @@ void read_through(std::string_view bytes, Counts& counts) {
   counts.ticks += ticks;
 }
 
-TEST(LogFuzz, TheSeedIsWhole) {
+TEST(LogFuzz, TheSeedIsValid) {
   Counts counts;
   read_through(test::make_small_log(), counts);
   EXPECT_EQ(counts.clean, 1);
@@ -74,7 +74,7 @@ TEST(LogFuzz, Mutations) {
   while (inputs.next() && !HasFailure()) {
     std::string bytes = random.below(3) == 0 ? test::mutate(seed, random) : test::mutate_in_place(seed, random);
     if (random.below(2) == 0) test::rewrite_hashes(bytes);
-    // a copy of its own size: a read past the end is seen
+    // a copy of the exact size, so that sanitizers detect reads past the end
     const std::vector<char> exact(bytes.begin(), bytes.end());
     read_through({exact.data(), exact.size()}, counts);
     if (HasFailure()) test::write_file("log_fuzz_failure.catlog", bytes);
@@ -87,7 +87,7 @@ TEST(LogFuzz, Mutations) {
   EXPECT_GT(counts.gaps, 0);
 }
 
-TEST(LogFuzz, EveryByteTurned) {
+TEST(LogFuzz, EveryByteFlip) {
   const std::string seed = test::make_small_log(45);
   Counts counts;
   for (std::size_t n = 0; n < seed.size() && !HasFailure(); ++n) {
@@ -99,10 +99,10 @@ TEST(LogFuzz, EveryByteTurned) {
   EXPECT_GT(counts.damaged, 0);
 }
 
-TEST(LogFuzz, HostileLengthsAndMarksCostNoMoreThanTheFile) {
+TEST(LogFuzz, HostileLengthsAndMagicNumbersCostNoMoreThanTheFile) {
   const std::string seed = test::make_small_log();
   Counts counts;
-  // marks everywhere, each with good hashes and the longest payload
+  // magic numbers everywhere, each with valid hashes and the longest payload
   BlockHeader head;
   head.type = 3;
   head.sequence = 1;
@@ -111,7 +111,7 @@ TEST(LogFuzz, HostileLengthsAndMarksCostNoMoreThanTheFile) {
   std::string bytes = seed.substr(0, 400);
   for (int i = 0; i < 50000; ++i) bytes.append(reinterpret_cast<const char*>(&head), sizeof head);
   read_through(bytes, counts);
-  // blocks of nothing, one after the other
+  // consecutive empty blocks
   head.length = 0;
   bytes = seed.substr(0, 400);
   for (std::uint64_t i = 0; i < 50000; ++i) {

@@ -38,7 +38,7 @@ bool check(const Result<mesh::TriangleSoup>& soup, const std::string& text) {
 bool stl(const std::string& text) { return check(mesh::parse_stl(text, "file.mesh"), text); }
 bool obj(const std::string& text) { return check(mesh::parse_obj(text, "file.mesh"), text); }
 
-TEST(MeshFuzz, EveryTruncationAndEveryByteTurned) {
+TEST(MeshFuzz, EveryTruncationAndEveryByteFlip) {
   EXPECT_TRUE(stl(kBinary) && stl(kText) && obj(kObj));
   for (const std::string* whole : {&kBinary, &kText, &kObj})
     for (std::size_t n = 0; n < whole->size(); ++n) {
@@ -50,7 +50,7 @@ TEST(MeshFuzz, EveryTruncationAndEveryByteTurned) {
       turned[n] = static_cast<char>(turned[n] ^ 0x81);
       whole == &kObj ? obj(turned) : stl(turned);
     }
-  // the text counts only once its last solid has ended
+  // a truncated text is invalid until its last solid has ended
   EXPECT_FALSE(stl(kText.substr(0, kText.find("endsolid"))));
 }
 

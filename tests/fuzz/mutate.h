@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Deterministic mutations of a text: bytes flipped, cut, doubled, swapped; tokens dropped or taken from elsewhere.
+/// Deterministic mutations of a text: bytes flipped, cut, duplicated, swapped; tokens dropped or inserted.
 #pragma once
 #include <algorithm>
 #include <chrono>
@@ -10,7 +10,7 @@
 
 namespace catena::test {
 
-/// splitmix64: small, seeded, the same everywhere.
+/// splitmix64 generator: seeded and portable.
 struct Random {
   std::uint64_t state;
   std::uint64_t next() {
@@ -22,24 +22,24 @@ struct Random {
   std::size_t below(std::size_t n) { return n == 0 ? 0 : static_cast<std::size_t>(next() % n); }
 };
 
-/// The inputs of a fuzz test: so many; outside CI so many as CATENA_FUZZ_INPUTS says, or for CATENA_FUZZ_SECONDS. CATENA_FUZZ_SEED: others.
+/// The inputs of a fuzz test: `max_count`, or CATENA_FUZZ_INPUTS, or as many as fit CATENA_FUZZ_SECONDS. CATENA_FUZZ_SEED: another seed.
 class FuzzInputs {
  public:
-  FuzzInputs(std::uint64_t most, std::uint64_t seed) : random{seed}, max_count_(number("CATENA_FUZZ_INPUTS", most)) {
+  FuzzInputs(std::uint64_t max_count, std::uint64_t seed) : random{seed}, max_count_(number("CATENA_FUZZ_INPUTS", max_count)) {
     random.state += 1000003 * number("CATENA_FUZZ_SEED", 0);
     if (const std::uint64_t seconds = number("CATENA_FUZZ_SECONDS", 0); seconds > 0) {
       timed_ = true;
       deadline_ = Clock::now() + std::chrono::seconds(seconds);
     }
   }
-  /// Whether there is another one.
+  /// True while there is another input.
   bool next() {
     if (timed_ ? Clock::now() >= deadline_ : count_ >= max_count_) return false;
     ++count_;
     return true;
   }
   std::uint64_t count() const { return count_; }
-  /// For a log of long runs.
+  /// Number of inputs so far, for logs of long runs.
   bool is_long_run() const { return timed_ || std::getenv("CATENA_FUZZ_INPUTS") != nullptr; }
   Random random;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Deterministic mutations of a binary file: bits and bytes changed, numbers made extreme, pieces cut, doubled and exchanged.
+/// Deterministic mutations of a binary file: bits and bytes changed, extreme numbers, parts cut, duplicated and exchanged.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -27,10 +27,10 @@ inline constexpr std::uint64_t kExtremeNumbers[] = {0,
                                                     0xffffffffffffffff,
                                                     0x7ff8000000000000};
 
-/// One to `most` changes, all of them within [first, last) of the bytes.
-inline std::string mutate_bytes(std::string bytes, Random& random, std::size_t most = 3, std::size_t first = 0,
+/// Applies one to `max_changes` changes within bytes [first, last).
+inline std::string mutate_bytes(std::string bytes, Random& random, std::size_t max_changes = 3, std::size_t first = 0,
                                 std::size_t last = ~std::size_t{0}) {
-  const std::size_t changes = 1 + random.below(most);
+  const std::size_t changes = 1 + random.below(max_changes);
   for (std::size_t i = 0; i < changes && first < bytes.size(); ++i) {
     const std::size_t end = std::min(last, bytes.size()), at = first + random.below(end - first);
     switch (random.below(8)) {
@@ -44,7 +44,7 @@ inline std::string mutate_bytes(std::string bytes, Random& random, std::size_t m
         break;
       case 4:
       case 5: {
-        // a number of 1, 2, 4 or 8 bytes: extreme, or nearly what it was
+        // a number of 1, 2, 4 or 8 bytes: extreme, or close to its value
         const std::size_t width = std::min(std::size_t{1} << random.below(4), end - at);
         std::uint64_t number = 0;
         std::memcpy(&number, bytes.data() + at, width);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A plug-in's file out of hostile hands, before anything of it runs: what it states, or one sentence.
+/// Hostile plug-in files, before any of their code runs: the stated properties, or an error in one line.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -18,7 +18,7 @@ const std::string& seed() {
   return bytes;
 }
 
-/// Ends of texts are where they are expected, whatever the bytes.
+/// Checks that texts are terminated for any bytes.
 bool check(const std::string& bytes) {
   const auto file = plugin::read_file(bytes);
   if (!file) {
@@ -33,13 +33,13 @@ bool check(const std::string& bytes) {
 
 TEST(PluginFuzz, TheSeedIsValid) { EXPECT_TRUE(check(seed())); }
 
-TEST(PluginFuzz, AnotherProcessorsIsNoneOfThisMachine) {
+TEST(PluginFuzz, AFileForAnotherProcessorIsRefused) {
   std::string bytes = seed();
   bytes[18] = static_cast<char>(bytes[18] + 1);  // e_machine
   EXPECT_FALSE(check(bytes));
 }
 
-TEST(PluginFuzz, EveryPieceOfTheHeadAndOfTheSections) {
+TEST(PluginFuzz, EveryTruncationAndByteFlipOfHeaderAndSections) {
   constexpr std::size_t kHead = 64;
   for (std::size_t n = 0; n <= kHead; ++n) EXPECT_FALSE(check(seed().substr(0, n)));
   for (std::size_t cut = 1; cut <= seed().size(); cut += 64) check(seed().substr(0, seed().size() - cut));
@@ -52,7 +52,7 @@ TEST(PluginFuzz, EveryPieceOfTheHeadAndOfTheSections) {
 }
 
 TEST(PluginFuzz, Mutations) {
-  // the table of sections lies at the end
+  // the section table is at the end of the file
   std::uint64_t sections = 0;
   ASSERT_GT(seed().size(), 64u);
   std::memcpy(&sections, seed().data() + 40, sizeof sections);

@@ -38,7 +38,7 @@ const std::string kScene = R"({ // a scene that touches every reader
   "cursor": {"probe": [0, 0, 1], "size": 0.1},
   /* done */ "background": [0, 0, 0], "quality": "time=8" })";
 
-/// Every kind of key that a link, a mode of operation or a ready-made mode takes; fields that cost nothing to make.
+/// Every kind of key of links, modes and presets, on fields that are cheap to build.
 const std::string kHand = R"({ "fields": {"s": {"analytic": "sphere"}, "v": {"analytic": "circle"}},
   "chain": [{"name": "skin", "type": "anisotropic_friction", "surface": "s", "level": 0.5, "field": "v", "kind": "line", "threshold": 0.03,
              "tau_min": 0.002, "tau_max": {"field": "s", "map": [[0, 0.01], [1, 0.05]], "quantity": "gradient", "outside": 0.02},
@@ -52,7 +52,7 @@ const std::string kHand = R"({ "fields": {"s": {"analytic": "sphere"}, "v": {"an
   "modes": [{"name": "one", "links": ["skin", "path"], "active_when": {"button": 1}}, {"name": "two", "links": [], "active_when": {"force_above": 2}}],
   "coupling": {"ramp_s": 0.02, "rotational_stiffness": 0.3, "rotational_damping": 0.001} })";
 
-/// Every widget, and all that follows one.
+/// Every widget, and every object that can follow one.
 const std::string kWidgets = R"({ "fields": {"s": {"analytic": "sphere", "resolution": 4, "box": [-1, 1]}, "v": {"analytic": "circle"}},
   "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [1, 0, 0]}, {"name": "skin", "type": "isosurface", "field": "s", "level": 0.5}],
   "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0.1], "normal": [0, 1, 1], "radius": 0.3, "snap": 0.05, "release": 0.1,
@@ -67,7 +67,7 @@ const std::string kWidgets = R"({ "fields": {"s": {"analytic": "sphere", "resolu
   "isosurfaces": [{"field": "s", "level": {"widget": "l"}}],
   "glyphs": [{"field": "v", "on": {"plane": {"widget": "cut"}}}, {"field": "v", "on": {"isosurface": 0}}] })";
 
-/// A value, or one line that starts with the file's name.
+/// Checks that the result is a value or an error in one line that starts with the file's name.
 bool check(const std::string& text, bool extract) {
   auto scene = scene::parse_scene(text, "scene.json");
   std::string message;
@@ -97,7 +97,7 @@ TEST(SceneFuzz, EveryTruncation) {
   for (std::size_t n = 0; n < kScene.size(); ++n) EXPECT_FALSE(check(kScene.substr(0, n), false)) << n;
 }
 
-TEST(SceneFuzz, EveryByteTurned) {
+TEST(SceneFuzz, EveryByteFlip) {
   for (std::size_t n = 0; n < kScene.size(); ++n) {
     std::string text = kScene;
     text[n] = static_cast<char>(text[n] ^ 0x81);
@@ -118,7 +118,7 @@ TEST(SceneFuzz, MutatedChainsAreExtracted) {
   while (inputs.next() && !HasFailure()) check(test::mutate(inputs.count() % 2 == 0 ? kHand : kScene, inputs.random), true);
 }
 
-/// Completed, driven and measured as well: all of it is a value or one line.
+/// Also resolves, drives and measures the widgets: each result is a value or an error in one line.
 bool drive(const std::string& text) {
   auto scene = scene::parse_scene(text, "scene.json");
   if (!scene) return check(text, false);

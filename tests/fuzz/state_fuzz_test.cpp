@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A recording that begins in mid-run holds the chain's raw state. Forged, with good hashes, it is refused before a tick indexes with it,
-/// or it is harmless: run these under the sanitizers.
+/// A recording that begins mid-run contains the chain's raw state. A forged state with valid hashes is refused before a tick uses it as an
+/// index, or is harmless: run these tests under the sanitizers.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -17,12 +17,12 @@ namespace state_fuzz_test {
 
 using namespace haptics;
 
-/// Any bytes, or numbers at the ends of what indices and doubles can be, mostly among the first `most` bytes.
-void forge(std::span<std::byte> memory, std::size_t most, test::Random& random) {
+/// Writes random bytes, or extreme indices and doubles, mostly into the first `max_changes` bytes.
+void forge(std::span<std::byte> memory, std::size_t max_changes, test::Random& random) {
   static constexpr std::int64_t kIntegers[] = {-1, 1, 2, 6, 7, 40, 255, 1000, 0x7fffffff, -0x80000000ll, 1ll << 40, -(1ll << 40)};
   static const double kNumbers[] = {
       std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -1e300, 1e300, 0.0, 0.5, 5e-324, -1e18};
-  const std::size_t reach = random.below(8) == 0 ? memory.size() : std::min(most, memory.size());
+  const std::size_t reach = random.below(8) == 0 ? memory.size() : std::min(max_changes, memory.size());
   for (std::size_t i = 0, n = 1 + random.below(5); i < n; ++i) {
     const std::size_t at = random.below(reach - 8) & ~(random.below(3) == 0 ? std::size_t{0} : std::size_t{3});
     switch (random.below(5)) {
@@ -44,14 +44,14 @@ void forge(std::span<std::byte> memory, std::size_t most, test::Random& random) 
   }
 }
 
-/// Bytes up to the last one that is not zero: what the constraint uses.
+/// Number of bytes up to the last non-zero one, which the constraint uses.
 std::size_t used(std::span<const std::byte> memory) {
   std::size_t n = memory.size();
   while (n > 16 && memory[n - 1] == std::byte{0}) --n;
   return n;
 }
 
-TEST(StateFuzz, WhatAConstraintTakesForSaneItCanRunWith) {
+TEST(StateFuzz, AStateThatAConstraintAcceptsIsSafeToRun) {
   haptics::tests::Random places(7);
   const auto table = haptics::tests::all_examples();
   std::uint64_t refused = 0, ran = 0;
@@ -61,7 +61,7 @@ TEST(StateFuzz, WhatAConstraintTakesForSaneItCanRunWith) {
         haptics::tests::build(R"({"name": "a", "type": ")" + example.type + "\", " + example.body + "}", haptics::tests::fields());
     ASSERT_NE(constraint, nullptr);
     haptics::tests::Rig rig(constraint);
-    test::FuzzInputs inputs(1 + 20000 / table.size(), 5);  // of each constraint
+    test::FuzzInputs inputs(1 + 20000 / table.size(), 5);  // inputs per constraint
     test::Random& random = inputs.random;
     while (inputs.next()) {
       if (inputs.count() % 8 == 1) {
@@ -96,7 +96,7 @@ TEST(StateFuzz, WhatAConstraintTakesForSaneItCanRunWith) {
               static_cast<unsigned long long>(refused), static_cast<unsigned long long>(ran));
 }
 
-/// Links that index with what they remember, widgets, a mode, a link that aligns.
+/// Links whose memory contains indices, widgets, a mode, a link with alignment.
 std::shared_ptr<HapticProgram> program_of_indices(std::uint64_t epoch) {
   auto program = std::make_shared<HapticProgram>();
   program->epoch = epoch;
@@ -154,7 +154,7 @@ std::string log_from_the_middle(const std::vector<test::ProgramChange>& changes)
   return test::read_file(folder / "middle.catlog");
 }
 
-/// Where the payload of a block of this type lies: from, behind.
+/// Begin and end of the payload of the first block of a type.
 std::pair<std::size_t, std::size_t> block_of(const std::string& bytes, log::BlockType type) {
   for (std::size_t at = log::kPreambleBytes; at < bytes.size();) {
     log::BlockHeader head;
@@ -176,7 +176,7 @@ Result<log::LogReplay> replay(const std::string& bytes, const std::vector<test::
 struct MiddleLog {
   std::vector<test::ProgramChange> changes{{1, program_of_indices(1), {}}, {321, program_of_indices(2), "{}"}};
   std::string bytes = log_from_the_middle(changes);
-  std::size_t state = block_of(bytes, log::BlockType::state).first + 16;  // behind tick and layout
+  std::size_t state = block_of(bytes, log::BlockType::state).first + 16;  // after tick and layout
 
   std::string forged(std::size_t at, std::int64_t value, std::size_t size) const {
     std::string out = bytes;
@@ -186,7 +186,7 @@ struct MiddleLog {
   }
 };
 
-TEST(StateFuzz, AsRecordedItIsReplayedToTheBit) {
+TEST(StateFuzz, AnUnmodifiedRecordingReplaysExactly) {
   const MiddleLog log;
   const auto result = replay(log.bytes, log.changes);
   ASSERT_TRUE(result) << result.error().message;
@@ -194,7 +194,7 @@ TEST(StateFuzz, AsRecordedItIsReplayedToTheBit) {
   EXPECT_EQ(result->stats.ticks, 40u);
 }
 
-TEST(StateFuzz, AForgedIndexIsOneSentence) {
+TEST(StateFuzz, AForgedIndexIsAnErrorInOneLine) {
   const MiddleLog log;
   const auto memory = [](std::size_t link) { return link * sizeof(LinkState) + offsetof(LinkState, memory); };
   const struct {
@@ -203,7 +203,7 @@ TEST(StateFuzz, AForgedIndexIsOneSentence) {
     std::int64_t value;
     std::size_t size;
   } kForged[] = {
-      {"link \"d\"", memory(3) + 8, 1ll << 40, 8},  // the interval of a curve
+      {"link \"d\"", memory(3) + 8, 1ll << 40, 8},  // the index of a curve's interval
       {"link \"a\"", memory(0) + offsetof(LinkState, started) - offsetof(LinkState, memory), 2, 1},
       {"chain", offsetof(ChainState, passivity) + offsetof(PassivityState, next_index), 1 << 30, 4},
       {"chain", offsetof(ChainState, order), 100, 1},
@@ -220,13 +220,13 @@ TEST(StateFuzz, AForgedIndexIsOneSentence) {
   }
 }
 
-// which links keep their state says the file: one that goes to another constraint is looked at by that one
-TEST(StateFuzz, AStateHandedToAnotherConstraintIsLookedAt) {
+// the file says which links keep their state: a state for another constraint is checked by that constraint
+TEST(StateFuzz, AStateForAnotherConstraintIsChecked) {
   const MiddleLog log;
   auto other = std::make_shared<HapticProgram>(*log.changes[1].program);
   std::swap(other->links[0].constraint, other->links[3].constraint);
   const std::vector<test::ProgramChange> changes{log.changes[0], {321, other, "{}"}};
-  // an arc length becomes a search's stack and depth
+  // an arc length is reinterpreted as a search's stack and depth
   const std::string bytes = log.forged(3 * sizeof(LinkState) + offsetof(LinkState, memory) + 200, -1, 8);
   const auto result = replay(bytes, changes);
   ASSERT_FALSE(result);
@@ -242,7 +242,7 @@ TEST(StateFuzz, ForgedStatesAndProgramsWithGoodHashes) {
   while (inputs.next()) {
     std::string bytes = log.bytes;
     if (random.below(4) != 0) {
-      // one link, widget or the rest: each as likely
+      // a link, a widget or the rest, with equal probability
       const std::size_t link = sizeof(LinkState), parts = kMaxLinks + 8;
       const std::size_t part = random.below(parts);
       const std::size_t from = part < static_cast<std::size_t>(kMaxLinks) ? log.state + part * link : log.state + kMaxLinks * link;

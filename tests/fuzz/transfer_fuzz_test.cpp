@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// TransferEditor files out of hostile hands: a transfer function that can be drawn, or one line with the file's name.
+/// Hostile transfer function files: a drawable transfer function, or an error in one line with the file's name.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -56,7 +56,7 @@ TEST(TransferFuzz, TheSeedsAreValid) {
   for (const auto& seed : {kOwn[0], kOwn[1], kParaView[0], kParaView[1]}) EXPECT_TRUE(check(seed)) << seed;
 }
 
-TEST(TransferFuzz, EveryTruncationAndByteTurned) {
+TEST(TransferFuzz, EveryTruncationAndEveryByteFlip) {
   for (const auto& seed : {kOwn[0], kOwn[1], kParaView[0], kParaView[1]})
     for (std::size_t n = 0; n < seed.size(); ++n) {
       EXPECT_FALSE(check(seed.substr(0, n))) << n;
@@ -76,8 +76,8 @@ TEST(TransferFuzz, Mutations) {
   EXPECT_LT(read, inputs.count());
 }
 
-/// Any range beside any file: laid anew, or one line.
-TEST(TransferFuzz, RangesBesideFiles) {
+/// Any range with any file: a rescaled function, or an error in one line.
+TEST(TransferFuzz, FilesWithExtremeRanges) {
   const test::TemporaryFolder folder;
   const std::string ranges[] = {"[0, 1]", "[1, 0]", "[-1e38, 1e38]", "[0, 1e-45]", "[1, 1.0000001]", "[\"a\", 1]", "{}", "[1e300, 2e300]"};
   for (const auto& seed : {kOwn[0], kOwn[1], kParaView[0], kParaView[1]}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Tables of trials and questions about them out of hostile hands: what is read can be written and read again; else one line.
+/// Hostile trial tables and queries: a table that is read can be written and read again; otherwise an error in one line.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -67,7 +67,7 @@ TEST(TrialTableFuzz, TheSeedsAreValid) {
   EXPECT_TRUE(check_inquiry(kStudy + kAsked));
 }
 
-TEST(TrialTableFuzz, EveryTruncationAndEveryByteTurned) {
+TEST(TrialTableFuzz, EveryTruncationAndEveryByteFlip) {
   for (std::size_t n = 0; n < kRows.size(); ++n) {
     check(kRows.substr(0, n));
     std::string text = kRows;
@@ -81,7 +81,7 @@ TEST(TrialTableFuzz, Mutations) {
   std::uint64_t read = 0;
   const std::string header = study::table_header(), rows = kRows.substr(header.size());
   while (inputs.next() && !HasFailure()) {
-    // mostly of the rows: a broken header hides them
+    // mostly in the rows, because a broken header hides them
     const std::string text = inputs.random.below(8) == 0 ? test::mutate(kRows, inputs.random) : header + test::mutate(rows, inputs.random);
     read += check(text) ? 1 : 0;
   }
@@ -89,7 +89,7 @@ TEST(TrialTableFuzz, Mutations) {
   EXPECT_LT(read, inputs.count());
 }
 
-TEST(TrialTableFuzz, MutationsOfWhatIsAsked) {
+TEST(TrialTableFuzz, MutationsOfQueries) {
   test::FuzzInputs inputs(2000, 30);
   std::uint64_t read = 0;
   while (inputs.next() && !HasFailure()) read += check_inquiry(kStudy + test::mutate(kAsked, inputs.random)) ? 1 : 0;

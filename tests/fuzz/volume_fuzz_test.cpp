@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Damaged NIfTI files, plain and compressed, and raw volumes of any stated shape: a grid that can be sampled, or one line; never more
-/// memory than is allowed.
+/// Damaged NIfTI files, plain and compressed, and raw volumes of any stated shape: a grid that can be sampled, or an error in one line,
+/// within the memory limit.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ class VolumeFuzz : public testing::Test {
   VolumeFuzz() { set_memory_limit(std::uint64_t{64} << 20); }
   ~VolumeFuzz() override { set_memory_limit(std::nullopt); }
 
-  /// True: loaded, and sampled where it says that it is.
+  /// Loads a file and samples it in its domain; true if it was loaded.
   bool check(const LoadRequest& request) {
     const auto field = load(request);
     if (!field) {
@@ -52,7 +52,7 @@ class VolumeFuzz : public testing::Test {
     return check(request);
   }
 
-  /// 5 x 4 x 3 numbers in a NIfTI-1 file with both transforms.
+  /// A NIfTI-1 file of 5 x 4 x 3 numbers with both transforms.
   static std::string nifti() {
     std::string bytes(352, '\0');
     const auto put = [&]<class T>(std::size_t at, T value) { std::memcpy(bytes.data() + at, &value, sizeof value); };
@@ -84,7 +84,7 @@ TEST_F(VolumeFuzz, NiftiMutations) {
   test::FuzzInputs inputs(3000, 31);
   std::uint64_t loaded = 0;
   while (inputs.next() && !HasFailure()) {
-    // most changes into the header
+    // most changes are in the header
     const std::size_t end = inputs.random.below(4) == 0 ? whole.size() : 352;
     loaded += check("mutated.nii", test::mutate_bytes(whole, inputs.random, 3, 0, end)) ? 1 : 0;
   }
@@ -92,7 +92,7 @@ TEST_F(VolumeFuzz, NiftiMutations) {
   EXPECT_LT(loaded, inputs.count());
 }
 
-TEST_F(VolumeFuzz, EveryByteOfANiftiHeaderTurned) {
+TEST_F(VolumeFuzz, EveryByteFlipOfANiftiHeader) {
   const std::string whole = nifti();
   for (std::size_t at = 0; at < 352 && !HasFailure(); ++at)
     for (const int turn : {0x01, 0x80, 0xff}) {

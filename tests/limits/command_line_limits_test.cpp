@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rows of the command line: numbers at the ends of doubles in scenes, tables and options, and a grid that is full.
+// Rows of the command line: numbers at the limits of doubles in scenes, tables and options, and a dense grid of 512^3.
 #include <algorithm>
 
 #include "tests/limits/limits_table.h"
@@ -7,16 +7,17 @@
 #include "tests/support/run_program.h"
 
 namespace catena::extremes {
-namespace command_test {
+namespace command_line_limits_test {
 
-/// How the program ended, and what it said of bad input; without the folder's name. A file "out.csv" or "out.png" is its output.
+/// Exit code and error message of the program, without the folder's name; mentions an output "out.csv" or "out.png".
 std::string ran(const test::TemporaryFolder& folder, const test::ProgramResult& run) {
   const bool wrote = test::exists(folder / "out.csv") || test::exists(folder / "out.png");
   if (run.exit_code == 0) return wrote ? "done" : "done, without an output";
-  std::string said = run.err;
-  for (auto at = said.find(folder.path()); at != std::string::npos; at = said.find(folder.path())) said.erase(at, folder.path().size() + 1);
-  if (said.ends_with('\n')) said.pop_back();
-  return fmt::format("exit code {}: {}{}", run.exit_code, said, wrote ? ", and an output" : "");
+  std::string message = run.err;
+  for (auto at = message.find(folder.path()); at != std::string::npos; at = message.find(folder.path()))
+    message.erase(at, folder.path().size() + 1);
+  if (message.ends_with('\n')) message.pop_back();
+  return fmt::format("exit code {}: {}{}", run.exit_code, message, wrote ? ", and an output" : "");
 }
 
 struct Files {
@@ -26,7 +27,7 @@ struct Files {
   std::string seeds = "x,y,z\n0.5,0,0\n";
 };
 
-/// Runs with "S", "P" and "Z" for the scene, the probe's path and the seeds, "O" for out.csv and "G" for out.png.
+/// Runs the program; "S", "P" and "Z" stand for the scene, the probe's path and the seeds, "O" for out.csv and "G" for out.png.
 std::string run(const Files& files, std::vector<std::string> arguments) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", files.scene);
@@ -103,7 +104,7 @@ std::string nine_translucent_surfaces() {
   return run(files, {"render", "S", "-o", "G", "--size", "16x12"});
 }
 
-/// What is said of numbers that 32-bit floats do not hold.
+/// The error message for numbers that a 32-bit float cannot represent.
 std::string notes_of_data() {
   const test::TemporaryFolder folder;
   std::vector<double> values;
@@ -127,7 +128,7 @@ std::string voxels_beyond_pictures() {
   return ran(folder, test::run_catena({"render", folder / "s.json", "-o", folder / "out.png", "--size", "64x48"}));
 }
 
-// ---- 512^3 without a single block of one value ----
+// ---- 512^3 without constant blocks ----
 
 const test::TemporaryFolder& dense() {
   static const test::TemporaryFolder folder;
@@ -145,9 +146,9 @@ const test::TemporaryFolder& dense() {
 
 std::string full_under_the_hand() {
   const auto& folder = dense();
-#ifdef CATENA_SANITIZED  // its own addresses alone are more
+#ifdef CATENA_SANITIZED  // the sanitizer's own memory exceeds it
   const std::string limit = "exec \"$0\" \"$@\"";
-#else  // 1.25 times its 32-bit floats
+#else  // 1.25 times the grid's 32-bit floats
   const std::string limit = "ulimit -v 700000; exec \"$0\" \"$@\"";
 #endif
   const auto result = test::run_program(
@@ -166,10 +167,10 @@ std::string full_under_the_eye() {
   return ran(folder, test::run_catena({"render", folder / "s.json", "-o", folder / "out.png", "--size", "64x48", "--memory", "700"}));
 }
 
-}  // namespace command_test
+}  // namespace command_line_limits_test
 
 Group command_rows() {
-  using namespace command_test;
+  using namespace command_line_limits_test;
   const std::string exit = "exit code 2: catena: ";
   std::vector<Row> rows{
       {"TwentyKilohertz", "Haptic rate of 20 kHz",
@@ -178,8 +179,8 @@ Group command_rows() {
       {"SlowAndFastServos", "Haptic rates of 100 Hz and 10 kHz", "100 Hz: done, without an output; 10000 Hz: done, without an output",
        slow_and_fast_servos},
       {"TooSmall", "The number 9e-31 in a scene",
-       exit + "s.json:2: 9e-31 is too small; 0 or a number from 1e-30 to 1e30 in size was expected", too_small},
-      {"TooLarge", "1.1e30", exit + "s.json:2: 1.1e+30 is too large; 0 or a number from 1e-30 to 1e30 in size was expected", too_large},
+       exit + "s.json:2: 9e-31 is too small; 0 or a number of magnitude 1e-30 to 1e30 was expected", too_small},
+      {"TooLarge", "1.1e30", exit + "s.json:2: 1.1e+30 is too large; 0 or a number of magnitude 1e-30 to 1e30 was expected", too_large},
       {"BeyondDoubles", "1e309", exit + "s.json:2: '1e309' is not a number; a finite number was expected", beyond_doubles},
       {"SmallestAndLargest", "Sphere links with radii 1e-30 and 1e30, for a workspace of size 1", "done; done", smallest_and_largest},
       {"NanInAPath", "Probe path with NaN", exit + "p.csv:3: \"nan\" in column \"x\"; a finite number was expected", nan_in_a_path},
@@ -193,14 +194,14 @@ Group command_rows() {
       {"FarSeed", "`trace` from a seed 1e300 units away", "done", far_seed},
       {"DenormalSeed", "`trace` from a seed 1e-320 beside the axis of a vortex ring", "done", denormal_seed},
       {"NanSeed", "`trace` from a seed with NaN", exit + "z.csv:2: \"nan\" in column \"x\"; a finite number was expected", nan_seed},
-      {"NoLength", "`trace` with `--length 1e-300`", exit + "z.csv:2: seed (0.5, 0, 0): the line ends on the spot in both directions",
+      {"NoLength", "`trace` with `--length 1e-300`", exit + "z.csv:2: seed (0.5, 0, 0): the line has no length in either direction",
        no_length},
       {"NineTranslucentSurfaces", "Nine translucent isosurfaces",
        exit + "s.json: the scene has 9 translucent isosurfaces, expected at most 8", nine_translucent_surfaces},
       {"NotesOfData", "Note about 64-bit data with 0.1 and 1e300, in `replay`",
-       "d.raw: values of type float64 are rounded to 32-bit floats", notes_of_data},
+       "d.raw: values of type float64 were rounded to 32-bit floats", notes_of_data},
       {"VoxelsBeyondPictures", "Image of voxels of 1e30",
-       exit + "s.json:1: field \"d\": reaches 7e+30 from the origin, which no picture shows; at most 1e+30 was expected",
+       exit + "s.json:1: field \"d\": extends to 7e+30 from the origin, too far to be rendered; at most 1e+30 was expected",
        voxels_beyond_pictures},
       {"NoTolerance", "`trace` with `--tolerance 1e-300`", "done", no_tolerance},
   };

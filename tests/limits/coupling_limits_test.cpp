@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rows of the coupling: rates, irregular clocks, and springs from none to far beyond what is passive.
+// Rows of the coupling: rates, irregular clocks, and spring stiffness from zero to far above the passive limit.
 #include "haptics/device/registry.h"
 #include "haptics/servo/device_limits.h"
 #include "tests/acceptance/chain_fixture.h"
@@ -9,7 +9,7 @@
 #include "tests/support/simple_links.h"
 
 namespace catena::extremes {
-namespace coupling_test {
+namespace coupling_limits_test {
 
 using acceptance::ChainRig;
 using acceptance::HapticProgram;
@@ -17,10 +17,10 @@ using acceptance::make_program;
 using haptics::bitwise_equal;
 using test::ClosedLoop;
 
-constexpr double kMass = 0.159, kDamping = 0.5;  ///< of the mechanism, kg and N s/m
+constexpr double kMass = 0.159, kDamping = 0.5;  ///< of the mechanism, in kg and N s/m
 constexpr double kRates[] = {100, 333, 1000, 5000, 10000, 20000};
 
-/// A line, a ball and a floor; the hand is held by all of them.
+/// A line, a ball and a floor that all hold the hand.
 std::string chain(const std::string& coupling) {
   return R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
     "chain": [{"name": "line", "type": "streamline", "field": "v", "seed": [0.8, 0, 0]},
@@ -35,7 +35,7 @@ std::string the_same_place_at_any_rate() {
   std::vector<Vec3> proxies, forces;
   for (const double rate : kRates) {
     ChainRig rig(program);
-    // two seconds of a hand at 0.1 m/s, and one of rest
+    // 2 s of a hand at 0.1 m/s, then 1 s of rest
     const int ticks = static_cast<int>(3 * rate);
     for (int i = 0; i < ticks; ++i) {
       const double t = std::min(i / rate, 2.0), a = 2.5 * t;
@@ -54,13 +54,13 @@ std::string the_same_place_at_any_rate() {
 }
 
 std::string an_irregular_clock() {
-  // a hand that slides along a plane's normal at an even speed: the damping's force is the speed's, whatever the steps
+  // a hand at constant speed: the damping force depends on the speed only, for any steps
   const auto program = make_program(R"({"chain": [{"name": "a", "type": "line", "point": [0, 0, 0], "direction": [1, 0, 0]}],
     "coupling": {"stiffness": 500, "damping": 3, "max_force": 100}, "workspace": {"metres_per_unit": 0.05}})");
   ChainRig rig(program);
   haptics::tests::Random random(11);
   double t = 0, off = 0;
-  const double speed = 0.2;  // units a second
+  const double speed = 0.2;  // units per second
   for (int i = 0; i < 20000; ++i) {
     rig.step_at(t, {speed * t, 0, 0});
     if (i > 0) off = std::max(off, norm(rig.out.force_n + Vec3(3 * 0.05 * speed, 0, 0)));
@@ -88,15 +88,15 @@ HapticProgram spring(double stiffness) {
   return p;
 }
 
-/// What the mechanism gets of a spring that is let go from rest, by what the spring had: above 1 the spring has made energy.
+/// Maximum kinetic energy after the release of a spring from rest, divided by the spring's energy: above 1 energy was generated.
 double gain(const HapticProgram& p, double stiffness, double period_s, int ticks) {
   ClosedLoop loop(p, bare(period_s), {{0, {0, 0, 0.01}}});
-  double most = 0;
+  double maximum = 0;
   for (int i = 0; i < ticks; ++i) {
     loop.step();
-    most = std::max(most, -loop.min_passivity_j);
+    maximum = std::max(maximum, -loop.min_passivity_j);
   }
-  return most / (0.5 * stiffness * 1e-4);
+  return maximum / (0.5 * stiffness * 1e-4);
 }
 
 std::string the_passive_limit_at_any_rate() {
@@ -112,7 +112,7 @@ std::string the_passive_limit_at_any_rate() {
 }
 
 std::string far_past(const std::vector<double>& rates, double bound_j) {
-  double most = 0, end = 0;
+  double maximum = 0, end = 0;
   bool finite = true;
   for (const double rate : rates)
     for (const double times : {10.0, 100.0, 1000.0}) {
@@ -133,18 +133,18 @@ std::string far_past(const std::vector<double>& rates, double bound_j) {
       double kinetic = 0;
       for (int i = 0; i < static_cast<int>(rate); ++i) {
         finite = finite && is_finite(loop.step().force_n) && std::isfinite(loop.out.energy_j) && loop.out.dissipated_j >= 0;
-        most = std::max(most, norm(loop.out.force_n));
+        maximum = std::max(maximum, norm(loop.out.force_n));
         kinetic = std::max(kinetic, loop.kinetic_j());
       }
       end = std::max(end, kinetic);
     }
   return Findings()
       .add(finite ? "forces and energies are finite" : "a force or an energy is not finite")
-      .at_most("force above 10 N by", most - 10, 1e-10, "N")
+      .at_most("force above 10 N by", maximum - 10, 1e-10, "N")
       .at_most("a second later the grip's kinetic energy is", end, bound_j, "J");
 }
 
-// 0.015 J: what the grip's own spring of 300 N/m has at 10 mm
+// 0.015 J: the energy of the grip's spring of 300 N/m at 10 mm
 std::string far_past_the_limit() { return far_past({1000, 10000}, 0.015); }
 std::string far_past_the_limit_at_100_hz() { return far_past({100}, 0.1); }
 
@@ -174,10 +174,10 @@ std::string springs_beyond_everything() {
   return Findings().all("proxies, force and energies are finite, and the force is at most 8 N", right, asked);
 }
 
-}  // namespace coupling_test
+}  // namespace coupling_limits_test
 
 Group coupling_rows() {
-  using namespace coupling_test;
+  using namespace coupling_limits_test;
   return {
       "Clocks and stiffness",
       {
@@ -187,16 +187,18 @@ Group coupling_rows() {
            the_same_place_at_any_rate},
           {"AnIrregularClock", "Time steps of 10 us to 0.1 s in random order; probe at constant velocity v, damping b",
            "difference of the damping force from b v at most 1e-09 N", an_irregular_clock},
-          proved_elsewhere("A clock that stops or runs backwards", "the tick counts as zero seconds", "Tick.TimeThatRunsBackCountsAsNone"),
+          proved_elsewhere("A clock that stops or runs backwards", "the tick counts as zero seconds",
+                           "Tick.ADecreasingClockGivesNoDamping"),
           proved_elsewhere("Late or missing ticks", "the force is held for five ticks, then ramped to zero",
                            "ForceLimiter.LateTicksHoldThenRampOutLinearlyIn20ms"),
           {"ThePassiveLimitAtAnyRate", "Springs just below and above the limit 2 b / T at 100 Hz to 20 kHz, released from rest",
            "at 0.99 of the limit, returned per stored energy at most 1; at 1.01 of it, more than was stored at every rate",
            the_passive_limit_at_any_rate},
           proved_elsewhere("The largest stable stiffness at 1 kHz, without and with a delay of one sample",
-                           "equal to linear theory within 0.1 %", "ClosedLoopTest.TheLargestStableStiffnessIsTheOneOfTheTable"),
+                           "equal to linear theory within 0.1 %", "ClosedLoopTest.TheLargestStableStiffnessMatchesTheTable"),
           proved_elsewhere("Stiffness 1.1 to 10 times the limit, with the passivity controller",
-                           "no energy is gained, and the motion dies out", "ClosedLoopTest.AboveTheLimitTheControllerKeepsThePeace"),
+                           "no energy is gained, and the motion dies out",
+                           "ClosedLoopTest.AboveThePassiveLimitTheControllerStopsEnergyGrowth"),
           {"FarPastTheLimit",
            "Stiffness 10, 100 and 1000 times the limit at 1 and 10 kHz, with a simulated hand, the device's limits and the controller",
            "forces and energies are finite; force above 10 N by at most 1e-10 N; a second later the grip's kinetic energy is at most 0.015 "

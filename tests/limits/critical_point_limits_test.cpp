@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Rows of critical points: of every type, traced, and under the hand.
+// Rows of critical points of every type: traced lines, and links.
 #include "haptics/constraints/streamline/selected_streamline.h"
 #include "tests/engine/geometry/flow/lambda_field.h"
 #include "tests/limits/flow_fixture.h"
 #include "tests/limits/limits_table.h"
 
 namespace catena::extremes {
-namespace critical_test {
+namespace critical_point_limits_test {
 
 using catena::LinkStatus;
 using catena::test::lambda_field;
@@ -17,11 +17,11 @@ using Distance = double (*)(const Vec3&);
 double from_origin(const Vec3& p) { return norm(p); }
 
 struct Bounds {
-  double zero = 1e-6, online = 1e-6;  ///< L
+  double zero = 1e-6, online = 1e-6;  ///< bounds in L
 };
 
-/// A hand goes from the seed over the zero to the other side and back, with its line traced once and integrated in every tick.
-/// `off`: how far a place is from the zeros.
+/// A hand moves from the seed over the zero to the other side and back, on a selected and on an online line.
+/// `off`: distance of a position from the zeros.
 std::string over_a_zero(Velocity velocity, const Vec3& seed, Distance off = from_origin, const Bounds& bounds = {}) {
   const auto field = lambda_field(velocity);
   const auto traced = flow::trace({field.get()}, seed);
@@ -91,10 +91,10 @@ std::string dipole() {
   return over_a_zero([](const Vec3& p) { return Vec3(p.x * p.x - p.y * p.y, 2 * p.x * p.y, 0); }, {0, 0.6, 0});
 }
 
-}  // namespace critical_test
+}  // namespace critical_point_limits_test
 
 Group critical_rows() {
-  using namespace critical_test;
+  using namespace critical_point_limits_test;
   const std::string under =
       "; links OK, CRITICAL or BUDGET within 257 fetches in every case; distance of the proxy from the traced line at most 1e-06 L";
   const auto zero = [&](const char* ends) {
@@ -109,7 +109,7 @@ Group critical_rows() {
           {
               proved_elsewhere("Attracting, repelling and star nodes, the straight separatrices of saddles, a zero of third order",
                                "held within 1e-6 L of the zero within 6 ticks, CRITICAL; released when the probe turns back",
-                               "CriticalPoints.StraightWaysStopOnTheZeroAndLetGo"),
+                               "CriticalPoints.StraightPathsStopOnTheZeroAndLeaveIt"),
               proved_elsewhere("The curved separatrices of a saddle", "the proxy reaches the zero within 1e-4 L",
                                "CriticalPoints.CurvedManifoldsAreReachedWhenDragged"),
               {"AttractingSpiral", "Probe moves across an attracting spiral (3 radians per unit)", zero("from LENGTH to CRITICAL"),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the rows of the flow share: a line that is integrated in every tick, and how a traced one ends.
+/// Shared helpers of the flow's rows: an online line, and the end of a traced line.
 #pragma once
 #include "engine/geometry/flow/curve.h"
 #include "haptics/constraints/streamline/online_streamline.h"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Rows of the flow: limit cycles, discontinuities, ways out of the domain; traced, and under the hand.
+// Rows of the flow: limit cycles, discontinuities, exits of the domain, for traced lines and links.
 #include "haptics/constraints/streamline/selected_streamline.h"
 #include "tests/engine/geometry/flow/lambda_field.h"
 #include "tests/limits/flow_fixture.h"
 #include "tests/limits/limits_table.h"
 
 namespace catena::extremes {
-namespace flow_test {
+namespace flow_limits_test {
 
 using catena::LinkStatus;
 using catena::test::lambda_field;
@@ -35,29 +35,29 @@ std::string onto_a_limit_cycle() {
   return found.at_most("distance of the end from the cycle", off / 4, 1e-9, "L");
 }
 
-std::string along_a_limit_cycle(Velocity velocity, double felt_bound) {
+std::string along_a_limit_cycle(Velocity velocity, double proxy_bound) {
   const auto curve = flow::trace({lambda_field(velocity).get()}, {1, 0, 0});
   if (!curve) return curve.error().message;
   double off = 0;
   for (const flow::Knot& knot : (*curve)->knots()) off = std::max(off, off_the_cycle(knot.p));
   Rig rig(haptics::make_selected_streamline(*curve));
-  double felt = 0;
+  double distance = 0;
   for (int i = 0; i < 2000; ++i) {
     const double a = 0.01 * i;
     rig.tick(Vec3(1.3 * std::cos(a), 1.3 * std::sin(a), 0.1));
-    felt = std::max(felt, norm(rig.state.proxy - Vec3(std::cos(a), std::sin(a), 0)));
+    distance = std::max(distance, norm(rig.state.proxy - Vec3(std::cos(a), std::sin(a), 0)));
   }
   return Findings()
       .add(stop_names(**curve))
       .at_most("distance from the cycle", off / 4, 1e-7, "L")
-      .at_most("distance of the proxy from the closest point in three laps", felt / 4, felt_bound, "L");
+      .at_most("distance of the proxy from the closest point in three laps", distance / 4, proxy_bound, "L");
 }
 std::string along_an_attracting_cycle() { return along_a_limit_cycle(cycle, 1e-7); }
 std::string along_a_repelling_cycle() { return along_a_limit_cycle(repelling_cycle, 1e-6); }
 
 // ---- discontinuities ----
 
-/// A line from (-0.7, 0, 0) into the plane x = 0 where the velocity changes; `beyond`: its direction there.
+/// A line from (-0.7, 0, 0) into the plane x = 0, where the velocity changes; `beyond`: direction behind the plane.
 std::string across_a_jump(double degrees) {
   const Vec3 beyond(std::cos(degrees * M_PI / 180), std::sin(degrees * M_PI / 180), 0);
   const auto field = lambda_field([beyond](const Vec3& p) { return p.x < 0 ? Vec3(1, 0, 0) : beyond; });
@@ -68,13 +68,13 @@ std::string across_a_jump(double degrees) {
   found.add(stop_names(**curve));
   const bool passes = (*curve)->last_end() == flow::Termination::length;
   const auto on = [&](double s) { return s < 0.7 ? Vec3(s - 0.7, 0, 0) : (passes ? s - 0.7 : 0.0) * beyond; };
-  double off = 0, felt = 0;
+  double off = 0, distance = 0;
   for (double s = 0; s <= std::min(1.5, (*curve)->knots().back().s); s += 0.01) off = std::max(off, norm((*curve)->position(s) - on(s)));
   Rig rig = make_online_rig(field, seed);
   for (int i = 0; i <= 300; ++i) rig.tick(passes ? on(0.005 * i) : Vec3(0.005 * i - 0.7, 0, 0));
-  felt = norm(rig.state.proxy - on(1.5));
+  distance = norm(rig.state.proxy - on(1.5));
   return found.at_most("distance from the closed form", off / 4, 1e-6, "L")
-      .at_most("distance of the proxy from the end", felt / 4, 1e-6, "L")
+      .at_most("distance of the proxy from the end", distance / 4, 1e-6, "L")
       .add(to_string(rig.state.status));
 }
 std::string a_kink() { return across_a_jump(45); }
@@ -93,7 +93,7 @@ std::string steep_walls_of_a_grid() {
       .at_most("distance of its end from the sheet", std::fabs((*curve)->knots().back().p.y) / 4, 1e-9, "L");
 }
 
-// ---- ways out ----
+// ---- exits of the domain ----
 
 std::string out_through_a_corner() {
   const auto grid =
@@ -114,7 +114,7 @@ std::string out_and_back_at_ten_metres_a_second() {
   double off = 0, back = 0;
   long long right = 0, asked = 0;
   for (Rig& rig : rigs) {
-    for (int i = 0; i <= 30; ++i) rig.tick(seed + 0.2 * i * way);  // 0.2 units a tick, 4 units beyond the wall
+    for (int i = 0; i <= 30; ++i) rig.tick(seed + 0.2 * i * way);  // 0.2 units per tick, up to 4 units beyond the boundary
     right += rig.state.status == LinkStatus::boundary && rig.state.reason == SampleStatus::outside_box;
     off = std::max(off, norm(rig.state.proxy - wall));
     for (int i = 30; i >= 0; --i) rig.tick(seed + 0.2 * i * way);
@@ -129,10 +129,10 @@ std::string out_and_back_at_ten_metres_a_second() {
       .at_most("distance from the seed after the return", back / 4, 1e-8, "L");
 }
 
-}  // namespace flow_test
+}  // namespace flow_limits_test
 
 Group flow_rows() {
-  using namespace flow_test;
+  using namespace flow_limits_test;
   return {
       "Flow",
       {
@@ -167,10 +167,10 @@ Group flow_rows() {
            "seed after the return at most 1e-08 L",
            out_and_back_at_ten_metres_a_second},
           proved_elsewhere("A Runge-Kutta stage outside the domain while the line is inside", "the line equals that of the grid",
-                           "GridBoundary.AStageBeyondTheWallIsNotTheLineBeyondIt"),
+                           "GridBoundary.AStageBeyondTheBoundaryDoesNotEndTheLine"),
           proved_elsewhere("NaN on the path of a streamline", "the line ends before it, BOUNDARY; the proxy follows the probe back",
-                           "NanRegion.AStreamlineEndsBeforeItAndComesBack"),
-          proved_elsewhere("NaN on an isosurface", "the proxy stops there", "NanRegion.AnIsosurfaceHasAWallThere"),
+                           "NanRegion.AStreamlineEndsBeforeTheNanRegionAndReturns"),
+          proved_elsewhere("NaN on an isosurface", "the proxy stops there", "NanRegion.AnIsosurfaceEndsAtTheNanRegion"),
       }};
 }
 

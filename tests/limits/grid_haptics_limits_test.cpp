@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rows of the world: grids of any size, shape and place, and values of any size, under the hand.
+// Rows of grids in haptics: any voxel size, shape and position, and any magnitude of values.
 #include "tests/acceptance/chain_fixture.h"
 #include "tests/engine/geometry/flow/lambda_field.h"
 #include "tests/limits/flow_fixture.h"
@@ -7,7 +7,7 @@
 #include "tests/limits/probe_path.h"
 
 namespace catena::extremes {
-namespace world_test {
+namespace grid_haptics_limits_test {
 
 using acceptance::ChainRig;
 using acceptance::HapticProgram;
@@ -18,8 +18,8 @@ constexpr const char* kLine = R"("type": "streamline", "field": "v", "follow": "
 constexpr const char* kOnline = R"("type": "streamline", "field": "v", "follow": "online")";
 constexpr const char* kSurface = R"("type": "isosurface", "field": "s", "level": 0.9)";
 
-/// A link on grids whose voxels have the edge `h` and whose middle is at `origin` (in voxels). Values go by the node's number: the same
-/// floats in every world.
+/// A link on grids with voxel edge `h` and centre `origin` (in voxels). Values depend on the node's index only, so that all grids have the
+/// same floats.
 std::shared_ptr<const HapticProgram> on_grids(const std::string& link, double h, const Vec3& origin) {
   constexpr int n = 33;
   const Vec3 middle(0.5 * (n - 1));
@@ -48,7 +48,7 @@ struct World {
   Vec3 origin;
 };
 
-/// How far the proxies of these worlds are from those of voxels of 0.125 at the origin, under the same hand.
+/// Distance of the proxies on these grids from those on voxels of 0.125 at the origin, under the same hand.
 std::string same_proxies(const std::vector<std::string>& links, const std::vector<World>& worlds, double bound) {
   constexpr int kTicks = 1500;
   const auto probe = [](int i) { return probe_at(i) - Vec3(0, 0, 0.5 - 1e-3 * i); };
@@ -113,7 +113,7 @@ std::string voxels_a_thousand_times_as_long() {
       .at_most("distance of the proxies from the closest point", off, 1e-9, "of the domain's shortest edge, 0.03");
 }
 
-/// Sampled spheres whose values are s times as large, exactly.
+/// Sampled spheres with values scaled exactly by s.
 std::string values_of_any_size() {
   constexpr int n = 33;
   const auto mapping = field::Mapping::from_linear(Mat3(0.125), Vec3(-2.0));
@@ -126,7 +126,7 @@ std::string values_of_any_size() {
   };
   const auto plain = proxies(1);
   double off = 0;
-  // 2^-149 is the least float: all values are denormal
+  // 2^-149 is the smallest float: all values are denormal
   for (const double s : {0x1p-149, 0x1p-140, 0x1p-100, 0x1p100, 0x1p119}) {
     const auto scaled = proxies(s);
     for (std::size_t i = 0; i < plain.size(); ++i) off = std::max(off, norm(scaled[i] - plain[i]) / 4);
@@ -134,7 +134,7 @@ std::string values_of_any_size() {
   return Findings().at_most("distance of the proxies from those for values near 1", off, 1e-9, "L");
 }
 
-// ---- grids with little or nothing in them ----
+// ---- grids with few or no valid values ----
 
 const double kNan = std::nan("");
 const auto kVoxels = field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0));
@@ -142,7 +142,7 @@ constexpr field::Index3 kSize{17, 17, 17};
 
 bool even(const Vec3& p) { return static_cast<int>(4 * (p.x + p.y + p.z + 6) + 0.5) % 2 == 0; }
 
-/// A hand walks, jumps and rests on the surface of a grid.
+/// A hand moves, jumps and rests on the surface of a grid.
 std::string on_surface(const std::function<double(const Vec3&)>& value, double level) {
   haptics::tests::Rig rig(haptics::tests::isosurface(haptics::tests::sample_scalar_grid(kVoxels, kSize, value), level));
   haptics::tests::Random random(3);
@@ -195,10 +195,10 @@ std::string lines_without_a_whole_cell() {
   return lines_of([](const Vec3& p) { return even(p) ? Vec3(kNan) : Vec3(1.0); });
 }
 
-}  // namespace world_test
+}  // namespace grid_haptics_limits_test
 
 Group world_rows() {
-  using namespace world_test;
+  using namespace grid_haptics_limits_test;
   return {
       "Fields under the probe",
       {
@@ -231,22 +231,22 @@ Group world_rows() {
            "NO_SURFACE, or BUDGET during the search",
            without_a_whole_cell},
           proved_elsewhere("Random NaN or infinite voxels in the grid of an isosurface", "all output is finite",
-                           "IsosurfaceSemantics.BrokenVoxelsNeverComeOut"),
-          proved_elsewhere("Isosurface of a grid with one layer", "it is a curve", "IsosurfaceSemantics.ASliceHasACurve"),
+                           "IsosurfaceSemantics.InvalidVoxelsNeverReachTheOutput"),
+          proved_elsewhere("Isosurface of a grid with one layer", "it is a curve", "IsosurfaceSemantics.TheSurfaceOfASliceIsACurve"),
           {"LinesOfNothing", "Streamlines of a grid of zeros",
-           "traced: seed (0.1, 0.2, 0.3): field 'test' is zero there, so no line passes through it; online: CRITICAL, ZERO",
+           "traced: seed (0.1, 0.2, 0.3): field 'test' is zero at the seed, so that no line passes through it; online: CRITICAL, ZERO",
            lines_of_nothing},
           {"LinesWithoutAWholeCell", "Streamlines of a grid with NaN in every second voxel",
-           "traced: seed (0.1, 0.2, 0.3) lies outside the domain of field 'test' (its box goes from (-2, -2, -2) to (2, 2, 2); masked and "
-           "non-finite cells do not count); online: BOUNDARY, NOT_FINITE",
+           "traced: seed (0.1, 0.2, 0.3) is outside the domain of field 'test' (a box from (-2, -2, -2) to (2, 2, 2) without masked and "
+           "non-finite cells); online: BOUNDARY, NOT_FINITE",
            lines_without_a_whole_cell},
           proved_elsewhere("Streamline of an analytic field with velocities of 1e-300 to 1e300", "the same proxies to 1e-9",
-                           "FieldScaleAndBadValues.TheSameStreamlineProxiesAtAnyScaleOfTheField"),
+                           "FieldScaleAndBadValues.StreamlineProxiesAreInvariantUnderScalingOfTheField"),
           proved_elsewhere("Isosurface of an analytic field with values of 1e-300 to 1e300", "the same proxies to 1e-9",
-                           "FieldScaleAndBadValues.TheSameSurfaceProxiesAtAnyScaleOfTheField"),
+                           "FieldScaleAndBadValues.SurfaceProxiesAreInvariantUnderScalingOfTheField"),
           proved_elsewhere("Sphere links with radii of 1e-300 to 1e300, and probes as far away", "the closest point, to round-off",
                            "Sphere.FarAndTinyProbesAndRadii"),
-          proved_elsewhere("Meshes of any size", "the same as of size 1", "Mesh.HugeAndTinyMeshesBehaveTheSame"),
+          proved_elsewhere("Meshes of any size", "the same as of size 1", "Mesh.ScaledMeshesGiveScaledProxies"),
       }};
 }
 

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: MIT
-// Rows of the world under the eye: grids of any size, shape and place, values of any size, and grids with nothing to show.
+// Rows of grids in rendering: any voxel size, shape and position, any magnitude of values, and grids without visible values.
 #include "tests/limits/limits_table.h"
 #include "tests/limits/render_fixture.h"
 
 namespace catena::extremes {
-namespace eye_test {
+namespace grid_rendering_limits_test {
 
 using render::Image8;
 
 constexpr std::uint32_t kWidth = 96, kHeight = 72;
 
 struct World {
-  double h = 0.0625;    ///< edge of a voxel
-  Vec3 origin{0.0};     ///< of the middle, voxels
-  double values = 1;    ///< times all values
-  bool turned = false;  ///< other voxels, 1:1:1024, of the same linear field
+  double h = 0.0625;    ///< voxel edge
+  Vec3 origin{0.0};     ///< centre, in voxels
+  double values = 1;    ///< factor of all values
+  bool turned = false;  ///< true: anisotropic voxels, 1:1:1024, of the same linear field
 };
 
-/// A ball's distance as a volume, a surface and a slice, lines and arrows of a flow, and a box: all that has a place.
+/// A ball as a volume, a surface and a slice, lines and arrows of a flow, and a box: every kind of object with a position.
 Image8 scene_in(const World& world) {
   const test::TemporaryFolder folder;
   constexpr int n = 33;
@@ -49,28 +49,28 @@ Image8 scene_in(const World& world) {
                                        folder, kWidth, kHeight);
 }
 
-/// Beside the same scene of voxels of 1/16 at the origin.
+/// Compares with the same scene with voxels of 1/16 at the origin.
 std::string same_pictures(const std::vector<World>& worlds, int more, double bound) {
   const Image8 plain = scene_in({});
   if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
-  double most = 0;
+  double maximum = 0;
   for (const World& world : worlds) {
-    most = std::max(most, count_differing(scene_in(world), plain, more));
+    maximum = std::max(maximum, count_differing(scene_in(world), plain, more));
     if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
   }
   return Findings()
       .add(count_covered(plain) > 500 ? "visible" : "empty image")
-      .at_most(fmt::format("fraction of pixels that differ by more than {}/255", more), most, bound);
+      .at_most(fmt::format("fraction of pixels that differ by more than {}/255", more), maximum, bound);
 }
 
 std::string voxels_of_any_size() { return same_pictures({{1e-9}, {1e-3}, {1e3}, {1e9}}, 2, 0.002); }
-// half of a pixel of a silhouette changes its colour by half: 24 is a tenth of a pixel
+// a silhouette moved by half a pixel changes a colour by half: 24 is a tenth of a pixel
 std::string far_from_the_origin() {
   return same_pictures({{0.0625, {1e7, 0, 0}}, {0.0625, {-1e7, 1e7, 1e7}}, {0.1, {1e7, -1e7, 1e7}}, {1e-9, {0, 0, 1e7}}}, 24, 0.002);
 }
 std::string values_of_any_size() { return same_pictures({{0.0625, Vec3(0.0), 1e-29}, {0.0625, Vec3(0.0), 1e29}}, 2, 0.002); }
 
-/// s = x + y / 2 + z / 4, which is itself between any nodes, on 1025 x 33 x 2 voxels (edges of 1:32:1024) and on 33^3.
+/// s = x + y / 2 + z / 4, reproduced exactly between any nodes, on 1025 x 33 x 2 voxels (edges 1:32:1024) and on 33^3.
 std::string voxels_a_thousand_times_as_long() {
   const auto draw = [](const std::array<int, 3>& n) {
     const test::TemporaryFolder folder;
@@ -94,7 +94,7 @@ std::string voxels_a_thousand_times_as_long() {
       .at_most("fraction of pixels that differ by more than 4/255", count_differing(cubes, sticks, 4), 0.01);
 }
 
-// ---- grids with little or nothing in them ----
+// ---- grids with few or no valid values ----
 
 Image8 grid_of(const std::array<int, 3>& n, const std::function<double(int, int, int)>& value, const std::string& drawn) {
   const test::TemporaryFolder folder;
@@ -149,7 +149,7 @@ std::string two_voxels_each_way() {
   return seen(grid_of(
       {2, 2, 2}, [](int x, int, int) { return 1.0 * x; }, R"("volumes": [{"field": "s"}], "isosurfaces": [{"field": "s", "level": 0.5}])"));
 }
-/// An array of ones as NumPy writes it, drawn from all sides; its indices go z, y, x.
+/// An array of ones in NumPy's format with index order z, y, x, drawn from all sides.
 std::string flat_arrays() {
   Findings found;
   for (const std::array<int, 3>& n : {std::array{1, 1, 1}, {1, 1, 5}, {1, 5, 1}, {5, 1, 1}, {1, 5, 5}, {5, 5, 1}}) {
@@ -183,10 +183,10 @@ std::string beyond_floats() {
   return found;
 }
 
-}  // namespace eye_test
+}  // namespace grid_rendering_limits_test
 
 Group grid_rendering_rows() {
-  using namespace eye_test;
+  using namespace grid_rendering_limits_test;
   return {
       "Rendered fields",
       {
@@ -201,7 +201,7 @@ Group grid_rendering_rows() {
            "visible; fraction of pixels that differ by more than 2/255 at most 0.002", values_of_any_size},
           {"AllNan", "A grid of NaN", "s.json:1: field \"s\": s.raw: the data has no finite value in any active voxel", all_nan},
           {"EverySecondNan", "NaN in every second voxel: every cell has one", "empty image", every_second_nan},
-          proved_elsewhere("NaN holes in a volume", "cells that touch one are transparent", "Volume.NotANumberIsTransparent"),
+          proved_elsewhere("NaN holes in a volume", "cells that touch one are transparent", "Volume.NanIsTransparent"),
           {"Checkerboard", "Isosurface of a checkerboard of 1 and -1 at level 0", "visible", checkerboard},
           {"Constant", "Isosurface, slice and volume of a constant grid, at its value",
            "its surface: empty image; its slice: visible; its volume: visible", constant},
@@ -211,7 +211,8 @@ Group grid_rendering_rows() {
           {"FlatArrays", "NumPy arrays of one voxel, and flat along one or two axes",
            "1x1x1: visible; 1x1x5: visible; 1x5x1: visible; 5x1x1: visible; 1x5x5: visible; 5x5x1: visible", flat_arrays},
           {"BeyondFloats", "64-bit numbers beyond the range of 32-bit floats",
-           "s.raw: values of type float64 are rounded to 32-bit floats; s.raw: 256 values are beyond 32-bit floats: they are holes",
+           "s.raw: values of type float64 were rounded to 32-bit floats; s.raw: 256 values exceed the range of 32-bit floats and are read "
+           "as holes",
            beyond_floats},
       }};
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Rows of pictures: their sizes, fields of view, eyes in odd places, and how many lines are in them.
+// Rows of images: sizes, fields of view, extreme camera positions, and numbers of lines.
 #include "tests/limits/limits_table.h"
 #include "tests/limits/render_fixture.h"
 
 namespace catena::extremes {
-namespace pictures_test {
+namespace image_limits_test {
 
 using render::Image8;
 
-/// A ball of radius 1 (of a formula, on 33^3 nodes) before nothing.
+/// A ball of radius 1 (a formula on 33^3 nodes) on an empty background.
 Image8 ball(const std::string& camera, std::uint32_t width, std::uint32_t height,
             const std::string& drawn = R"("isosurfaces": [{"field": "s", "level": 1}])") {
   const test::TemporaryFolder folder;
@@ -21,7 +21,7 @@ std::string from(const Vec3& position, double fovy_deg) {
   return fmt::format(R"("position": {}, "target": [0, 0, 0], "fovy_deg": {})", triple(position), fovy_deg);
 }
 
-/// Of the pixels whose middles lie on a disk of this radius about the middle, how many more or fewer the ball covers.
+/// Relative difference between the number of pixels that the ball covers and those within a disk of the given radius.
 double off_the_disk(const Image8& picture, double radius) {
   double right = 0;
   for (std::uint32_t y = 0; y < picture.height; ++y)
@@ -34,7 +34,7 @@ std::string any_field_of_view() {
   constexpr std::uint32_t kSide = 64;
   double off = 0;
   for (const double fov : {1e-3, 1e-2, 0.1, 1.0, 30.0, 90.0, 150.0, 170.0, 179.0}) {
-    // so far that the ball is half as wide as the picture, but never within the data's box
+    // the distance at which the ball is half as wide as the image, but outside the data's box
     const double half = std::tan(fov * M_PI / 360), distance = std::max(std::sqrt(1 + 1 / (0.25 * half * half)), 3.6);
     const Image8 picture = ball(from({distance * 0.6, -distance * 0.64, distance * 0.48}, fov), kSide, kSide);
     if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
@@ -88,13 +88,13 @@ std::string on_the_target() {
 std::string in_the_plane_of_a_slice() {
   const std::string slice = R"("slices": [{"field": "s", "axis": "z", "at": 0, "color": "viridis"}])";
   Findings found;
-  double most = 0;
+  double maximum = 0;
   for (const Vec3& eye : {Vec3(0, -6, 0), Vec3(0, -1, 0), Vec3(0.3, 0.2, 0), Vec3(1e-3, 0, 0)}) {
     const Image8 picture = ball(from(eye, 60), 64, 48, slice);
     if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
-    most = std::max(most, count_covered(picture));
+    maximum = std::max(maximum, count_covered(picture));
   }
-  found.at_most("visible pixels", most, 0);
+  found.at_most("visible pixels", maximum, 0);
   const Image8 above = ball(from({0, -1, 1e-3}, 60), 64, 48, slice);
   return found.add(count_covered(above) > 300 ? "from 0.001 above, it is visible" : "from 0.001 above, it is not visible");
 }
@@ -125,10 +125,10 @@ std::string hundred_thousand_lines() {
                R"(, "length": 0.01, "tolerance": 1e-4)");
 }
 
-}  // namespace pictures_test
+}  // namespace image_limits_test
 
 Group image_rows() {
-  using namespace pictures_test;
+  using namespace image_limits_test;
   return {"Images",
           {
               {"AnyFieldOfView", "A sphere with fields of view of 0.001 to 179 degrees, from a matching distance",

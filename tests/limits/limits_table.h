@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The table of extremes: what happens at the ends of what can be asked. A row's expectation is written before the row is run, and holds
-/// word for word: run() says what happened in sentences that hold on every machine, such as "status OK; off the line at most 1e-09 L".
-/// docs/reference/limits.md is made from the table. A number within a sentence is a bound, never a measured figure.
-/// One row: build/release/test_limits --gtest_filter='*NAME*'.
+/// The table of limits: the behaviour at extreme inputs. run() returns the observed behaviour as machine-independent sentences, such as
+/// "status OK; off the line at most 1e-09 L", which must equal the row's expectation word for word. Numbers in sentences are bounds, never
+/// measured figures. docs/reference/limits.md is generated from the table. One row: build/release/test_limits --gtest_filter='*NAME*'.
 #pragma once
 #include <ostream>
 #include <string>
@@ -11,18 +10,18 @@
 namespace catena::extremes {
 
 struct Row {
-  std::string name;            ///< of the test case
-  std::string input;           ///< what is done
-  std::string expected;        ///< what happens
-  std::string (*run)();        ///< what did happen; null: `proved_by` says it
-  std::string should = {};     ///< of a known defect: what would be right
-  std::string proved_by = {};  ///< the case of another test program, `Suite.Case`
+  std::string name;            ///< name of the test case
+  std::string input;           ///< description of the input
+  std::string expected;        ///< expected behaviour
+  std::string (*run)();        ///< returns the observed behaviour; null: tested by `proved_by`
+  std::string should = {};     ///< correct behaviour, for a known defect
+  std::string proved_by = {};  ///< `Suite.Case` of another test program
 };
 
-/// For the messages of a failing case.
+/// Prints a row in the messages of a failing case.
 inline void PrintTo(const Row& row, std::ostream* out) { *out << row.name; }
 
-/// What another test proves already.
+/// A row that is tested by another test program.
 inline Row proved_elsewhere(std::string asked, std::string expected, std::string proved_by) {
   return {{}, std::move(asked), std::move(expected), nullptr, {}, std::move(proved_by)};
 }
@@ -32,7 +31,7 @@ struct Group {
   std::vector<Row> rows;
 };
 
-/// In the order of the document; each in a file of its own.
+/// Groups in the order of the document, each defined in its own file.
 Group probe_rows();
 Group world_rows();
 Group index_rows();
@@ -43,16 +42,16 @@ Group grid_rendering_rows();
 Group image_rows();
 Group command_rows();
 
-/// What a row has found, one sentence after the other.
+/// Collects the sentences of a row's result.
 class Findings {
  public:
   Findings& add(const std::string& sentence) {
     text_ += (text_.empty() ? "" : "; ") + sentence;
     return *this;
   }
-  /// "WHAT at most BOUND UNIT", or what it is instead: then the row fails, and its message has the figure.
+  /// Adds "WHAT at most BOUND UNIT", or the measured value if it exceeds the bound, so that the row fails with the figure.
   Findings& at_most(const std::string& what, double value, double bound, const std::string& unit = {});
-  /// "WHAT in every case", or how many of how many.
+  /// Adds "WHAT in every case", or the number of cases.
   Findings& all(const std::string& what, long long count, long long of);
   const std::string& text() const { return text_; }
   operator std::string() const { return text_; }

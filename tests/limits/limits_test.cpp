@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs the table's rows, a test case each, and compares docs/reference/limits.md with the table. CATENA_WRITE_DOCUMENTS=1 in the
-// environment writes the document from what the rows say (./run docs).
+// Runs the table's rows, one test case each, and compares docs/reference/limits.md with the table. CATENA_WRITE_DOCUMENTS=1 in the
+// environment writes the document from the rows' results (./run docs).
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -21,7 +21,7 @@ Findings& Findings::all(const std::string& what, long long count, long long of) 
   return add(what + (count == of ? " in every case" : " in " + std::to_string(count) + " of " + std::to_string(of)));
 }
 
-namespace extremes_test {
+namespace limits_test {
 
 const std::vector<Group>& table() {
   static const std::vector<Group> all{probe_rows(), world_rows(),          index_rows(), coupling_rows(), critical_rows(),
@@ -39,14 +39,14 @@ std::vector<Row> rows_to_run() {
 
 bool writes_documents() { return std::getenv("CATENA_WRITE_DOCUMENTS") != nullptr; }
 
-std::map<std::string, std::string>& said() {
+std::map<std::string, std::string>& measured_results() {
   static std::map<std::string, std::string> by_name;
   return by_name;
 }
 
 class LimitTable : public testing::TestWithParam<Row> {};
 
-TEST_P(LimitTable, Row) { EXPECT_EQ(said()[GetParam().name] = GetParam().run(), GetParam().expected) << GetParam().input; }
+TEST_P(LimitTable, Row) { EXPECT_EQ(measured_results()[GetParam().name] = GetParam().run(), GetParam().expected) << GetParam().input; }
 
 INSTANTIATE_TEST_SUITE_P(Table, LimitTable, testing::ValuesIn(rows_to_run()), [](const auto& test) { return test.param.name; });
 
@@ -62,14 +62,14 @@ L is the domain length, the longest edge of the domain. Words in capitals are [s
 CRITICAL" states how a traced streamline ends upstream and downstream. "Visible" means that the image is not empty.
 )";
 
-/// The page, with what the rows said; where they have not run, what they are expected to say.
+/// The document with the rows' results, or with the expectations of rows that have not run.
 std::string document() {
   std::string text = kBegin, defects;
   for (const Group& group : table()) {
     text += "\n## " + group.title + "\n\n| input | result | test |\n|---|---|---|\n";
     for (const Row& row : group.rows) {
-      const auto found = said().find(row.name);
-      const std::string happens = row.run != nullptr && found != said().end() ? found->second : row.expected;
+      const auto found = measured_results().find(row.name);
+      const std::string happens = row.run != nullptr && found != measured_results().end() ? found->second : row.expected;
       text += "| " + row.input + " | " + (row.should.empty() ? "" : "**Known defect:** ") + happens + " | `" +
               (row.run != nullptr ? row.name : row.proved_by) + "` |\n";
       if (!row.should.empty()) defects += "| `" + row.name + "` | " + row.should + " |\n";
@@ -91,12 +91,12 @@ class Writer : public testing::Environment {
 };
 const testing::Environment* const kWriter = testing::AddGlobalTestEnvironment(new Writer);
 
-TEST(LimitsDocument, SaysWhatTheRowsSay) {
+TEST(LimitsDocument, MatchesTheRows) {
   if (writes_documents()) return;
   EXPECT_TRUE(test::read_file(path()) == document()) << "docs/reference/limits.md is not current; ./run docs writes it";
 }
 
-TEST(LimitsDocument, EveryRowHasANameOfItsOwnAndIsOneLine) {
+TEST(LimitsDocument, EveryRowHasAUniqueNameAndSingleLineTexts) {
   std::map<std::string, int> names;
   for (const Group& group : table())
     for (const Row& row : group.rows) {
@@ -109,5 +109,5 @@ TEST(LimitsDocument, EveryRowHasANameOfItsOwnAndIsOneLine) {
     }
 }
 
-}  // namespace extremes_test
+}  // namespace limits_test
 }  // namespace catena::extremes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rows of the hand: what a probe may do, and in what worlds.
+// Rows of the probe: extreme motions and extreme world scales.
 #include <cstring>
 
 #include "tests/acceptance/chain_fixture.h"
@@ -8,7 +8,7 @@
 #include "tests/limits/probe_path.h"
 
 namespace catena::extremes {
-namespace hand_test {
+namespace probe_limits_test {
 
 using acceptance::ChainRig;
 using acceptance::HapticProgram;
@@ -19,7 +19,7 @@ using haptics::tests::Random;
 
 const double kInf = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// A circle's line, a ball that holds from both sides, a floor: closed forms and formulas.
+/// A circular streamline, a two-sided ball and a floor, as closed forms and formulas.
 constexpr const char* kChain = R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
   "chain": [{"name": "line", "type": "streamline", "field": "v", "seed": [0.8, 0, 0]},
             {"name": "ball", "type": "isosurface", "field": "s", "level": 0.7},
@@ -69,7 +69,7 @@ std::string thrown_to_the_end_of_numbers_and_back() {
 }
 
 std::string ten_metres_a_second() {
-  // 0.2 units a tick, on a circle about the same axis: the closest places are known at every tick
+  // 0.2 units per tick on a circle about the same axis, so that the closest points are known in every tick
   ChainRig chain(make_program(R"({"fields": {"v": {"analytic": "circle"}},
     "chain": [{"name": "line", "type": "streamline", "field": "v", "seed": [0.8, 0, 0]},
               {"name": "floor", "type": "plane", "point": [0, 0, -0.3], "normal": [0, 0, 1]}],
@@ -90,9 +90,9 @@ std::string ten_metres_a_second() {
       .at_most("force above 8 N by", force - 8, 1e-11, "N");
 }
 
-// ---- a probe that is still ----
+// ---- a resting probe ----
 
-/// The state without its clocks: equal steps of time leave all else to the probe.
+/// The state without its clocks; with equal time steps it depends on the probe only.
 std::string without_clocks(haptics::ChainState state) {
   state.last_probe_t_s = state.last_tick_t_s = 0;
   state.ticks = 0;
@@ -107,15 +107,15 @@ constexpr std::uint64_t kHour = 721'000;
 constexpr std::uint64_t kHour = 3'600'000;  // ticks
 #endif
 
-constexpr double kStep = 0x1p-10;  // seconds; sums of it are exact, so that every step is the same
+constexpr double kStep = 0x1p-10;  // seconds; a power of two, so that sums are exact and all steps are equal
 
-/// Ticks under a still probe until the state is, to the bit, that of a round of the ledger's ring before, with the same reports all the
-/// way; or `most`. From there on nothing ever changes: the next state depends on state, probe and step only.
-int ticks_to_rest(ChainRig& rig, const Vec3& probe, int most) {
+/// Number of ticks under a still probe until the state equals, bit for bit, that of one round of the ledger's ring before, with equal
+/// reports in between; or `max_ticks`. From then on nothing changes, because the next state depends on state, probe and step only.
+int ticks_to_rest(ChainRig& rig, const Vec3& probe, int max_ticks) {
   constexpr int kRound = haptics::PassivityState::kHistoryLength;
   std::array<std::string, kRound> before;
   Vec3 force(kInf);
-  for (int i = 0, same = 0; i < most; ++i) {
+  for (int i = 0, same = 0; i < max_ticks; ++i) {
     rig.step_at(kStep * static_cast<double>(rig.state.ticks), probe);
     std::string now = without_clocks(rig.state);
     std::string& last = before[static_cast<std::size_t>(i % kRound)];
@@ -124,7 +124,7 @@ int ticks_to_rest(ChainRig& rig, const Vec3& probe, int most) {
     if (now == last && same >= kRound) return i;
     last = std::move(now);
   }
-  return most;
+  return max_ticks;
 }
 
 std::string still_for_an_hour() {
@@ -149,17 +149,18 @@ std::string every_link_comes_to_rest() {
   long long rested = 0, asked = 0, soon = 0, quick = 0;
   std::string which;
   for (const haptics::tests::Example& example : haptics::tests::all_examples()) {
-    if (example.body.find("\"linear\"") != std::string::npos) continue;  // Eqs. 1-2 as printed never rest: they are the baseline
+    if (example.body.find("\"linear\"") != std::string::npos)
+      continue;  // Eqs. 1-2 as printed (method "linear") never rest; they are the baseline
     const auto constraint =
         haptics::tests::build(R"({"name": "a", "type": ")" + example.type + "\", " + example.body + "}", haptics::tests::fields());
     if (!constraint) return "cannot be built: " + example.body.substr(0, 80);
-    const bool slow = example.type == "viscosity";  // time constants up to 1 s, and 37 of them to the last bit
-    const int most = slow ? 61'000 : 1024;
+    const bool slow = example.type == "viscosity";  // time constants up to 1 s, with 37 of them until the last bit
+    const int max_ticks = slow ? 61'000 : 1024;
     ChainRig rig(make_program(std::vector{constraint}));
     Random random(7);
     for (int place = 0; place < 8; ++place) {
       const Vec3 probe = random.box(place < 6 ? 1.2 : 5);
-      const bool rests = ticks_to_rest(rig, probe, most) < most;
+      const bool rests = ticks_to_rest(rig, probe, max_ticks) < max_ticks;
       ++(slow ? asked : quick);
       (slow ? rested : soon) += rests;
       if (!rests) which += ", not " + example.type + " {" + example.body.substr(0, 80) + "} at probe " + std::to_string(place);
@@ -168,37 +169,38 @@ std::string every_link_comes_to_rest() {
   return Findings().all("the state repeats within 1 s", soon, quick).all("with viscosity within a minute", rested, asked).text() + which;
 }
 
-}  // namespace hand_test
+}  // namespace probe_limits_test
 
 Group probe_rows() {
-  using namespace hand_test;
-  return {"Probe and proxies",
-          {
-              {"BadProbesBetweenGoodOnes", "Probe NaN or infinite in every second tick; a streamline, an isosurface and a plane",
-               "BAD_PROBE, NOT_FINITE, no force, proxies unchanged in every case; distance of the proxies in finite ticks from those of a "
-               "path without bad ticks at most 0 L",
-               bad_probes_between_good_ones},
-              proved_elsewhere("Random NaN, infinity, 1e300 and denormal values, for every type of link and chain, 1e7 ticks",
-                               "all output is finite, no force exceeds its limit, no allocation", "Endurance.NothingBreaksInHostileTicks"),
-              {"ThrownToTheEndOfNumbersAndBack", "Probe jumps 1e3 to 1.7e308 units away for 3 ticks, and back",
-               "force above 8 N by at most 1e-11 N; distance of the proxies from their positions 60 ms after the return at most 1e-09 L",
-               thrown_to_the_end_of_numbers_and_back},
-              proved_elsewhere("Probe jumps across the domain in every tick, for every type of link",
-                               "at most 257 fetches and 4096 units of work in every tick", "Conformance.WorkIsBoundedUnderTeleports"),
-              {"TenMetresASecond", "Probe circles a streamline and crosses a plane at 10 m/s (0.2 units a tick)",
-               "OK in every case; distance of the proxies from the closed form at most 1e-09 L; force above 8 N by at most 1e-11 N",
-               ten_metres_a_second},
-              proved_elsewhere("Probe crosses a thin sheet within one tick", "the proxy stays on the near side",
-                               "IsosurfaceSemantics.AFastHandDoesNotTunnelAThinSheet"),
-              proved_elsewhere("The same with triangles", "the proxy stays on the near side", "Mesh.FastHandsDoNotTunnel"),
-              {"StillForAnHour", "Probe at rest for 3.6e6 ticks; a streamline, an isosurface and a plane",
-               "ticks until the state repeats at most 100; identical bits every 360000 ticks, in every case; the force is still there",
-               still_for_an_hour},
-              {"EveryLinkComesToRest",
-               "Probe at rest at 8 positions, for every type of link. The next state depends only on state, probe and time step: a state "
-               "that repeats once never changes again",
-               "the state repeats within 1 s in every case; with viscosity within a minute in every case", every_link_comes_to_rest},
-          }};
+  using namespace probe_limits_test;
+  return {
+      "Probe and proxies",
+      {
+          {"BadProbesBetweenGoodOnes", "Probe NaN or infinite in every second tick; a streamline, an isosurface and a plane",
+           "BAD_PROBE, NOT_FINITE, no force, proxies unchanged in every case; distance of the proxies in finite ticks from those of a "
+           "path without bad ticks at most 0 L",
+           bad_probes_between_good_ones},
+          proved_elsewhere("Random NaN, infinity, 1e300 and denormal values, for every type of link and chain, 1e7 ticks",
+                           "all output is finite, no force exceeds its limit, no allocation", "Endurance.HostileTicksKeepTheStateValid"),
+          {"ThrownToTheEndOfNumbersAndBack", "Probe jumps 1e3 to 1.7e308 units away for 3 ticks, and back",
+           "force above 8 N by at most 1e-11 N; distance of the proxies from their positions 60 ms after the return at most 1e-09 L",
+           thrown_to_the_end_of_numbers_and_back},
+          proved_elsewhere("Probe jumps across the domain in every tick, for every type of link",
+                           "at most 257 fetches and 4096 units of work in every tick", "Conformance.WorkIsBoundedUnderTeleports"),
+          {"TenMetresASecond", "Probe circles a streamline and crosses a plane at 10 m/s (0.2 units a tick)",
+           "OK in every case; distance of the proxies from the closed form at most 1e-09 L; force above 8 N by at most 1e-11 N",
+           ten_metres_a_second},
+          proved_elsewhere("Probe crosses a thin sheet within one tick", "the proxy stays on the near side",
+                           "IsosurfaceSemantics.AFastHandDoesNotTunnelThroughAThinSheet"),
+          proved_elsewhere("The same with triangles", "the proxy stays on the near side", "Mesh.FastHandsDoNotTunnel"),
+          {"StillForAnHour", "Probe at rest for 3.6e6 ticks; a streamline, an isosurface and a plane",
+           "ticks until the state repeats at most 100; identical bits every 360000 ticks, in every case; the force is still there",
+           still_for_an_hour},
+          {"EveryLinkComesToRest",
+           "Probe at rest at 8 positions, for every type of link. The next state depends only on state, probe and time step: a state "
+           "that repeats once never changes again",
+           "the state repeats within 1 s in every case; with viscosity within a minute in every case", every_link_comes_to_rest},
+      }};
 }
 
 }  // namespace catena::extremes

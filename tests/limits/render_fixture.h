@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The eye of the rows: scenes drawn on the CPU driver with the validation layer on, and raw files to draw.
+/// Rendering helpers of the rows: scenes drawn on the CPU driver with the validation layer, and raw files.
 #pragma once
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 
 namespace catena::extremes {
 
-/// One device for all rows. What goes wrong is a sentence in `said`: then the picture is empty.
+/// One device for all rows. On a failure the image is empty and `error_message` is set.
 struct TestRenderer {
   std::unique_ptr<render::Renderer> renderer;
   std::string error_message;
@@ -65,7 +65,7 @@ std::string to_bytes(const std::vector<T>& values) {
   return bytes;
 }
 
-/// A .raw file of n[0] x n[1] x n[2] floats.
+/// Writes a .raw file of n[0] x n[1] x n[2] floats.
 inline void write_raw(const std::string& path, const std::array<int, 3>& n, const std::function<double(int, int, int)>& value) {
   std::vector<float> values;
   for (int z = 0; z < n[2]; ++z)
@@ -76,19 +76,19 @@ inline void write_raw(const std::string& path, const std::array<int, 3>& n, cons
 
 inline std::string triple(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
 
-/// Pixels whose colours differ by more than `more` in 255; all of them where sizes differ.
+/// Number of pixels with colours that differ by more than `more` of 255; all pixels if the sizes differ.
 inline double count_differing(const render::Image8& a, const render::Image8& b, int more) {
   if (a.rgba.size() != b.rgba.size() || a.rgba.empty()) return 1;
   std::size_t count = 0;
   for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
-    int most = 0;
-    for (std::size_t c = 0; c < 4; ++c) most = std::max(most, std::abs(int(a.rgba[i + c]) - int(b.rgba[i + c])));
-    count += most > more;
+    int maximum = 0;
+    for (std::size_t c = 0; c < 4; ++c) maximum = std::max(maximum, std::abs(int(a.rgba[i + c]) - int(b.rgba[i + c])));
+    count += maximum > more;
   }
   return 4.0 * static_cast<double>(count) / static_cast<double>(a.rgba.size());
 }
 
-/// Pixels that something covers, over a transparent background.
+/// Number of covered pixels over a transparent background.
 inline double count_covered(const render::Image8& picture) {
   double sum = 0;
   for (std::size_t i = 3; i < picture.rgba.size(); i += 4) sum += picture.rgba[i] / 255.0;

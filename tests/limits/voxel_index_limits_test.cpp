@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rows of .vdb grids whose voxels are counted from far away, indices of 1e7 at the same place of the world; and of points that lie far
-// away.
+// Rows of .vdb grids with large voxel indices (1e7) at the same world position, and of points far from the origin.
 #include <openvdb/openvdb.h>
 
 #include "engine/io/curves/load_points.h"
@@ -11,15 +10,14 @@
 #include "tests/support/curve_files.h"
 
 namespace catena::extremes {
-namespace index_test {
+namespace voxel_index_limits_test {
 
 using acceptance::ChainRig;
 using acceptance::make_program;
 
 constexpr double kEdge = 0.125;
 
-/// The distance from the origin and a helix of a flow, on 33^3 voxels of 0.125 about the origin of the world; the first one's index is
-/// `first`.
+/// The distance from the origin and a helical flow on 33^3 voxels of 0.125 about the world's origin, with first voxel index `first`.
 void write_vdb(const std::string& path, const openvdb::Coord& first) {
   openvdb::initialize();
   auto scalars = openvdb::FloatGrid::create();
@@ -93,7 +91,7 @@ std::string under_the_eye() {
 
 // ---- points of a table ----
 
-/// Twenty places about the origin, and the same as a table at `far`.
+/// Twenty positions about the origin, and a table of them shifted by `far`.
 Vec3 place(int i) { return {0.9 * std::cos(i), 0.9 * std::sin(i), -0.8 + 0.08 * i}; }
 std::string table_at(const Vec3& far) {
   std::string text = "x,y,z\n";
@@ -153,10 +151,10 @@ std::string points_under_the_eye() {
       .at_most("fraction of pixels that differ by more than 24/255", count_differing(pictures[0], pictures[1], 24), 0.002);
 }
 
-}  // namespace index_test
+}  // namespace voxel_index_limits_test
 
 Group index_rows() {
-  using namespace index_test;
+  using namespace voxel_index_limits_test;
   const std::string same = "distance of the proxies from those for indices from 0 at most 1e-09 L; the same status in every case";
   return {"Far indices and positions",
           {
@@ -175,9 +173,9 @@ Group index_rows() {
                "distance from the middle of a segment at most 0.5", curves_under_the_hand,
                "At most 1e-06. Curves are stored in single precision relative to the world's origin, like most curve files"},
               proved_elsewhere("Voxel indices near the limits of 32-bit integers", "an error states the valid range",
-                               "LoadVdb.VoxelsAtTheEndsOfTheIndexRange"),
-              proved_elsewhere("A .vdb grid without active voxels", "an error says so", "LoadVdb.EveryBadGridHasItsSentence"),
-              proved_elsewhere("Tiles of 2^36 voxels", "they cost no time or memory", "LoadVdb.TilesOfAnyExtentCostNothing"),
+                               "LoadVdb.VoxelsAtTheLimitsOfTheIndexRangeAreHandled"),
+              proved_elsewhere("A .vdb grid without active voxels", "an error says so", "LoadVdb.EveryBadGridIsOneErrorLine"),
+              proved_elsewhere("Tiles of 2^36 voxels", "they cost no time or memory", "LoadVdb.LargeTilesAreCheap"),
           }};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The gallery as a reader would do it: the commands of docs/user/gallery.md draw the pictures above them.
+/// The gallery: the commands of docs/user/gallery.md draw the images above them.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -16,9 +16,9 @@ namespace gallery_test {
 namespace fs = std::filesystem;
 namespace test = catena::test;
 
-/// Each picture of docs/user/gallery.md is what the command below it draws: the root mean square of their difference is at most 4/255, and
-/// at most one pixel in fifty differs by more than 32 (edges of thin lines, on other drivers).
-TEST(Gallery, TheCommandsDrawThePictures) {
+/// Compares each image of docs/user/gallery.md with the output of the command below it: RMS difference at most 4/255, and at most one
+/// pixel in fifty differs by more than 32 (edges of thin lines on other drivers).
+TEST(Gallery, TheCommandsDrawTheirImages) {
   test::TemporaryFolder folder;
   fs::create_directory_symlink(test::source_dir() + "/assets", folder / "assets");
   fs::create_directories(folder / "out");
@@ -26,26 +26,26 @@ TEST(Gallery, TheCommandsDrawThePictures) {
   const std::regex entry("!\\[[^\\]]+\\]\\((?:\\.\\./)+(assets/pictures/gallery/([\\w-]+\\.png))\\)\\n\\n```sh\\n([^`]+)```");
   int compared = 0;
   for (auto it = std::sregex_iterator(text.begin(), text.end(), entry); it != std::sregex_iterator(); ++it) {
-    const std::string kept = test::source_dir() + "/" + (*it)[1].str(), drawn = folder / "out/" + (*it)[2].str();
+    const std::string committed = test::source_dir() + "/" + (*it)[1].str(), drawn = folder / "out/" + (*it)[2].str();
     const test::ProgramResult result = test::run_shell(folder.path(), (*it)[3]);
     ASSERT_EQ(result.exit_code, 0) << (*it)[3] << result.out;
-    const auto a = catena::render::read_png(kept), b = catena::render::read_png(drawn);
-    ASSERT_TRUE(a && b) << kept << ", " << drawn;
-    ASSERT_EQ(a->width, b->width) << kept;
-    ASSERT_EQ(a->height, b->height) << kept;
+    const auto a = catena::render::read_png(committed), b = catena::render::read_png(drawn);
+    ASSERT_TRUE(a && b) << committed << ", " << drawn;
+    ASSERT_EQ(a->width, b->width) << committed;
+    ASSERT_EQ(a->height, b->height) << committed;
     double squares = 0;
     std::size_t off = 0, pixels = std::size_t(a->width) * a->height;
     for (std::size_t p = 0; p < pixels; ++p) {
-      int most = 0;
+      int maximum = 0;
       for (std::size_t c = 0; c < 3; ++c) {
         const int d = std::abs(int(a->rgba[4 * p + c]) - int(b->rgba[4 * p + c]));
         squares += d * d;
-        most = std::max(most, d);
+        maximum = std::max(maximum, d);
       }
-      off += most > 32;
+      off += maximum > 32;
     }
-    EXPECT_LE(std::sqrt(squares / double(3 * pixels)), 4) << kept;
-    EXPECT_LE(off, pixels / 50) << kept;
+    EXPECT_LE(std::sqrt(squares / double(3 * pixels)), 4) << committed;
+    EXPECT_LE(off, pixels / 50) << committed;
     ++compared;
   }
   EXPECT_GE(compared, 6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Catena as it is installed: below the build folder, once for all tests of this program.
+/// Catena installed below the build folder, once for all tests of this program.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -12,11 +12,11 @@
 
 namespace catena::test {
 
-/// The prefix: bin, lib, include, share.
+/// The prefix with bin, lib, include and share.
 inline const std::string& install_prefix() {
   static const std::string prefix = [] {
     const std::string at = binary_dir() + "/installed";
-    std::filesystem::remove_all(at);  // of an earlier build
+    std::filesystem::remove_all(at);  // from an earlier build
     const ProgramResult result = run_program(CATENA_CMAKE, {"--install", binary_dir(), "--prefix", at});
     EXPECT_EQ(result.exit_code, 0) << result.out.substr(0, 8000) << result.err.substr(0, 4000);
     return at;
@@ -24,8 +24,8 @@ inline const std::string& install_prefix() {
   return prefix;
 }
 
-/// What bash says to these lines, errors too, in a folder, where docs/user/start.md has been obeyed. The first line that fails ends it.
-/// `before`: a program with its options that starts bash.
+/// Output of bash, including errors, for script lines in a folder, in an environment set up as in docs/user/start.md. The first failing
+/// line ends the script. `before`: a program with options that starts bash.
 inline ProgramResult run_shell(const std::string& folder, const std::string& lines, std::vector<std::string> before = {}) {
   const std::string& at = install_prefix();
   before.insert(before.end(), {"/bin/bash", "-c",

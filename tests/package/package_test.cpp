@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Catena as other programs get it: installed below the build folder, with programs built against that which know nothing of this tree.
+/// The installed package: programs that are built against the installation below the build folder, independent of the source tree.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -27,13 +27,13 @@ std::string words_of(const std::vector<std::string>& words) {
   return all;
 }
 
-/// CMake itself; what it prints is told where it fails.
+/// Runs CMake; a failure shows its output.
 void cmake(const std::vector<std::string>& arguments) {
   const test::ProgramResult result = test::run_program(CATENA_CMAKE, arguments);
   ASSERT_EQ(result.exit_code, 0) << "cmake " << words_of(arguments) << "\n" << result.out.substr(0, 8000) << result.err.substr(0, 4000);
 }
 
-/// Builds a project against what is installed. The folder is kept: what has not changed is not built again.
+/// Builds a project against the installation. The folder is kept, so that unchanged parts are not rebuilt.
 void build_outside(const std::string& source, const std::string& name) {
   const std::string folder = test::binary_dir() + "/outside/" + name;
   std::vector<std::string> configure{
@@ -52,7 +52,7 @@ std::vector<std::string> public_headers() {
   return headers;
 }
 
-/// The text of a public header; export.h is generated.
+/// Text of a public header; export.h is generated.
 std::string header_text(const std::string& header) {
   const std::string generated = test::binary_dir() + "/generated/" + header;
   return test::read_file(test::exists(generated) ? generated : test::source_dir() + "/" + header);
@@ -66,7 +66,7 @@ struct Package : testing::Test {
   static void SetUpTestSuite() { prefix(); }
   test::TemporaryFolder folder;
 
-  /// An example that was built by build_outside.
+  /// Path of an example built by build_outside.
   static test::ProgramResult example(const std::string& name, const std::vector<std::string>& arguments = {}) {
     return test::run_program(test::binary_dir() + "/outside/examples/" + name, arguments);
   }
@@ -93,7 +93,7 @@ TEST_F(Package, PublicHeadersIncludeOnlyPublicOnesAndFewLibraries) {
   }
 }
 
-TEST_F(Package, TheyAndNoOthersAreInstalledAndStandAlone) {
+TEST_F(Package, OnlyPublicHeadersAreInstalledAndEachIsSelfContained) {
   const std::vector<std::string> headers = public_headers();
   std::set<std::string> installed;
   const std::string at = prefix() + "/include/catena";
@@ -115,7 +115,7 @@ TEST_F(Package, TheyAndNoOthersAreInstalledAndStandAlone) {
   build_outside(project, "headers");
 }
 
-TEST_F(Package, TheLibraryShowsOnlyWhatPublicHeadersDeclare) {
+TEST_F(Package, TheLibraryExportsOnlyDeclarationsOfPublicHeaders) {
   std::string text;
   for (const std::string& header : public_headers()) text += header_text(header);
   std::set<std::string> words;
@@ -129,7 +129,7 @@ TEST_F(Package, TheLibraryShowsOnlyWhatPublicHeadersDeclare) {
       R"(\S+ (\S) (?:(?:vtable|typeinfo|typeinfo name|non-virtual thunk) (?:for|to) )?catena::((?:[a-z_]+::)*)(\w+).*)");
   int seen = 0;
   for (std::string line; std::getline(in, line);) {
-    if (line.find(" A CATENA_") != std::string::npos) continue;  // the version itself
+    if (line.find(" A CATENA_") != std::string::npos) continue;  // the version symbol
     std::smatch match;
     ASSERT_TRUE(std::regex_match(line, match, symbol)) << line;
     EXPECT_TRUE(words.contains(match[3])) << line << ": no public header has this name";
@@ -139,7 +139,7 @@ TEST_F(Package, TheLibraryShowsOnlyWhatPublicHeadersDeclare) {
   EXPECT_GT(seen, 500);
 }
 
-TEST_F(Package, PlugInsFindInTheProgramWhatTheLibraryShows) {
+TEST_F(Package, TheProgramExportsTheLibrarysSymbolsToPlugins) {
   const auto names = [](const std::string& file) {
     const test::ProgramResult listed = test::run_program("/usr/bin/nm", {"-D", "--defined-only", "--without-symbol-versions", file});
     EXPECT_EQ(listed.exit_code, 0) << listed.err;
@@ -154,22 +154,22 @@ TEST_F(Package, PlugInsFindInTheProgramWhatTheLibraryShows) {
   for (const std::string& name : library) EXPECT_TRUE(program.contains(name)) << name;
 }
 
-TEST_F(Package, TheLibraryIsFoundByItsSoname) {
+TEST_F(Package, TheLibraryHasItsSoname) {
   const test::ProgramResult elf = test::run_program("/usr/bin/readelf", {"-d", prefix() + "/" + CATENA_LIBDIR + "/libcatena.so"});
   EXPECT_NE(elf.out.find("[libcatena.so." CATENA_SOVERSION "]"), std::string::npos) << elf.out;
   for (const char* heavy : {"openvdb", "libvtk", "libITK", "glfw", "imgui"}) EXPECT_EQ(elf.out.find(heavy), std::string::npos) << heavy;
 }
 
-TEST_F(Package, ExamplesRunOutsideOfTheTree) {
+TEST_F(Package, ExamplesBuildAndRunOutsideOfTheTree) {
   ASSERT_NO_FATAL_FAILURE(build_outside(prefix() + "/" + CATENA_DOCDIR + "/docs/examples", "examples"));
-  // 500 N/m times 0.05 m a unit times 0.3 of a unit; the proxy on its ball of 0.5
+  // 500 N/m times 0.05 m per unit times 0.3 units; the proxy is on the ball of radius 0.5
   EXPECT_EQ(example("constraint").out, "probe at 0.200, proxy at 0.500, force 7.500 N\n");
   const test::ProgramResult loop = example("own_loop");
   EXPECT_EQ(loop.exit_code, 0) << loop.err;
   EXPECT_NE(loop.out.find("line: OK"), std::string::npos) << loop.out;
   EXPECT_NE(loop.out.find("skin: OK"), std::string::npos) << loop.out;
   EXPECT_EQ(example("function").out.substr(0, 9), "OK: proxy");
-  // at rest: 100 N/m (-0.01 - z) of the hand's spring is what the floor gives
+  // at rest the hand's spring force, 100 N/m (-0.01 - z), equals the floor's
   const test::ProgramResult device = example("device");
   double z = 0, force = 0;
   ASSERT_EQ(std::sscanf(device.out.c_str(), "after 3000 ticks the hand is at %lf m, the floor pushes with %lf N", &z, &force), 2)
@@ -178,7 +178,7 @@ TEST_F(Package, ExamplesRunOutsideOfTheTree) {
   EXPECT_NEAR(force, 100 * (0.01 + z), 0.02);
   EXPECT_EQ(example("embedding").out, "an image of 160 x 120, TRANSFER_SRC_OPTIMAL, timeline reached\n");
 
-  // a .vdb file is read by a helper: that of the installed folder
+  // a .vdb file is read by the installed helper
   const std::string vdb = folder / "hill.vdb", png = folder / "hill.png";
   const test::ProgramResult made = test::run_program(prefix() + "/bin/catena", {"generate", "hill", "-o", vdb, "--resolution", "16"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
@@ -191,7 +191,7 @@ TEST_F(Package, ExamplesRunOutsideOfTheTree) {
   EXPECT_EQ(std::count(none.err.begin(), none.err.end(), '\n'), 1) << none.err;
 }
 
-TEST_F(Package, LinksBetweenInstalledDocumentsHold) {
+TEST_F(Package, LinksBetweenInstalledDocumentsAreValid) {
   const fs::path root = prefix() + "/" + CATENA_DOCDIR;
   const std::regex link(R"re((\]\(|src=")([^)#" \n]+))re"), code(R"re(```[^`]*```|`[^`\n]*`)re");
   int links = 0;
@@ -210,7 +210,7 @@ TEST_F(Package, LinksBetweenInstalledDocumentsHold) {
     EXPECT_TRUE(fs::exists(root / name)) << name;
 }
 
-TEST_F(Package, ScenesAreInstalledButForThoseOfDataThatNobodyHas) {
+TEST_F(Package, ScenesAreInstalledExceptTheDataFolder) {
   const std::string scenes = prefix() + "/" + CATENA_DATADIR + "/catena/scenes";
   for (const auto& entry : fs::directory_iterator(test::source_dir() + "/assets/scenes")) {
     const std::string name = entry.path().filename().string();
@@ -244,7 +244,7 @@ TEST_F(Package, EveryCommandHasAManualPageWithItsOptions) {
     EXPECT_NE(page.find(words), std::string::npos) << words;
 }
 
-TEST_F(Package, TheShellCompletesCommandsAndOptions) {
+TEST_F(Package, TheShellCompletionKnowsCommandsAndOptions) {
   const auto completed = [](const std::string& words, int at) {
     const std::string script = "source " + prefix() + "/" + CATENA_DATADIR + "/bash-completion/completions/catena && COMP_WORDS=(" + words +
                                ") COMP_CWORD=" + std::to_string(at) + " && _catena && echo \"${COMPREPLY[@]}\"";
@@ -258,7 +258,7 @@ TEST_F(Package, TheShellCompletesCommandsAndOptions) {
   EXPECT_EQ(completed("catena docu", 1), "\n");
 }
 
-TEST_F(Package, ProjectsCanHoldTheSources) {
+TEST_F(Package, ProjectsCanAddTheSourceTree) {
   const std::string project = folder / "project";
   fs::create_directories(project);
   fs::create_directory_symlink(test::source_dir(), project + "/catena");

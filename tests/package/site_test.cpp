@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The documents and the public headers as a site: Doxygen, whose warnings are errors, finds a sentence for every public name, and every
-/// link of every page leads to a file.
+/// The site of documents and public headers: Doxygen (warnings are errors) finds a description of every public name, and every link of
+/// every page leads to a file.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -16,7 +16,7 @@ namespace site_test {
 namespace fs = std::filesystem;
 namespace test = catena::test;
 
-/// The files that a page links to or shows, without places within them and what is elsewhere.
+/// Local files that a page links to or embeds, without anchors and external links.
 std::set<std::string> links_of(std::string_view page) {
   std::set<std::string> links;
   for (const std::string_view mark : {"href=\"", "src=\""})
@@ -29,14 +29,14 @@ std::set<std::string> links_of(std::string_view page) {
   return links;
 }
 
-TEST(Site, EveryNameHasASentenceAndEveryLinkLeadsSomewhere) {
+TEST(Site, EveryNameIsDocumentedAndEveryLinkIsValid) {
   if (std::string(CATENA_DOXYGEN).empty()) GTEST_SKIP() << "doxygen is missing (apt-get install doxygen): the site is not made";
   const std::string site = test::binary_dir() + "/site";
   fs::remove_all(site);
   const test::ProgramResult made = test::run_program(CATENA_CMAKE, {"-P", test::binary_dir() + "/site.cmake"});
   ASSERT_EQ(made.exit_code, 0) << made.out << made.err;
 
-  // the public headers are in it, and so are the pages
+  // the site contains the public headers and the pages
   EXPECT_TRUE(test::exists(site + "/classcatena_1_1haptics_1_1Constraint.html"));
   EXPECT_TRUE(test::exists(site + "/page-user-tutorials-first-force.html"));
   int pages = 0;

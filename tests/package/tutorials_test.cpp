@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// The tutorials as a reader would do them: their blocks are taken out of the pages and run with what is installed, and what they print is
-/// what the page says. In a page
+/// The tutorials: the blocks of the pages are run with the installed program, and their output must be the page's. In a page
 ///   "Save as `NAME`:" and a block   is a file
 ///   ```sh                           is run by bash, in the page's own folder; it must succeed
-///   ```text behind it               is what it prints, errors too; ... stands for anything: in a line, or alone for any lines
-/// Other blocks are only read. Every picture that a block writes must hold something.
+///   ```text after it                is the output, including errors; ... stands for any text in a line, or alone for any lines
+/// Other blocks are not run. Every image that a block writes must not be empty.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -68,29 +67,29 @@ Page read_page(const std::string& path) {
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
-  const std::regex progress("[\\w ]+: +\\d+ %");  // only where work takes more than a second
+  const std::regex progress("[\\w ]+: +\\d+ %");  // printed only for work of more than a second
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);)
     if (!std::regex_match(line, progress)) lines.push_back(line);
   return lines;
 }
 
-bool same_line(const std::string& said, const std::string& printed) {
-  std::string pattern = std::regex_replace(said, std::regex(R"([\^$\\*+?()\[\]{}|])"), R"(\$&)");
+bool same_line(const std::string& stated, const std::string& printed) {
+  std::string pattern = std::regex_replace(stated, std::regex(R"([\^$\\*+?()\[\]{}|])"), R"(\$&)");
   pattern = std::regex_replace(pattern, std::regex(R"(\.\.\.)"), "\x01");
   pattern = std::regex_replace(pattern, std::regex(R"(\.)"), R"(\.)");
   pattern = std::regex_replace(pattern, std::regex("\x01"), ".*");
   return std::regex_match(printed, std::regex(pattern));
 }
 
-bool same(const std::vector<std::string>& said, std::size_t i, const std::vector<std::string>& printed, std::size_t j) {
-  if (i == said.size()) return j == printed.size();
-  if (said[i] == "...") {
+bool same(const std::vector<std::string>& stated, std::size_t i, const std::vector<std::string>& printed, std::size_t j) {
+  if (i == stated.size()) return j == printed.size();
+  if (stated[i] == "...") {
     for (std::size_t k = j; k <= printed.size(); ++k)
-      if (same(said, i + 1, printed, k)) return true;
+      if (same(stated, i + 1, printed, k)) return true;
     return false;
   }
-  return j < printed.size() && same_line(said[i], printed[j]) && same(said, i + 1, printed, j + 1);
+  return j < printed.size() && same_line(stated[i], printed[j]) && same(stated, i + 1, printed, j + 1);
 }
 
 void pictures_hold_something(const std::string& folder) {
@@ -102,7 +101,7 @@ void pictures_hold_something(const std::string& folder) {
   }
 }
 
-/// A number with a unit in a sentence is one that a block says or prints, perhaps with more digits.
+/// Checks that each number with a unit in the prose occurs in a block, possibly with more digits.
 void numbers_are_said(const Page& page, const std::string& path) {
   const std::regex number(R"((\d+(?:\.\d+)?) (?:N/m|N|mm|m|s|units?|voxels?|Hz)\b)");
   for (auto it = std::sregex_iterator(page.prose.begin(), page.prose.end(), number); it != std::sregex_iterator(); ++it) {
@@ -111,7 +110,7 @@ void numbers_are_said(const Page& page, const std::string& path) {
   }
 }
 
-/// On a display, and as somebody who is not root, who then owns the folder: the compiler's cache is not his.
+/// Prefix that runs a command on a display and as a user other than root, who owns the folder but not the compiler's cache.
 std::vector<std::string> user_at_a_display(const std::string& folder) {
   std::vector<std::string> words{"sh", test::source_dir() + "/tests/support/on_display.sh", "1000x700x24", "env", "HOME=" + folder};
   if (::geteuid() != 0) return words;
@@ -121,7 +120,7 @@ std::vector<std::string> user_at_a_display(const std::string& folder) {
   return words;
 }
 
-/// Does what docs/user/IN/NAME.md says.
+/// Runs the blocks of docs/user/IN/NAME.md.
 void follow(const std::string& name, const std::string& in = "tutorials/", bool has_window = false) {
   const std::string path = "docs/user/" + in + name + ".md";
   const Page page = read_page(path);
@@ -144,10 +143,10 @@ void follow(const std::string& name, const std::string& in = "tutorials/", bool 
     const test::ProgramResult result = test::run_shell(work, block.text, before);
     ASSERT_EQ(result.exit_code, 0) << path << ":" << block.line << "\n" << result.out;
     if (i + 1 < page.blocks.size() && page.blocks[i + 1].language == "text") {
-      const std::string& said = page.blocks[i + 1].text;
-      EXPECT_TRUE(same(lines_of(said), 0, lines_of(result.out), 0)) << path << ":" << block.line << " says\n"
-                                                                    << said << "and got\n"
-                                                                    << result.out;
+      const std::string& stated = page.blocks[i + 1].text;
+      EXPECT_TRUE(same(lines_of(stated), 0, lines_of(result.out), 0)) << path << ":" << block.line << " says\n"
+                                                                      << stated << "and got\n"
+                                                                      << result.out;
       if (!(first > 0)) first = seconds();
     }
     ++ran;
@@ -176,13 +175,13 @@ TEST(Tutorials, FromOtherPrograms) {
   if (!std::string(CATENA_PYTHON_FOLDER).empty()) follow("from-vtk", "");
 }
 
-TEST(Tutorials, EveryPageIsFollowed) {
+TEST(Tutorials, EveryPageHasATest) {
   std::set<std::string> pages;
   for (const auto& entry : fs::directory_iterator(test::source_dir() + "/docs/user/tutorials")) pages.insert(entry.path().stem());
   EXPECT_EQ(pages, (std::set<std::string>{"first-force", "first-picture", "from-python", "own-constraint", "own-data", "own-experiment"}));
 }
 
-TEST(Tutorials, AWrongSentenceIsFound) {
+TEST(Tutorials, DetectsDifferentOutput) {
   EXPECT_TRUE(same({"a 1.5 (x) ...", "...", "end"}, 0, {"a 1.5 (x) b", "c", "d", "end"}, 0));
   EXPECT_FALSE(same({"a 1.5"}, 0, {"a 1x5"}, 0));
   EXPECT_FALSE(same({"a"}, 0, {"a", "b"}, 0));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Tests of the documents, all .md files of the tree: every relative link leads to a file and a heading; every file and every Suite.Case
-/// that they name exists; prose is short; a guide has a picture; README.md shows the scene of assets/scenes/first.json.
+/// that they name exists; prose is short; a guide has an image; README.md shows the scene of assets/scenes/first.json.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ std::set<std::string> anchors_of(const std::string& document) {
   return anchors;
 }
 
-TEST(Documents, EveryLinkLeadsSomewhere) {
+TEST(Documents, EveryLinkIsValid) {
   int checked = 0;
   for (const std::string& document : documents())
     for (const std::string& link : matches(contents(document), R"(\]\(([^)\s]+)\))")) {
@@ -81,7 +81,7 @@ TEST(Documents, EveryLinkLeadsSomewhere) {
   EXPECT_GT(checked, 40);
 }
 
-TEST(Documents, EveryPageIsReachedFromTheReadme) {
+TEST(Documents, EveryPageIsReachableFromTheReadme) {
   std::set<std::string> reached, open{"README.md"};
   while (!open.empty()) {
     const std::string page = *open.begin();
@@ -93,7 +93,7 @@ TEST(Documents, EveryPageIsReachedFromTheReadme) {
   for (const std::string& document : documents()) EXPECT_TRUE(reached.contains(document) || !document.starts_with("docs/")) << document;
 }
 
-TEST(Documents, EveryFileThatTheyNameIsThere) {
+TEST(Documents, EveryNamedFileExists) {
   int checked = 0;
   for (const std::string& document : documents())
     for (const std::string& path : matches(contents(document), R"(`((?:engine|haptics|render|shaders|tests|assets)/[\w./-]+)`)")) {
@@ -104,7 +104,7 @@ TEST(Documents, EveryFileThatTheyNameIsThere) {
   EXPECT_GT(checked, 40);
 }
 
-TEST(Documents, EveryTestThatTheyNameIsOne) {
+TEST(Documents, EveryNamedTestExists) {
   std::string cases;  // " Suite.Case" for every test
   for (const auto& entry : fs::recursive_directory_iterator(test::source_dir() + "/tests")) {
     if (entry.path().extension() != ".cpp") continue;
@@ -118,7 +118,7 @@ TEST(Documents, EveryTestThatTheyNameIsOne) {
   int checked = 0;
   for (const std::string& document : documents())
     for (std::string name : matches(contents(document), R"(`([A-Z]\w+\.[A-Z]\w*\*?|[A-Z]\w+\.\*)`)")) {
-      if (name == "Suite.Case" || name == "NumberN.*") continue;  // patterns of names
+      if (name == "Suite.Case" || name == "NumberN.*") continue;  // placeholders
       ++checked;
       const bool all = name.ends_with("*");
       if (all) name.pop_back();
@@ -127,7 +127,7 @@ TEST(Documents, EveryTestThatTheyNameIsOne) {
   EXPECT_GT(checked, 20);
 }
 
-/// A paragraph of prose or an item of a list, and the line on which it begins.
+/// A paragraph of prose or a list item, and its first line.
 struct Paragraph {
   int line = 0;
   std::string text;
@@ -150,7 +150,7 @@ std::vector<Paragraph> prose(const std::string& document) {
     const bool is_prose = !is_code && !is_fence && !is_comment && !text.empty() && text.find_first_of("#|") != 0;
     if (is_comment && text.find("-->") != std::string::npos) is_comment = false;
     const bool begins_item = std::regex_search(line, item);
-    if (!is_prose || (!continues && begin >= 4 && !begins_item)) {  // or an indented code block
+    if (!is_prose || (!continues && begin >= 4 && !begins_item)) {  // or indented code blocks
       continues = false;
       continue;
     }
@@ -185,7 +185,7 @@ TEST(Documents, ProseIsShort) {
   EXPECT_GT(checked, 500);
 }
 
-TEST(Documents, AGuideIsShortAndHasAPicture) {
+TEST(Documents, AGuideIsShortAndHasAnImage) {
   int checked = 0;
   for (const auto& entry : fs::directory_iterator(test::source_dir() + "/docs/user")) {
     if (entry.path().extension() != ".md") continue;
@@ -197,7 +197,7 @@ TEST(Documents, AGuideIsShortAndHasAPicture) {
   EXPECT_GT(checked, 10);
 }
 
-TEST(Documents, BenchmarksAreMadeFromTheirTables) {
+TEST(Documents, BenchmarksMatchTheirTables) {
   const test::ProgramResult made = test::run_program("/usr/bin/python3", {test::source_dir() + "/docs/benchmarks/make.py", "--check"});
   EXPECT_EQ(made.exit_code, 0) << made.out << made.err;
 }

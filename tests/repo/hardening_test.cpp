@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the linker and the compiler were asked for is in the programs: position independent, relocations read-only before main, no
-// stack that can be executed, stack canaries, checked copies of the C library, checked containers of the C++ library.
+// The programs have the requested hardening: position independent, relocations read-only before main, no executable stack, stack
+// canaries, checked functions of the C library, checked containers of the C++ library.
 #include <elf.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace catena {
 namespace hardening_test {
 
-/// A 64-bit program of this machine, read as bytes.
+/// A 64-bit ELF program of this machine, as bytes.
 class Program {
  public:
   explicit Program(const std::string& path) : bytes_(test::read_file(path)) {
@@ -72,7 +72,7 @@ class Program {
   std::set<std::string> imports_;
 };
 
-TEST(Hardening, TheProgramsHaveIt) {
+TEST(Hardening, TheProgramsAreHardened) {
 #ifdef CATENA_NOT_HARDENED
   GTEST_SKIP() << "the sanitizers have checks of their own";
 #endif

@@ -30,7 +30,7 @@ Edges declared_edges() {
   return edges;
 }
 
-// what may be included through others: scene -> flow -> field -> base
+// edges are transitive: scene -> flow -> field -> base
 std::set<std::string> reachable(const Edges& edges, const std::string& module) {
   std::set<std::string> seen{module}, todo{module};
   while (!todo.empty()) {
@@ -44,7 +44,7 @@ std::set<std::string> reachable(const Edges& edges, const std::string& module) {
   return seen;
 }
 
-// "engine/app/viewer/x.h" belongs to the module engine/app: the longest declared folder that holds it
+// "engine/app/viewer/x.h" belongs to module engine/app: the longest declared folder that contains it
 std::string module_of(const Edges& edges, const std::string& path) {
   std::string best;
   for (const auto& [module, to] : edges)
@@ -57,7 +57,7 @@ struct Include {
   std::string from, to;  ///< paths from the repository root
 };
 
-// the path of an #include line, or nothing
+// path of an #include line, or empty
 std::string included_path(const std::string& line) {
   const auto hash = line.find_first_not_of(" \t");
   if (hash == std::string::npos || line[hash] != '#') return {};
@@ -114,7 +114,7 @@ TEST(Layering, ProjectHeadersAreIncludedFromTheRepositoryRoot) {
     }
 }
 
-TEST(Layering, OnlyTheProgramAndTheTopModulesStandAboveBothHapticsAndRender) {
+TEST(Layering, OnlyTheProgramAndTheTopModulesUseBothHapticsAndRender) {
   const Edges edges = declared_edges();
   std::set<std::string> above;
   for (const auto& [module, to] : edges) {
@@ -129,13 +129,13 @@ TEST(Layering, OnlyTheProgramAndTheTopModulesStandAboveBothHapticsAndRender) {
   EXPECT_TRUE(above.empty()) << *above.begin() << " sees both haptics and render";
   EXPECT_FALSE(reachable(edges, "haptics/build").contains("render/frame"));
   EXPECT_FALSE(reachable(edges, "render/extract").contains("haptics/chain"));
-  // the two doors from the scene
+  // the two modules that build from the scene
   EXPECT_TRUE(edges.at("haptics/build").contains("engine/scene"));
   EXPECT_TRUE(edges.at("render/extract").contains("engine/scene"));
 }
 
 TEST(Layering, HeavyLibrariesStayInTheirModules) {
-  std::map<std::string, std::set<std::string>> users;  // library -> files
+  std::map<std::string, std::set<std::string>> users;  // files by library
   for (const char* top : {"engine", "haptics", "render"}) {
     for (const Include& include : all_includes(top)) {
       for (const char* library :

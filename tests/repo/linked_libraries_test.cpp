@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the built programs hold: `catena` has no way to read a .vdb file itself.
+/// Libraries of the built programs: `catena` itself does not link OpenVDB.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,11 +7,11 @@
 
 #include "tests/support/support.h"
 
-namespace programs_test {
+namespace linked_libraries_test {
 
 namespace test = catena::test;
 
-/// "openvdb" in any case: in symbols, in their names, in the list of libraries.
+/// True if a program contains "openvdb", case-insensitive, in its symbols or its list of libraries.
 bool names_openvdb(const std::string& program) {
   std::string bytes = test::read_file(test::binary_dir() + "/" + program);
   EXPECT_GT(bytes.size(), 10000u) << program;
@@ -19,10 +19,10 @@ bool names_openvdb(const std::string& program) {
   return bytes.find("openvdb") != std::string::npos;
 }
 
-TEST(LinkedLibraries, OnlyTheHelpersHoldOpenVdb) {
+TEST(LinkedLibraries, OnlyTheHelpersLinkOpenVdb) {
   EXPECT_TRUE(names_openvdb("catena-read"));
   EXPECT_TRUE(names_openvdb("catena-write"));
   EXPECT_FALSE(names_openvdb("catena"));
 }
 
-}  // namespace programs_test
+}  // namespace linked_libraries_test

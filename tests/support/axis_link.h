@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A link with an axis and nothing else, so that the rotational chain is tested in closed form.
+/// A link with only an axis, for closed-form tests of the rotational chain.
 #pragma once
 #include <memory>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace catena::test {
 
-/// Holds the proxy where the probe is, with an axis; each question for it costs `cost` fetches.
+/// Holds the proxy at the probe, with an axis; each query of the axis costs `cost` evaluations.
 class AxisConstraint final : public haptics::Constraint {
  public:
   AxisConstraint(const Vec3& axis, haptics::Primitive::Kind kind, int cost = 0) : axis_(direction(axis)), kind_(kind), cost_(cost) {}

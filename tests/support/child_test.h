@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A test case as a process of its own: what is stopped, killed or limited must not be the test program.
+/// A test case in a child process, to be stopped, killed or limited instead of the test program.
 #pragma once
 #include <sys/types.h>
 
@@ -9,13 +9,13 @@
 namespace catena::test {
 
 struct ChildSetting {
-  std::vector<std::string> environment;  ///< "NAME=VALUE", beside this process's own
-  std::string out = "/dev/null";         ///< where its standard output goes
+  std::vector<std::string> environment;  ///< "NAME=VALUE", in addition to this process's
+  std::string out = "/dev/null";         ///< file for its standard output
 };
 
-/// Starts this very program with one disabled case; the caller waits for it (waitpid).
+/// Starts this test program with one disabled case; the caller waits for it (waitpid).
 pid_t start_case(const std::string& suite_dot_case, const ChildSetting& setting = {});
-/// The value of a variable that start_case set; skips the case (false) where it was not set.
+/// Value of a variable that start_case set; empty if it is not set, so that the case is skipped.
 std::string child_variable(const char* name);
 
 }  // namespace catena::test

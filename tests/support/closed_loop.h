@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A simulated hand on the very tick, without a thread: read, tick, write. And what the hand has got, by an account of its own.
+/// A simulated hand in the real tick without a thread (read, tick, write), and an independent account of the energy given to the hand.
 #pragma once
 #include <algorithm>
 #include <memory>
@@ -20,7 +20,7 @@ struct ClosedLoop {
     const Vec3 probe = haptics::world_from_device(*program, input.position_m);
     haptics::tick(*program, {static_cast<double>(ticks) * period_s, probe, input.buttons, kIdentityRotation, condition, forces_on}, *state,
                   *scratch, out);
-    // energy that has left towards the hand, and what the mechanism's damping has taken, true positions
+    // energy given to the device, and energy dissipated by the mechanism's damping, by true positions
     const Vec3 moved = device.position_m() - last_position_m;
     if (ticks > 0) {
       energy_to_device_j += dot(last_force_n, moved);
@@ -54,7 +54,7 @@ struct ClosedLoop {
   std::uint64_t ticks = 0;
   Vec3 last_position_m{0.0}, last_force_n{0.0};
   double energy_to_device_j = 0, energy_damped_j = 0;
-  double min_passivity_j = 0;  ///< of E + int b v^2
+  double min_passivity_j = 0;  ///< minimum of E + int b v^2
 };
 
 }  // namespace catena::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The counting operators new and delete behind AllocationCounter: linked into every test program.
+// Counting operators new and delete for AllocationCounter, linked into every test program.
 #include <cstdlib>
 #include <new>
 

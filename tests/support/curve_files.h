@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Tractograms as bytes, written field by field from the formats' descriptions.
+/// Tractogram files as bytes, written field by field by the formats' descriptions.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -39,7 +39,7 @@ inline std::string tck_bytes(const Polylines& lines, const std::string& type) {
   return head;
 }
 
-/// As a file of floats gives them.
+/// Rounds the coordinates to floats, as in a file.
 inline curves::CurveSetPtr make_curve_set(const Polylines& lines) {
   auto set = curves::parse_tck(tck_bytes(lines, "Float32LE"), "made.tck");
   return set ? std::make_shared<const curves::CurveSet>(std::move(*set)) : nullptr;
@@ -51,7 +51,7 @@ struct TrkFile {
   std::array<int, 3> dim{10, 10, 10};
   std::string order = "LPS";
   std::array<std::array<float, 4>, 4> vox_to_ras{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
-  std::vector<std::string> scalars{};  ///< k of point i of line n has the value 100 n + i + k / 2
+  std::vector<std::string> scalars{};  ///< scalar k of point i of line n has the value 100 n + i + k / 2
   int properties = 0, version = 2, count = 0;
   bool big_endian = false;
 

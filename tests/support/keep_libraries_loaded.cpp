@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Sanitizer builds only. The Vulkan loader unloads its driver and layers, and the leak checker then takes what their globals
-// held for lost: here libraries stay loaded to the end. The validation layer also loses some small blocks of its own, lavapipe
-// 22.3 one shader of every pipeline that uses discard, and OpenXR's loader 1.0.20 what it keeps of every instance; undestroyed
-// objects of ours are what the validation layers find.
+// Sanitizer builds only. The Vulkan loader unloads its driver and layers, and the leak checker then reports memory of their globals:
+// here libraries stay loaded to the end. Suppressed leaks: small blocks of the validation layer, one shader of every pipeline with
+// discard of lavapipe 22.3, and data of every instance of OpenXR's loader 1.0.20. Undestroyed objects of Catena are found by the
+// validation layers.
 #ifdef __SANITIZE_ADDRESS__
 extern "C" {
 __attribute__((visibility("default"), used)) int dlclose(void*) { return 0; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Meshes with known answers: box, sphere, sheet, plate, wedge, and their files.
+/// Meshes with known closest points: box, sphere, sheet, plate, wedge, and their files.
 #pragma once
 #include <cmath>
 #include <cstring>
@@ -16,7 +16,7 @@ inline void add_quad(mesh::TriangleSoup& soup, const Vec3& a, const Vec3& b, con
   soup.triangles.push_back({first, first + 2, first + 3});
 }
 
-/// Normals outwards.
+/// A box with outward normals.
 inline void add_box(mesh::TriangleSoup& soup, const Vec3& lo, const Vec3& hi) {
   const auto at = [&](int x, int y, int z) { return Vec3(x ? hi.x : lo.x, y ? hi.y : lo.y, z ? hi.z : lo.z); };
   add_quad(soup, at(0, 0, 0), at(0, 1, 0), at(1, 1, 0), at(1, 0, 0));
@@ -33,7 +33,7 @@ inline mesh::TriangleSoup box_soup(const Vec3& lo = Vec3(-0.5), const Vec3& hi =
   return soup;
 }
 
-/// z = height(x, y) on n x n squares of [-half, half]^2, normals up.
+/// z = height(x, y) on n x n squares of [-half, half]^2, with upward normals.
 template <class F>
 mesh::TriangleSoup sheet_soup(int n, double half, const F& height) {
   mesh::TriangleSoup soup;
@@ -46,7 +46,7 @@ mesh::TriangleSoup sheet_soup(int n, double half, const F& height) {
   return soup;
 }
 
-/// An icosahedron with every face cut into n x n triangles, on the sphere: 20 n^2 faces.
+/// An icosahedron with every face divided into n x n triangles, projected onto the sphere: 20 n^2 faces.
 inline mesh::TriangleSoup sphere_soup(int n, double radius = 1, const Vec3& centre = Vec3(0.0)) {
   const double g = (1 + std::sqrt(5.0)) / 2;
   const Vec3 v[12] = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
@@ -56,7 +56,7 @@ inline mesh::TriangleSoup sphere_soup(int n, double radius = 1, const Vec3& cent
                         {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   mesh::TriangleSoup soup;
   for (const auto& t : f) {
-    // the weights are summed in one order of the corners, so that neighbours agree to the bit
+    // the weights are summed in a fixed order of the corners, so that neighbours are bit-identical
     const auto at = [&](int i, int j) {
       int weight[12] = {};
       weight[t[0]] += n - i - j;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# A command on a virtual display of its own: sh on_display.sh SCREEN COMMAND...
-# The server chooses its own number, so that two tests at once never take the same, and stays when its last program has ended.
+# Runs a command on a new virtual display: sh on_display.sh SCREEN COMMAND...
+# The server chooses its display number, so that concurrent tests never share one, and keeps running after its last client.
 screen=$1
 shift
 number=$(mktemp)

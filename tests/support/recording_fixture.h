@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Recordings for the tests of haptics/servo/log: ticks driven without a thread, with everything that can happen to a probe.
+/// Recordings for the tests of haptics/servo/log: ticks driven without a thread, with all conditions of a probe.
 #pragma once
 #include <cmath>
 #include <limits>
@@ -13,15 +13,14 @@
 
 namespace catena::test {
 
-/// From this tick (1 is the first) this program runs.
+/// A program that runs from tick `tick` on (the first is 1).
 struct ProgramChange {
   std::uint64_t tick = 1;
   std::shared_ptr<const haptics::HapticProgram> program;
   std::optional<std::string> scene_text;
 };
 
-/// ProbeMotion, jumps, stillness, buttons, turns; and ticks without a probe, without a device, late ones, forces off, a clock that goes
-/// back.
+/// Motion, jumps, rests, buttons, rotations; and ticks without a probe or a device, late ticks, forces off, a clock that runs backwards.
 inline std::vector<haptics::ProbeSample> adversarial_path(int ticks) {
   std::vector<haptics::ProbeSample> path;
   for (int k = 0; k < ticks; ++k) {
@@ -47,7 +46,7 @@ inline std::vector<haptics::ProbeSample> adversarial_path(int ticks) {
   return path;
 }
 
-/// Runs the ticks as the servo does and hands each to `sink`.
+/// Runs the ticks like the servo and passes each to `sink`.
 template <class Sink>
 void run_ticks(const std::vector<ProgramChange>& changes, const std::vector<haptics::ProbeSample>& path, const Sink& sink) {
   auto state = std::make_unique<haptics::ChainState>();
@@ -70,7 +69,7 @@ void run_ticks(const std::vector<ProgramChange>& changes, const std::vector<hapt
   }
 }
 
-/// Records the ticks; the state_hash of all of them.
+/// Records the ticks; returns their state_hash.
 inline std::uint64_t record_ticks(haptics::log::LogWriter& writer, const std::vector<ProgramChange>& changes,
                                   const std::vector<haptics::ProbeSample>& path) {
   for (const ProgramChange& change : changes) writer.add_program(*change.program, change.scene_text);
@@ -94,7 +93,7 @@ inline std::shared_ptr<haptics::HapticProgram> make_level_program(std::uint64_t 
   return program;
 }
 
-/// The programs of a recording, found again by their epoch.
+/// Replay hooks that find the programs of a recording by their epoch.
 inline haptics::log::LogReplayHooks make_replay_hooks(const std::vector<ProgramChange>& changes) {
   haptics::log::LogReplayHooks hooks;
   hooks.build = [changes](const haptics::log::LogProgram& wanted) -> Result<std::shared_ptr<const haptics::HapticProgram>> {
@@ -105,7 +104,7 @@ inline haptics::log::LogReplayHooks make_replay_hooks(const std::vector<ProgramC
   return hooks;
 }
 
-/// The bytes of a log of 5 small blocks of ticks, two programs and an end.
+/// Bytes of a log with 5 small blocks of ticks, two programs and an end.
 inline std::string make_small_log(int ticks = 60) {
   const TemporaryFolder folder;
   haptics::log::LogHeader header{"scene.json", "/somewhere", "{\"chain\": []}", {"density=d.vdb:x"}, "null", "0.1.0", 1000, 1};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Memory of this process that is in use now.
+/// Resident memory of this process.
 #pragma once
 #include <unistd.h>
 
@@ -8,14 +8,14 @@
 
 namespace catena::test {
 
-/// The address sanitizer keeps what is freed for a while: there what is held says nothing.
+/// False under the address sanitizer, which keeps freed memory for a while.
 #ifdef __SANITIZE_ADDRESS__
 inline constexpr bool kResidentCounts = false;
 #else
 inline constexpr bool kResidentIsReliable = true;
 #endif
 
-/// Resident bytes (Linux).
+/// Resident size in bytes (Linux).
 inline std::uint64_t resident_bytes() {
   std::ifstream file("/proc/self/statm");
   std::uint64_t all = 0, resident = 0;

@@ -7,16 +7,16 @@
 namespace catena::test {
 
 struct ProgramResult {
-  int exit_code = -1;  ///< 128 + signal if it was killed
+  int exit_code = -1;  ///< 128 + signal number if killed
   std::string out, err;
 };
 
-/// No shell in between; standard input is empty.
+/// Runs a program without a shell and with empty standard input.
 ProgramResult run_program(const std::string& program, const std::vector<std::string>& arguments);
-/// The `catena` of this build.
+/// Runs `catena` of this build.
 ProgramResult run_catena(const std::vector<std::string>& arguments);
 
-/// A CSV by columns: numbers where they parse, words elsewhere.
+/// Columns of a CSV: numbers if they parse, otherwise texts.
 class Table {
  public:
   static Table read(const std::string& path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Constraints as small as can be, so that the chain, the tick and the servo are tested without a real one.
+/// Minimal constraints, for tests of the chain, the tick and the servo.
 #pragma once
 #include <memory>
 #include <string>

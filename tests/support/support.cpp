@@ -11,7 +11,7 @@
 
 namespace catena::test {
 
-// The only file of the tests that is compiled with a path, so that a compiler cache serves every checkout.
+// The only test source compiled with absolute paths, so that a compiler cache works for every checkout.
 const std::string& source_dir() {
   static const std::string path = CATENA_SOURCE_DIR;
   return path;

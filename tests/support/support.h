@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-/// Helpers of all tests: where things are, a folder that vanishes, text files, the shared data folder.
+/// Helpers of all tests: paths, a temporary folder, text files, the shared data folder.
 #pragma once
 #include <string>
 
 namespace catena::test {
 
-const std::string& source_dir();    ///< of the checkout
-const std::string& binary_dir();    ///< of this build
-const std::string& program_path();  ///< of `catena` in this build
+const std::string& source_dir();    ///< root of the checkout
+const std::string& binary_dir();    ///< build folder
+const std::string& program_path();  ///< path of `catena` in this build
 
-/// A fresh folder, removed with all that is in it.
+/// A new folder, removed with its contents on destruction.
 class TemporaryFolder {
  public:
   TemporaryFolder();
@@ -27,7 +27,7 @@ void write_file(const std::string& path, const std::string& text);
 std::string read_file(const std::string& path);
 bool exists(const std::string& path);
 
-/// A file of the real data beside the checkout (../shared/data), or empty when it is not there: then skip with a message.
+/// Path of a real data file beside the checkout (../shared/data); empty if it does not exist: then the test is skipped.
 std::string shared_data(const std::string& name);
 
 }  // namespace catena::test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Tests draw on lavapipe with the validation layer on: the same pictures on every machine. CATENA_TEST_DEVICE names another device
-/// ("gpu", or a part of its name): a few tests compare with pictures or costs that lavapipe alone has, and skip there.
+/// Tests draw on lavapipe with the validation layer, so that images are equal on every machine. CATENA_TEST_DEVICE names another device
+/// ("gpu", or a part of its name); tests of images or costs that are specific to lavapipe are skipped there.
 #pragma once
 #include <stdlib.h>
 
@@ -10,16 +10,16 @@
 
 namespace catena::test {
 
-/// What DeviceOptions::choose is in tests.
+/// Value of DeviceOptions::device_filter in tests.
 inline std::string test_device() {
   const char* asked = std::getenv("CATENA_TEST_DEVICE");
   return asked ? asked : "cpu";
 }
 
-/// Whether tests draw on lavapipe.
+/// True if tests draw on lavapipe.
 inline bool uses_lavapipe() { return test_device() == "cpu"; }
 
-/// Points the Vulkan loader at lavapipe, unless the environment already says which driver or which device to take.
+/// Makes the Vulkan loader use lavapipe, unless the environment selects a driver or a device.
 inline void use_lavapipe() {
   ::setenv("LP_NUM_THREADS", "2", 0);
   if (std::getenv("CATENA_TEST_DEVICE") || std::getenv("VK_DRIVER_FILES") || std::getenv("VK_ICD_FILENAMES")) return;

@@ -95,7 +95,7 @@ XRAPI_ATTR XrResult XRAPI_CALL sync(XrSession handle, const XrActionsSyncInfo* i
   return session->state == XR_SESSION_STATE_FOCUSED ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED;
 }
 
-/// The hand, where the action is bound in the scripted profile and the session has the focus.
+/// The hand, if the action is bound in the scripted profile and the session has focus; otherwise null.
 const ScriptedHand* active_hand(const SessionObject& session, std::uint64_t action, XrPath hand_path) {
   auto* instance = world().find<InstanceObject>(session.parent, Kind::instance);
   const Script& script = world().shared.script;
@@ -108,7 +108,7 @@ const ScriptedHand* active_hand(const SessionObject& session, std::uint64_t acti
   return has ? &script.hands[hand] : nullptr;
 }
 
-/// The eyes are seen, and the action is bound to their gaze.
+/// True if the eyes are tracked and the action is bound to their gaze.
 bool sees_gaze(const SessionObject& session, std::uint64_t action) {
   auto* instance = world().find<InstanceObject>(session.parent, Kind::instance);
   const Script& script = world().shared.script;
@@ -123,7 +123,7 @@ float amount_of(const std::string& name, const ScriptedHand& hand) {
   return hand.select;
 }
 
-/// What every action's state has; `value` of the hand that holds it, null: none does.
+/// Common fields of an action's state; `value` of the bound hand, null if there is none.
 template <class State, class Value>
 XrResult fill_state(const SessionObject& session, const XrActionStateGetInfo* info, State* out, const Value& value) {
   const ScriptedHand* hand = active_hand(session, number(info->action), info->subactionPath);

@@ -27,7 +27,7 @@ XrView scripted_view(float x, float turn, float left, float right) {
   return view;
 }
 
-/// Canted outwards by 5 degrees, wider on the outside.
+/// A view canted outwards by 5 degrees, with a wider outer angle.
 Script first_script() {
   Script script;
   script.views = {scripted_view(-0.032f, 0.087f, -0.9f, 0.75f), scripted_view(0.032f, -0.087f, -0.75f, 0.9f)};
@@ -68,7 +68,7 @@ XrSessionState state_named(const std::string& word) {
 
 RuntimeState& world() {
   static RuntimeState* one = [] {
-    auto* made = new RuntimeState;  // outlives what runs at exit
+    auto* made = new RuntimeState;  // never destroyed, so that it outlives exit handlers
     made->shared.script = first_script();
     return made;
   }();
@@ -354,7 +354,7 @@ XRAPI_ATTR XrResult XRAPI_CALL vulkan_physical(XrInstance handle, const XrVulkan
 XRAPI_ATTR XrResult XRAPI_CALL vulkan_device(XrInstance handle, const XrVulkanDeviceCreateInfoKHR* info, VkDevice* made, VkResult* result) {
   ENTER(xrCreateVulkanDeviceKHR);
   FIND(InstanceObject, instance, handle, instance);
-  // as Monado does: timeline semaphores are switched on, unless the program has said something of them
+  // as in Monado: enables timeline semaphores unless the program configures them
   VkDeviceCreateInfo own = *info->vulkanCreateInfo;
   VkPhysicalDeviceTimelineSemaphoreFeatures timeline{};
   timeline.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES;
@@ -406,7 +406,7 @@ XRAPI_ATTR XrResult XRAPI_CALL get_proc_addr(XrInstance, const char* name, PFN_x
 
 }  // namespace catena::test::xr_runtime
 
-// the loader's side of the negotiation, which its headers of this version leave out
+// negotiation structures of the loader, missing in its headers of this version
 extern "C" {
 
 struct XrNegotiateLoaderInfo {

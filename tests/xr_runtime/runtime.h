@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Inside the runtime: objects by handle, and what every entry does first: count the call, play a scripted failure, take the lock.
+/// Internals of the runtime: objects by handle, and the prologue of every entry: lock, call count, scripted failure.
 #pragma once
 #include <deque>
 #include <memory>
@@ -24,8 +24,8 @@ struct InstanceObject : Object {
   InstanceObject() : Object(Kind::instance) {}
   std::set<std::string> extensions;
   std::deque<XrEventDataBuffer> events;
-  std::vector<std::string> paths{""};                                                  ///< by XrPath
-  std::map<std::string, std::map<std::uint64_t, std::vector<std::string>>> suggested;  ///< by profile: action -> paths
+  std::vector<std::string> paths{""};                                                  ///< path strings by XrPath
+  std::map<std::string, std::map<std::uint64_t, std::vector<std::string>>> suggested;  ///< binding paths by profile and action
   bool requirements_queried = false;
 };
 
@@ -38,16 +38,16 @@ struct SessionObject : Object {
   std::uint32_t family = 0;
   XrSessionState state = XR_SESSION_STATE_UNKNOWN;
   bool running = false, waited = false, begun = false, exit_requested = false, has_shown_frame = false, synced = false;
-  std::uint64_t frame = 0;  ///< waits so far
+  std::uint64_t frame = 0;  ///< number of waited frames
   XrTime time = 0, last_ended = 0;
-  std::vector<XrView> located;  ///< for `time`
+  std::vector<XrView> located;  ///< views located for `time`
   std::vector<std::uint64_t> action_sets;
 };
 
 struct SpaceObject : Object {
   explicit SpaceObject(std::uint64_t p) : Object(Kind::space, p) {}
   XrReferenceSpaceType reference = XR_REFERENCE_SPACE_TYPE_LOCAL;
-  std::uint64_t action = 0;  ///< 0: a reference space
+  std::uint64_t action = 0;  ///< action of the space; 0: a reference space
   int hand = 0;
   XrPosef offset{{0, 0, 0, 1}, {0, 0, 0}};
 };
@@ -60,9 +60,9 @@ struct SwapchainObject : Object {
   std::vector<VkImage> images;
   std::vector<VkDeviceMemory> memory;
   std::deque<std::uint32_t> acquired;
-  bool waited = false;  ///< the first of them
+  bool waited = false;  ///< true: the first acquired image was waited for
   std::uint32_t next = 0;
-  std::optional<std::uint32_t> released;  ///< the latest
+  std::optional<std::uint32_t> released;  ///< index of the last released image
   bool is_depth() const { return info.format == VK_FORMAT_D32_SFLOAT; }
 };
 
@@ -89,7 +89,7 @@ struct RuntimeState {
     return it != objects.end() && it->second->kind == kind ? static_cast<T*>(it->second.get()) : nullptr;
   }
   std::uint64_t add(std::unique_ptr<Object> object);
-  /// With all that hangs on it.
+  /// Removes an object with its children.
   void remove(std::uint64_t handle);
 };
 RuntimeState& world();
@@ -103,16 +103,16 @@ Handle as_handle(std::uint64_t n) {
   return reinterpret_cast<Handle>(n);
 }
 
-/// The scripted answer to this call, or nothing.
+/// Scripted result of this call, or empty.
 std::optional<XrResult> enter(const char* function);
-/// Notes what was wrong, and is the answer.
+/// Records an illegal call and returns the result.
 XrResult illegal(const char* function, XrResult result, const std::string& why);
 void post_state(std::uint64_t session, SessionObject& of, XrSessionState state);
 void read_environment();
 
 XrTime clock_now();
 
-/// Fills a two-call list.
+/// Fills a list of OpenXR's two-call idiom.
 template <class T, class U>
 XrResult fill(const std::vector<T>& all, std::uint32_t capacity, std::uint32_t* count, U* out) {
   *count = std::uint32_t(all.size());
@@ -122,23 +122,23 @@ XrResult fill(const std::vector<T>& all, std::uint32_t capacity, std::uint32_t* 
   return XR_SUCCESS;
 }
 
-/// What a swapchain shows, brought back to the host: bytes of RGBA, or floats of depth.
-void read_back(SessionObject& session, SwapchainObject& swapchain, const XrRect2Di& rect, CapturedImage& kept);
+/// Reads a swapchain image back to the host: RGBA bytes, or depth floats.
+void read_back(SessionObject& session, SwapchainObject& swapchain, const XrRect2Di& rect, CapturedImage& captured);
 
-// by name: the functions of each file
+// functions of each file, by name
 PFN_xrVoidFunction find_session_function(const std::string& name);
 PFN_xrVoidFunction find_swapchain_function(const std::string& name);
 PFN_xrVoidFunction find_action_function(const std::string& name);
 
 }  // namespace catena::test::xr_runtime
 
-/// At the top of every entry: the lock, the count, the script.
+/// Prologue of every entry: lock, call count, script.
 #define ENTER(function)                      \
   const std::lock_guard guard(world().lock); \
   const char* const self = #function;        \
   (void)self;                                \
   if (const auto scripted = enter(self)) return *scripted
-/// Of what destroys: it is done, whatever is answered.
+/// Prologue of destroy functions, which destroy the object for any scripted result.
 #define ENTER_TO_DESTROY(function)           \
   const std::lock_guard guard(world().lock); \
   const char* const self = #function;        \

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-/// A headset's runtime for tests, loaded by the real loader. What it plays, and what it has seen: plain data in the library, shared with
-/// the tests of one process by catena_xr_stage(). A program of its own is played to by the environment variable CATENA_XR_SCRIPT:
-///   words apart by spaces: fail=xrEndFrame:3:-17 (the third call answers so), size=64x48, period_ms=11, state=40:VISIBLE (posted before
-///   the frame 40), record=FILE (counts, at exit), without=XR_KHR_composition_layer_depth, with=XR_KHR_visibility_mask, menu=5:9 (the right
-///   hand's button is down from frame 5 to 8), gaze=0.2:-0.1 (the eyes look so far to the right and up, tangents),
-///   head=1:0:-2 (the head is moved there, metres), stage=x:y:z (in the local space), grip=40:x:y:z (the right hand, from
-///   that frame on), select=50:70 (its trigger is down in these frames), paced (xrWaitFrame sleeps),
-///   hang=20:3000 (xrWaitFrame of that frame takes so many milliseconds)
-/// Everything is under one lock; the tests write between calls.
+/// An OpenXR runtime for tests, loaded by the real loader. Its script and its record are plain data in the library, shared with the tests
+/// of one process by catena_xr_stage(). Separate programs are scripted by the environment variable CATENA_XR_SCRIPT:
+///   words separated by spaces: fail=xrEndFrame:3:-17 (result of the third call), size=64x48, period_ms=11, state=40:VISIBLE (posted
+///   before frame 40), record=FILE (counts, written at exit), without=XR_KHR_composition_layer_depth, with=XR_KHR_visibility_mask,
+///   menu=5:9 (the right hand's button is down from frame 5 to 8), gaze=0.2:-0.1 (tangents of the gaze to the right and up),
+///   head=1:0:-2 (offset of the head, metres), stage=x:y:z (in the local space), grip=40:x:y:z (the right hand, from that frame on),
+///   select=50:70 (its trigger is down in these frames), paced (xrWaitFrame sleeps),
+///   hang=20:3000 (duration of that frame's xrWaitFrame in milliseconds)
+/// One lock guards everything; tests write between calls.
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -27,11 +27,11 @@
 namespace catena::test::xr_runtime {
 
 struct ScriptedFailure {
-  int at = 1;  ///< the call, from 1 on
+  int at = 1;  ///< number of the failing call, from 1
   XrResult result = XR_ERROR_RUNTIME_FAILURE;
 };
 
-/// A hand: 0 left, 1 right.
+/// State of a hand: 0 left, 1 right.
 struct ScriptedHand {
   bool active = true;
   XrPosef grip{{0, 0, 0, 1}, {0, 0, 0}}, aim{{0, 0, 0, 1}, {0, 0, 0}};
@@ -41,37 +41,37 @@ struct ScriptedHand {
 };
 
 struct Script {
-  std::vector<XrView> views;  ///< in the local space; reset() has two, canted and asymmetric
+  std::vector<XrView> views;  ///< in the local space; reset() sets two, canted and asymmetric
   std::uint32_t width = 96, height = 80;
   std::int64_t period_ns = 11'111'111;
-  std::optional<std::int64_t> reported_period_ns;  ///< what it says of the period, where that is not so
-  XrPosef stage{{0, 0, 0, 1}, {0, 0, 0}};          ///< in the local space
+  std::optional<std::int64_t> reported_period_ns;  ///< reported display period, if it differs from `period_ns`
+  XrPosef stage{{0, 0, 0, 1}, {0, 0, 0}};          ///< stage space in the local space
   bool sleeps_in_wait = false;
-  bool focus = true;  ///< after the first frame the session becomes visible and focused by itself
+  bool focus = true;  ///< true: the session becomes visible and focused after the first frame
   bool tracked = true;
   std::vector<std::int64_t> formats{VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_D32_SFLOAT};
-  std::set<std::string> unsupported;                           ///< extensions and spaces ("stage") that are not offered; at first: masks
-  std::vector<XrSessionState> after_end;                       ///< posted after the next xrEndSession
-  std::map<std::string, ScriptedFailure> failures;             ///< by function, "xrEndFrame"
-  std::multimap<std::uint64_t, XrSessionState> states;         ///< posted before that frame's wait, whatever the graph says
-  std::multimap<std::uint64_t, XrEventDataBuffer> events;      ///< the same of other events
-  std::function<void(std::uint64_t frame, Script&)> on_frame;  ///< before the wait of each frame
+  std::set<std::string> unsupported;                ///< extensions and spaces ("stage") that are not offered; initially visibility masks
+  std::vector<XrSessionState> after_end;            ///< posted after the next xrEndSession
+  std::map<std::string, ScriptedFailure> failures;  ///< by function name, such as "xrEndFrame"
+  std::multimap<std::uint64_t, XrSessionState> states;         ///< posted before that frame's wait, independent of the state graph
+  std::multimap<std::uint64_t, XrEventDataBuffer> events;      ///< other events posted before that frame's wait
+  std::function<void(std::uint64_t frame, Script&)> on_frame;  ///< called before the wait of each frame
   ScriptedHand hands[2];
-  std::optional<XrPosef> gaze;  ///< of the eyes; none: they are not seen now
-  bool supports_gaze = true;    ///< the headset can
+  std::optional<XrPosef> gaze;  ///< pose of the eyes; empty: not tracked
+  bool supports_gaze = true;    ///< true: the headset supports eye tracking
   std::string profile = "/interaction_profiles/khr/simple_controller";
-  std::map<std::uint64_t, XrVector3f> grip_path;                       ///< where the right hand is from that frame on
+  std::map<std::uint64_t, XrVector3f> grip_path;                       ///< position of the right hand from that frame on
   std::vector<std::pair<std::uint64_t, std::uint64_t>> select_frames;  ///< frames in which its trigger is down: from, to
   std::uint64_t menu_from = 0, menu_to = 0;                            ///< frames in which the right hand's button is down
-  std::optional<std::pair<std::uint64_t, std::int64_t>> slow_wait;     ///< xrWaitFrame of that frame takes so long, ns
+  std::optional<std::pair<std::uint64_t, std::int64_t>> slow_wait;     ///< frame, and duration of its xrWaitFrame in ns
   bool capture_images = false;
-  std::uint32_t images = 3;  ///< of a swapchain
+  std::uint32_t images = 3;  ///< images per swapchain
 };
 
 struct CapturedImage {
   std::uint32_t width = 0, height = 0;
   std::vector<std::uint8_t> rgba;
-  std::vector<float> depth;  ///< of the depth image, where one was submitted
+  std::vector<float> depth;  ///< depth image, if submitted
   float near_z = 0, far_z = 0, min_depth = 0, max_depth = 0;
   XrPosef pose{};
   XrFovf fov{};
@@ -87,16 +87,16 @@ struct Vibration {
 
 struct Record {
   std::map<std::string, std::uint64_t> calls;
-  std::vector<std::string> illegal;     ///< what was refused because its order or its arguments were wrong
-  std::uint64_t frames = 0;             ///< ended
-  std::uint64_t projection_frames = 0;  ///< with a projection layer
+  std::vector<std::string> illegal;     ///< calls refused because of their order or arguments
+  std::uint64_t frames = 0;             ///< number of ended frames
+  std::uint64_t projection_frames = 0;  ///< number of frames with a projection layer
   std::uint64_t quads = 0, depths = 0;
-  std::uint64_t moved_poses = 0;                ///< submitted views that are not those located for that frame
-  std::vector<CapturedImage> last_images;       ///< by view, of the last picture; with capture_images
-  std::vector<CapturedImage> last_quad_images;  ///< the same of quad layers
+  std::uint64_t moved_poses = 0;                ///< number of submitted views that differ from those located for the frame
+  std::vector<CapturedImage> last_images;       ///< last image by view; with capture_images
+  std::vector<CapturedImage> last_quad_images;  ///< last images of quad layers; with capture_images
   std::vector<Vibration> vibrations;
-  std::vector<XrSessionState> states;  ///< posted
-  std::uint64_t objects = 0;           ///< alive now
+  std::vector<XrSessionState> states;  ///< posted states
+  std::uint64_t objects = 0;           ///< number of existing objects
 };
 
 struct SharedState {
@@ -107,8 +107,8 @@ struct SharedState {
 }  // namespace catena::test::xr_runtime
 
 extern "C" {
-/// Of the library that the loader has loaded; the path is CATENA_XR_RUNTIME_LIBRARY of the build.
+/// Script and record of the library that the loader has loaded; its path is CATENA_XR_RUNTIME_LIBRARY of the build.
 catena::test::xr_runtime::SharedState* catena_xr_stage();
-/// Script and record as at first; objects must be gone.
+/// Resets script and record; no objects may exist.
 void catena_xr_reset();
 }

@@ -27,11 +27,11 @@ XRAPI_ATTR XrResult XRAPI_CALL create_session(XrInstance handle, const XrSession
   session->family = binding->queueFamilyIndex;
   vkGetDeviceQueue(binding->device, binding->queueFamilyIndex, binding->queueIndex, &session->queue);
   session->time = clock_now();
-  SessionObject& kept = *session;
+  SessionObject& captured = *session;
   const std::uint64_t id = world().add(std::move(session));
   *made = as_handle<XrSession>(id);
-  post_state(id, kept, XR_SESSION_STATE_IDLE);
-  post_state(id, kept, XR_SESSION_STATE_READY);
+  post_state(id, captured, XR_SESSION_STATE_IDLE);
+  post_state(id, captured, XR_SESSION_STATE_READY);
   return XR_SUCCESS;
 }
 
@@ -108,7 +108,7 @@ XRAPI_ATTR XrResult XRAPI_CALL destroy_space(XrSpace handle) {
   return answer;
 }
 
-/// Everything is scripted in the local space; the head is between the views.
+/// Poses are scripted in the local space; the head is midway between the views.
 XRAPI_ATTR XrResult XRAPI_CALL locate_space(XrSpace handle, XrSpace base, XrTime time, XrSpaceLocation* out) {
   ENTER(xrLocateSpace);
   FIND(SpaceObject, space, handle, space);
@@ -163,10 +163,10 @@ XRAPI_ATTR XrResult XRAPI_CALL wait_frame(XrSession handle, const XrFrameWaitInf
     session->waited = true;
     session->located.clear();
     const XrTime now = clock_now();
-    session->time += std::max<std::int64_t>(script.period_ns, 1);  // whatever the period, the next frame is later
+    session->time += std::max<std::int64_t>(script.period_ns, 1);  // the next frame is later for any period
     if (script.sleeps_in_wait) {
       if (session->time > now) sleep_ns = std::max(sleep_ns, session->time - now);
-      if (session->time < now - script.period_ns) session->time = now;  // late: the next refresh
+      if (session->time < now - script.period_ns) session->time = now;  // late: moves to the next refresh
     }
     out->predictedDisplayTime = session->time + script.period_ns;
     out->predictedDisplayPeriod = script.reported_period_ns.value_or(script.period_ns);
@@ -213,17 +213,18 @@ const char* fault_of(const XrSwapchainSubImage& sub) {
 }
 
 void keep(SessionObject& session, const XrCompositionLayerProjectionView& view, const XrCompositionLayerDepthInfoKHR* depth,
-          CapturedImage& kept) {
+          CapturedImage& captured) {
   auto* swapchain = world().find<SwapchainObject>(number(view.subImage.swapchain), Kind::swapchain);
-  read_back(session, *swapchain, view.subImage.imageRect, kept);
-  kept.pose = view.pose;
-  kept.fov = view.fov;
+  read_back(session, *swapchain, view.subImage.imageRect, captured);
+  captured.pose = view.pose;
+  captured.fov = view.fov;
   if (!depth) return;
-  read_back(session, *world().find<SwapchainObject>(number(depth->subImage.swapchain), Kind::swapchain), depth->subImage.imageRect, kept);
-  kept.near_z = depth->nearZ;
-  kept.far_z = depth->farZ;
-  kept.min_depth = depth->minDepth;
-  kept.max_depth = depth->maxDepth;
+  read_back(session, *world().find<SwapchainObject>(number(depth->subImage.swapchain), Kind::swapchain), depth->subImage.imageRect,
+            captured);
+  captured.near_z = depth->nearZ;
+  captured.far_z = depth->farZ;
+  captured.min_depth = depth->minDepth;
+  captured.max_depth = depth->maxDepth;
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL end_frame(XrSession handle, const XrFrameEndInfo* info) {
@@ -276,7 +277,7 @@ XRAPI_ATTR XrResult XRAPI_CALL end_frame(XrSession handle, const XrFrameEndInfo*
   return XR_SUCCESS;
 }
 
-/// Two triangles that hide the lower left corner, and the like; in the plane z = -1.
+/// Visibility mask with two triangles that hide the lower left corner, in the plane z = -1.
 XRAPI_ATTR XrResult XRAPI_CALL visibility_mask(XrSession handle, XrViewConfigurationType, std::uint32_t view, XrVisibilityMaskTypeKHR type,
                                                XrVisibilityMaskKHR* out) {
   ENTER(xrGetVisibilityMaskKHR);

@@ -16,7 +16,7 @@ std::uint32_t memory_type(VkPhysicalDevice physical, std::uint32_t bits, VkMemor
   return 0;
 }
 
-/// A command buffer that is run at once, and waited for.
+/// Records a command buffer, submits it and waits for it.
 template <class Record_>
 void run(SessionObject& session, const Record_& record) {
   VkCommandPoolCreateInfo pool_info{};
@@ -163,7 +163,7 @@ SwapchainObject::~SwapchainObject() {
   for (VkDeviceMemory one : memory) vkFreeMemory(device, one, nullptr);
 }
 
-void read_back(SessionObject& session, SwapchainObject& swapchain, const XrRect2Di& rect, CapturedImage& kept) {
+void read_back(SessionObject& session, SwapchainObject& swapchain, const XrRect2Di& rect, CapturedImage& captured) {
   const auto width = std::uint32_t(rect.extent.width), height = std::uint32_t(rect.extent.height);
   const VkDeviceSize bytes = VkDeviceSize(4) * width * height;
   VkBufferCreateInfo info{};
@@ -195,14 +195,14 @@ void read_back(SessionObject& session, SwapchainObject& swapchain, const XrRect2
   });
   void* mapped = nullptr;
   vkMapMemory(session.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped);
-  kept.width = width;
-  kept.height = height;
+  captured.width = width;
+  captured.height = height;
   if (depth) {
-    kept.depth.resize(std::size_t(width) * height);
-    std::memcpy(kept.depth.data(), mapped, bytes);
+    captured.depth.resize(std::size_t(width) * height);
+    std::memcpy(captured.depth.data(), mapped, bytes);
   } else {
-    kept.rgba.resize(bytes);
-    std::memcpy(kept.rgba.data(), mapped, bytes);
+    captured.rgba.resize(bytes);
+    std::memcpy(captured.rgba.data(), mapped, bytes);
   }
   vkUnmapMemory(session.device, memory);
   vkDestroyBuffer(session.device, buffer, nullptr);

@@ -58,19 +58,21 @@ std::string unknown_word(const CLI::App& program, int argc, char** argv) {
     if (!sub->get_group().empty()) commands.push_back(sub->get_name());
     if (argc > 1 && sub->get_name() == argv[1]) command = sub;
   }
-  const auto said = [](const char* kind, const std::string& word, const std::vector<std::string>& known) {
+  const auto unknown_name_message = [](const char* kind, const std::string& word, const std::vector<std::string>& known) {
     const std::vector<std::string_view> views(known.begin(), known.end());
     return "there is no " + std::string(kind) + " " + in_quotes(word) + suggestion(word, views);
   };
   if (argc > 1 && command == nullptr && argv[1][0] != '-')
-    return said("command", argv[1], commands) + "; one of " + join_words({commands.begin(), commands.end()}) + " was expected";
+    return unknown_name_message("command", argv[1], commands) + "; one of " + join_words({commands.begin(), commands.end()}) +
+           " was expected";
   if (command == nullptr || !command->get_subcommands([](const CLI::App*) { return true; }).empty()) return {};
   for (const CLI::Option* option : command->get_options())
     for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
   for (int i = 2; i < argc; ++i) {
     const std::string word = argv[i], name = word.substr(0, word.find('='));
     if (word == "--") return {};
-    if (name.starts_with("--") && std::find(options.begin(), options.end(), name) == options.end()) return said("option", name, options);
+    if (name.starts_with("--") && std::find(options.begin(), options.end(), name) == options.end())
+      return unknown_name_message("option", name, options);
   }
   return {};
 }
@@ -81,7 +83,7 @@ void add_memory_limit(CLI::App& program) {
     command
         ->add_option_function<double>(
             "--memory", [](double megabytes) { set_memory_limit(static_cast<std::uint64_t>(1e6 * megabytes)); },
-            "most memory that data may take (default: three quarters of what is free)")
+            "maximum memory for data (default: three quarters of the free memory)")
         ->type_name("MB")
         ->check(CLI::Range(1.0, 1e9));
   }
@@ -161,10 +163,10 @@ static int guarded(int argc, char** argv) {
   } catch (const std::system_error& error) {
     if (std::ferror(stdout) != 0) return 0;  // the output is lost: flush_output() reports that
     if (is_thread_start_failure(error)) return machine_failed("no other thread can be started: " + describe_errno(thread_start_errno()));
-    return machine_failed(fmt::format("this machine does not give what is needed: {}", error.what()));
+    return machine_failed(fmt::format("a resource of the system is not available: {}", error.what()));
   } catch (const std::exception& error) {
     if (is_thread_start_failure(error)) return machine_failed("no other thread can be started: " + describe_errno(thread_start_errno()));
-    return machine_failed(fmt::format("ended by an error that nothing handles: {}", error.what()));
+    return machine_failed(fmt::format("ended by an unhandled error: {}", error.what()));
   }
   return 1;
 }

@@ -46,29 +46,30 @@ Result<std::vector<scene::FieldOverride>> parse_field_overrides(const std::vecto
 void print_scene_notes(const scene::Scene& scene) { print_scene_notes({}, scene.notes); }
 
 void print_scene_notes(const std::string& path, const std::vector<std::string>& notes) {
-  constexpr std::size_t kMost = 10;
+  constexpr std::size_t kMaximum = 10;
   static std::mutex mutex;
-  static std::set<std::string> told;
+  static std::set<std::string> printed_notes;
   const std::scoped_lock lock(mutex);
   std::size_t count = 0;
   for (const std::string& note : notes) {
     const std::string text = path.empty() ? note : path + ": " + note;
-    if (told.insert(text).second && ++count <= kMost) print_message("note: " + text);
+    if (printed_notes.insert(text).second && ++count <= kMaximum) print_message("note: " + text);
   }
-  if (count > kMost) print_message(fmt::format("note: and {} more", count - kMost));
+  if (count > kMaximum) print_message(fmt::format("note: {} more notes", count - kMaximum));
 }
 
 Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options, const scene::NamedColors& colors,
                                 const std::string& grid, int step) {
   CATENA_TRY(const std::vector<scene::FieldOverride> overrides, parse_field_overrides(field_options));
   if (is_scene_file(path)) {
-    if (!grid.empty()) return Error{path + ": --grid goes with a data file; a scene names its grids"};
-    if (!colors.is_default()) return Error{path + ": --colormap, --range and --mapping go with a data file; a scene says its colours"};
+    if (!grid.empty()) return Error{path + ": --grid applies only to a data file; a scene names its grids"};
+    if (!colors.is_default())
+      return Error{path + ": --colormap, --range and --mapping apply only to a data file; a scene states its colours"};
     auto scene = scene::read_scene(path, overrides);
     if (scene) print_scene_notes(*scene);
     return scene;
   }
-  if (!overrides.empty()) return Error{path + ": --field goes with a scene file (.json)"};
+  if (!overrides.empty()) return Error{path + ": --field applies only to a scene file (.json)"};
   return scene::scene_for_file(path, grid, colors, std::max(0, step));
 }
 
@@ -78,22 +79,22 @@ Result<scene::Scene> open_followed_scene(std::string& source, const std::vector<
   if (!is_scene_file(source)) {
     CATENA_TRY(source, scene::find_followable_path(source));
   }
-  bool told = false;
+  bool is_reported = false;
   for (;;) {
     auto opened = open_scene(source, field_options, {}, grid);
     if (opened && !scene::start_following(*opened))
       return Error{source +
-                   ": --follow: nothing in it can get steps in time; a field of a pattern, or of a file that has steps, was expected"};
+                   ": --follow: no field of it can get new time steps; a field of a pattern, or of a file with time steps, was expected"};
     if (opened || opened.error().system_failure || is_scene_file(source) || !scene::may_be_incomplete(source) || now_ns() > end_ns)
       return opened;
-    if (!std::exchange(told, true)) print_message("waiting until there is a whole file (" + opened.error().message + ")");
+    if (!std::exchange(is_reported, true)) print_message("waiting for a complete file (" + opened.error().message + ")");
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
   }
 }
 
 Outcome check_step(int step, int last, const std::string& option, const std::string& source) {
   if (step <= last) return Done{};
-  return Error{last == 0 ? fmt::format("{}: no field of {} has steps in time", option, source)
+  return Error{last == 0 ? fmt::format("{}: no field of {} has time steps", option, source)
                          : fmt::format("{}: the last step of {} is {}, counted from 0", option, source, last)};
 }
 
@@ -159,19 +160,19 @@ ProgressLine::~ProgressLine() {
   if (is_shown_ && is_terminal_) std::fputs("\n", stderr);
 }
 
-void ProgressLine::update(double done, std::string_view doing) {
+void ProgressLine::update(double done, std::string_view step_label) {
   const std::int64_t now = now_ns();
   if (total_ <= 0 || now - start_ns_ < (is_terminal_ ? kQuietNs : kQuietElsewhereNs)) return;
   const double part = done / total_ < 1 ? done / total_ : 1;
   if (is_terminal_) {
     if (now - last_update_ns_ < 200'000'000 && part < 1) return;
-    std::fputs(fmt::format("\r{}: {:3.0f} % {:<16}", sanitize_for_terminal(task_name_), 100 * part, doing).c_str(), stderr);
+    std::fputs(fmt::format("\r{}: {:3.0f} % {:<16}", sanitize_for_terminal(task_name_), 100 * part, step_label).c_str(), stderr);
     std::fflush(stderr);
   } else {
     const int tenth = static_cast<int>(10 * part);
     if (tenth <= printed_tenths_) return;
     printed_tenths_ = tenth;
-    print_line(fmt::format("{}: {:.0f} %{}{}", task_name_, 100 * part, doing.empty() ? "" : ", ", doing));
+    print_line(fmt::format("{}: {:.0f} %{}{}", task_name_, 100 * part, step_label.empty() ? "" : ", ", step_label));
   }
   is_shown_ = true;
   last_update_ns_ = now;

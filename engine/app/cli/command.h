@@ -89,7 +89,7 @@ class ProgressLine {
   /// `what`: label of the work; `total`: the value of `done` at the end.
   ProgressLine(std::string what, double total);
   ~ProgressLine();
-  void update(double done, std::string_view doing = {});  ///< `doing`: label of the current step
+  void update(double done, std::string_view step_label = {});  ///< `step_label`: label of the current step
 
  private:
   std::string task_name_;

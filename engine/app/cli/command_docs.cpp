@@ -85,8 +85,8 @@ void add_pages(const CLI::App& command, const std::string& name, std::vector<Man
   if (!parts.empty()) page += ".SH COMMANDS\n" + parts;
   add_options(command, page);
   page +=
-      ".SH EXIT STATUS\n0: done. 2: what was given cannot be used, with one line on standard error and no output file. 1: the machine "
-      "failed.\n";
+      ".SH EXIT STATUS\n0: success. 2: the input cannot be used; one line on standard error says why, and no output file is written. 1: a "
+      "system failure.\n";
   page += ".SH SEE ALSO\n" + (see.empty() ? std::string("\\fBcatena\\fR(1)") : see) + "\n";
   pages.push_back({name, page});
 }
@@ -151,13 +151,13 @@ struct DocumentOptions {
 
 void add_documents(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<DocumentOptions>();
-  CLI::App* command = program.add_subcommand("documents", "manual pages and shell completion, for packages")->group("");
+  CLI::App* command = program.add_subcommand("documents", "writes manual pages and shell completion, for packages")->group("");
   command->require_subcommand(1);
-  CLI::App* man = command->add_subcommand("man", "a manual page for every command");
-  man->add_option("FOLDER", options->folder, "where they go")->required();
+  CLI::App* man = command->add_subcommand("man", "writes a manual page for every command");
+  man->add_option("FOLDER", options->folder, "folder for the pages")->required();
   man->callback([&chosen, &program, options] { chosen = [&program, options] { return write_manual(program, options->folder); }; });
-  CLI::App* completion = command->add_subcommand("completion", "the completion of bash");
-  completion->add_option("FILE", options->file, "where it goes")->required();
+  CLI::App* completion = command->add_subcommand("completion", "writes the completion for bash");
+  completion->add_option("FILE", options->file, "file to write")->required();
   completion->callback([&chosen, &program, options] { chosen = [&program, options] { return write_completion(program, options->file); }; });
 }
 

@@ -139,14 +139,14 @@ Outcome export_any(const ExportOptions& options) {
   const int parts = int(part.isosurface.has_value()) + int(part.slice.has_value()) + int(part.streamlines.has_value()) +
                     int(!part.mesh.empty()) + int(!part.field.empty()) + int(!part.probe.empty());
   if (is_log_file(options.log)) {
-    if (!part.grid.empty()) return Error{options.log + ": a recording has no grids; --grid goes with a data file"};
-    if (parts > 0) return Error{options.log + ": a recording has no parts; " + kParts + " go with a scene"};
-    if (part.step >= 0) return Error{options.log + ": --step goes with a scene or a data file"};
+    if (!part.grid.empty()) return Error{options.log + ": is a recording; --grid applies only to a data file"};
+    if (parts > 0) return Error{options.log + ": is a recording; " + kParts + " apply only to a scene"};
+    if (part.step >= 0) return Error{options.log + ": --step applies only to a scene or a data file"};
     return export_log(options);
   }
-  if (!options.details.empty()) return Error{options.log + ": --details goes with a recording (.catlog)"};
-  if (!options.poses.empty()) return Error{options.log + ": --poses goes with a recording (.catlog)"};
-  if (parts != 1) return Error{options.log + ": expected one of " + kParts + ", which says what of the scene to write"};
+  if (!options.details.empty()) return Error{options.log + ": --details applies only to a recording (.catlog)"};
+  if (!options.poses.empty()) return Error{options.log + ": --poses applies only to a recording (.catlog)"};
+  if (parts != 1) return Error{options.log + ": one of " + kParts + " was expected, for the part of the scene to write"};
   SceneExport request = part;
   request.source = options.log;
   request.output = options.output;
@@ -159,41 +159,45 @@ void add_export(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<ExportOptions>();
   SceneExport& part = options->part;
   CLI::App* command = program.add_subcommand("export", "writes a recording as tables, or one part of a scene for other programs");
-  add_source(*command, "FILE", options->log, "a recording (.catlog), a scene (.json) or a data file")->type_name("FILE")->required();
-  command->add_option("-o,--output", options->output, "file to write: of a recording the tick table (CSV), of a scene by its ending")
+  add_source(*command, "FILE", options->log, "recording (.catlog), scene (.json) or data file")->type_name("FILE")->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   "file to write: the tick table (CSV) of a recording, or a part of a scene in the format of the file's extension")
       ->type_name("OUT")
       ->required();
-  command->add_option("--details", options->details, "of a recording: details of each link and of the servo to write")
+  command->add_option("--details", options->details, "table of the details of each link and of the servo to write, for a recording")
       ->type_name("FILE.csv");
-  command->add_option("--poses", options->poses, "of a recording with a headset: poses of head, hands and gaze per image to write")
+  command
+      ->add_option("--poses", options->poses,
+                   "table of the poses of head, hands and gaze per image to write, for a recording with a headset")
       ->type_name("FILE.csv");
   const auto number = CLI::Range(0, 1'000'000);
   command
       ->add_option("--isosurface", part.isosurface,
-                   "isosurface to write, its number in the scene's list: " + io::writable_extensions(io::DataKind::mesh))
+                   "index of the isosurface to write, counted from 0: " + io::writable_extensions(io::DataKind::mesh))
       ->type_name("INDEX")
       ->check(number);
-  command->add_option("--slice", part.slice, "slice to write with the values of all fields, its number in the scene's list: .csv or .vtp")
+  command->add_option("--slice", part.slice, "index of the slice to write with the values of all fields, counted from 0: .csv or .vtp")
       ->type_name("INDEX")
       ->check(number);
-  command->add_option("--streamlines", part.streamlines, "streamlines to write, their number in the scene's list: .vtp or .csv")
+  command->add_option("--streamlines", part.streamlines, "index of the streamlines to write, counted from 0: .vtp or .csv")
       ->type_name("INDEX")
       ->check(number);
   command->add_option("--mesh", part.mesh, "mesh to write: " + io::writable_extensions(io::DataKind::mesh))->type_name("MESH");
   command
       ->add_option("--grid", part.grid,
-                   "field that the default scene shows, of a data file with several (default: the first scalar one, else the first)")
+                   "field of a data file for the default scene (default: the first scalar field, or else the first field)")
       ->type_name("GRID");
   command->add_option("--step", part.step, "time step, counted from 0 (default: the scene's)")->type_name("INDEX")->check(number);
   command->add_option("--field", part.field, "field to write: " + io::writable_extensions(io::DataKind::volume))->type_name("FIELD");
   command->add_option("--probe", part.probe, "probe path at whose positions the values of all fields are written: .csv")
       ->type_name("PROBE.csv");
-  command->add_option("--spacing", part.spacing, "spacing of a slice's samples (default: the smallest voxel edge)")
+  command->add_option("--spacing", part.spacing, "distance between samples of a slice (default: the smallest voxel edge)")
       ->type_name("DISTANCE")
       ->check(number_above_zero());
   command
       ->add_option("--outside", part.outside,
-                   "values to which the normals of an isosurface point; auto: higher for a level set, else lower")
+                   "side to which the normals of an isosurface point: lower or higher values; auto: higher for a level set, or else lower")
       ->type_name("WORD")
       ->check(CLI::IsMember({"auto", "lower", "higher"}))
       ->capture_default_str();

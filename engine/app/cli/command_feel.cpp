@@ -41,7 +41,7 @@ struct FeelOptions {
 /// Returns the bounds to which the workspace is fitted; empty if the scene has an explicit workspace.
 Result<Bounds> bounds_of(scene::Scene& scene) {
   if (scene.workspace.is_explicit) return Bounds();
-  CATENA_TRY([[maybe_unused]] const auto felt, haptics::build_program(scene));
+  CATENA_TRY([[maybe_unused]] const auto program, haptics::build_program(scene));
   CATENA_CHECK(scene::prepare(scene));
   return scene::scene_bounds(scene);
 }
@@ -67,12 +67,12 @@ class StatusLine {
     shown_ = true;
   }
   /// Prints the device's request to the user when it changes, also if the output is no terminal.
-  void tell(const std::string& text) {
-    if (text == told_) return;
-    told_ = text;
-    if (!text.empty()) say(text);
+  void print(const std::string& text) {
+    if (text == last_text_) return;
+    last_text_ = text;
+    if (!text.empty()) write_line(text);
   }
-  void say(const std::string& text) {
+  void write_line(const std::string& text) {
     end();
     print_out(sanitize_for_terminal(text) + "\n");
   }
@@ -84,12 +84,12 @@ class StatusLine {
  private:
   const haptics::HapticProgram& program_;
   bool terminal_, shown_ = false;
-  std::string told_;
+  std::string last_text_;
 };
 
 /// Collects statistics until the time is over or an end is requested.
 void wait(haptics::Servo& servo, const haptics::Device& device, const Recording& recording, const FeelOptions& options,
-          const InterruptHandler& interrupt, StatusLine& line, ContactSummary& felt, tuning::TrackingErrorMonitor& observer) {
+          const InterruptHandler& interrupt, StatusLine& line, ContactSummary& contacts, tuning::TrackingErrorMonitor& observer) {
   constexpr double kStep = 0.02, kLine = 1;
   const std::int64_t start = now_ns();
   HapticState state;
@@ -100,12 +100,12 @@ void wait(haptics::Servo& servo, const haptics::Device& device, const Recording&
     const double t = 1e-3 * ms_since(start);
     if (options.seconds > 0 && t >= options.seconds) return;
     if (servo.receive(state) && state.condition != TickCondition::no_device) {
-      felt.add(state);
+      contacts.add(state);
       observer.add(state);
     }
-    line.tell(device.status_text());
+    line.print(device.status_text());
     if (recording.has_failed() && !std::exchange(told_of_recording, true))
-      line.say(options.record + ": the recording has stopped; the rest is felt only");
+      line.write_line(options.record + ": the recording has stopped; the session continues without it");
     if (t - shown >= kLine) {
       line.show(state, static_cast<double>(state.tick - shown_ticks) / (t - shown));
       shown = t;
@@ -117,7 +117,7 @@ void wait(haptics::Servo& servo, const haptics::Device& device, const Recording&
 }
 
 Outcome run_feel(const FeelOptions& options) {
-  if (!is_scene_file(options.scene)) return Error{options.scene + ": expected a scene file (.json) with a chain to feel"};
+  if (!is_scene_file(options.scene)) return Error{options.scene + ": a scene file (.json) with a chain was expected"};
   CATENA_TRY(scene::Scene scene, open_scene(options.scene, options.fields));
   IoConflictChecker files(scene);
   files.add_device_files(options.device);
@@ -131,7 +131,7 @@ Outcome run_feel(const FeelOptions& options) {
   CATENA_TRY(std::string text, tuning::read_scene_text(scene));
   CATENA_TRY(const std::optional<tuning::TickTuning> plan,
              tuning::tune_links(scene, text, wanted, hand.settings.rate_hz, options.fields,
-                                [](const std::string& said) { print_out(sanitize_for_terminal(said) + "\n"); }));
+                                [](const std::string& message) { print_out(sanitize_for_terminal(message) + "\n"); }));
   if (plan) {
     CATENA_TRY(text, plan->apply(text, options.scene));
   }
@@ -153,21 +153,21 @@ Outcome run_feel(const FeelOptions& options) {
   haptics::Servo servo(*hand.device, program, servo_options);
   CATENA_CHECK(servo.start());
   for (const std::string& note : servo.stats().realtime.notes) print_message(note);
-  print_out(fmt::format("{} at {:g} Hz, forces {}; 1 world unit is {:.4g} m of the hand{}\n",
+  print_out(fmt::format("{} at {:g} Hz, forces {}; 1 world unit is {:.4g} m of the device{}\n",
                         sanitize_for_terminal(hand.device->capabilities().name), servo_options.rate_hz, options.forces,
-                        program->meters_per_unit, options.seconds > 0 ? "" : "; Ctrl-C ends"));
+                        program->meters_per_unit, options.seconds > 0 ? "" : "; Ctrl-C ends the session"));
   StatusLine line(*program);
-  ContactSummary felt;
+  ContactSummary contacts;
   tuning::TrackingErrorMonitor observer(plan ? &*plan : nullptr, *program);
-  wait(servo, *hand.device, recording, options, interrupt, line, felt, observer);
+  wait(servo, *hand.device, recording, options, interrupt, line, contacts, observer);
   servo.stop();
   line.end();
   CATENA_CHECK(recording.finish());
   CATENA_CHECK(write_servo_stats(options.stats, servo, *hand.device));
   if (!servo_options.forces_enabled && !program->links.empty())
-    print_out("the forces were off: nothing was pushed, the shares are what the links asked for\n", kPatienceMs);
+    print_out("the forces were off: the device exerted none; the forces below are those that the links requested\n", kPatienceMs);
   print_out(observer.summary(scene, servo.stats().compute.p50_us), kPatienceMs);
-  print_out(felt.link_lines(*program), kPatienceMs);
+  print_out(contacts.link_lines(*program), kPatienceMs);
   print_out(haptics::servo_summary(servo.stats(), sanitize_for_terminal(hand.device->capabilities().name)), kPatienceMs);
   CATENA_CHECK(hand.device->check_output_files());
   return interrupt.outcome();
@@ -182,12 +182,12 @@ void add_feel(CLI::App& program, CommandAction& chosen) {
   command->add_option("--device", options->device, "haptic device, NAME or NAME:DETAIL (default: the scene's, or simulated)")
       ->type_name("DEVICE");
   command->add_option("--seconds", options->seconds, "duration (default: until Ctrl-C)")->type_name("S")->check(number_at_least(0));
-  command->add_option("--rate", options->rate_hz, "ticks per second (default: the device's, or 1000)")
+  command->add_option("--rate", options->rate_hz, "tick rate (default: the device's, or 1000)")
       ->type_name("HZ")
       ->check(number_between(haptics::ServoOptions::kMinRateHz, haptics::ServoOptions::kMaxRateHz));
-  command->add_option("--firmware", options->firmware, "firmware image of the vendor, sent to a Falcon that has none")
+  command->add_option("--firmware", options->firmware, "firmware image of the vendor, sent to a Falcon without firmware")
       ->type_name("FIRMWARE");
-  command->add_option("--record", options->record, "recording of every tick to write; replay --log, export and info read it")
+  command->add_option("--record", options->record, "recording of every tick to write, for replay --log, export and info")
       ->type_name("FILE.catlog");
   options->targets.add_to(*command);
   command->add_option("--forces", options->forces, "whether the device may exert forces")

@@ -36,12 +36,12 @@ Outcome check(const GenerateOptions& o) {
     return Error{"no analytic field " + in_quotes(o.name) + suggestion(o.name, names) + "; known: " + join_words(names)};
   }
   if (o.resolution < 2 || o.resolution > kMaxResolution)
-    return Error{fmt::format("--resolution {}: expected 2 to {} nodes an axis", o.resolution, kMaxResolution)};
+    return Error{fmt::format("--resolution {}: expected 2 to {} nodes along each axis", o.resolution, kMaxResolution)};
   if (!std::isfinite(o.box[0]) || !std::isfinite(o.box[1]) || !(o.box[0] < o.box[1]))
     return Error{fmt::format("--box {} {}: expected two finite numbers, LO < HI", to_text(o.box[0]), to_text(o.box[1]))};
   if (!std::isfinite(o.scale) || o.scale == 0)
     return Error{fmt::format("--scale {}: expected a finite number other than 0", to_text(o.scale))};
-  if (o.direction_given && o.name != "uniform") return Error{"--direction: belongs to uniform, not to " + o.name};
+  if (o.direction_given && o.name != "uniform") return Error{"--direction: applies only to uniform, not to " + o.name};
   const Vec3 d(o.direction[0], o.direction[1], o.direction[2]);
   if (!is_finite(d) || norm(d) == 0) return Error{"--direction: expected three finite numbers, not all zero"};
   if (!o.output.ends_with(".vdb") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .vdb"};

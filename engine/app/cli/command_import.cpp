@@ -30,7 +30,7 @@ struct ImportOptions {
   int step = -1;
 };
 
-/// Checks that no output is an input file; of a series all files are inputs, not only that of a step.
+/// Checks that no output is an input file; all files of a series are inputs, not only the file of one step.
 Outcome check_outputs(const ImportOptions& o, const std::vector<std::string>& outputs) {
   IoConflictChecker files;
   files.add_input(o.input);
@@ -38,12 +38,13 @@ Outcome check_outputs(const ImportOptions& o, const std::vector<std::string>& ou
   return files.check();
 }
 
-/// Converts one step. `told` holds the notes of earlier steps, which are not repeated.
-Outcome import_step(const ImportOptions& o, const field::LoadRequest& request, const std::string& output, std::set<std::string>& told) {
+/// Converts one step. `printed_notes` holds the notes of earlier steps, which are not repeated.
+Outcome import_step(const ImportOptions& o, const field::LoadRequest& request, const std::string& output,
+                    std::set<std::string>& printed_notes) {
   std::vector<std::string> notes;
   CATENA_TRY(const std::string name, field::convert_file(request, output, o.name, &notes));
   for (const std::string& note : notes)
-    if (told.insert(note).second) print_message("note: " + request.path + ": " + note);
+    if (printed_notes.insert(note).second) print_message("note: " + request.path + ": " + note);
   fmt::print("{}: {}\n", sanitize_for_terminal(output), sanitize_for_terminal(name));
   return Done{};
 }
@@ -60,7 +61,8 @@ Outcome check_one_step(const ImportOptions& o, const field::LoadRequest& request
   if (o.step < 0 && !pattern) return Done{};
   CATENA_TRY(const int steps, count_steps(request));
   if (o.step < 0)
-    return Error{fmt::format("{}: {} files for one output: --step N was expected, or %03d in the output's name for all", o.input, steps)};
+    return Error{
+        fmt::format("{}: {} files for one output; --step N was expected, or %03d in the output's name for all steps", o.input, steps)};
   return check_step(o.step, steps - 1, fmt::format("--step {}", o.step), o.input);
 }
 
@@ -68,7 +70,7 @@ Outcome import_file(const ImportOptions& o) {
   if (io::find_writer(o.output, io::DataKind::volume) == nullptr && !o.output.starts_with("/dev/"))
     return Error{o.output + ": expected an output that ends in " + io::writable_extensions(io::DataKind::volume)};
   const bool raw_file = io::needs_layout(o.input);
-  if (!raw_file && !o.shape.empty()) return Error{o.input + ": --shape belongs to .raw files"};
+  if (!raw_file && !o.shape.empty()) return Error{o.input + ": --shape applies only to .raw files"};
   field::LoadRequest request;
   request.path = o.input;
   request.grid = o.grid;
@@ -81,21 +83,23 @@ Outcome import_file(const ImportOptions& o) {
     raw.type = o.type;
     request.raw = raw;
   }
-  std::set<std::string> told;
+  std::set<std::string> printed_notes;
   if (!is_numbered(o.output)) {
     CATENA_CHECK(check_one_step(o, request));
     CATENA_CHECK(check_outputs(o, {o.output}));
-    CATENA_CHECK(import_step(o, scene::request_at(request, std::max(o.step, 0)), o.output, told));
+    CATENA_CHECK(import_step(o, scene::request_at(request, std::max(o.step, 0)), o.output, printed_notes));
     if (const std::size_t steps = field::read_times(o.input).size(); o.step < 0 && steps > 1)
-      print_message(fmt::format("note: {}: step 0 of {} is written; --step N, or %03d in the output's name for all", o.input, steps));
+      print_message(fmt::format(
+          "note: {}: only step 0 of {} is written; --step N writes another step, %03d in the output's name writes all", o.input, steps));
     return Done{};
   }
-  if (o.step >= 0) return Error{fmt::format("--step {}: goes with one output, and {} is one for each step", o.step, o.output)};
+  if (o.step >= 0)
+    return Error{fmt::format("--step {}: applies only to a single output, but {} is a file for each step", o.step, o.output)};
   CATENA_TRY(const int steps, count_steps(request));
   std::vector<std::string> outputs;
   for (int step = 0; step < steps; ++step) outputs.push_back(numbered_path(o.output, step));
   CATENA_CHECK(check_outputs(o, outputs));
-  for (int step = 0; step < steps; ++step) CATENA_CHECK(import_step(o, scene::request_at(request, step), outputs[step], told));
+  for (int step = 0; step < steps; ++step) CATENA_CHECK(import_step(o, scene::request_at(request, step), outputs[step], printed_notes));
   return Done{};
 }
 
@@ -103,33 +107,33 @@ Outcome import_file(const ImportOptions& o) {
 
 void add_import(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<ImportOptions>();
-  CLI::App* command = program.add_subcommand("import", "converts any data file to .vdb, .vti, .nrrd or NIfTI");
+  CLI::App* command = program.add_subcommand("import", "converts a data file to .vdb, .vti, .nrrd or NIfTI");
   add_source(*command, "IN", options->input, io::describe_expected(io::DataKind::volume))->type_name("DATA")->required();
   command
       ->add_option("-o,--output", options->output,
-                   "grid to write: " + io::writable_extensions(io::DataKind::volume) + "; %03d in the name writes all time steps, numbered")
+                   "grid to write: " + io::writable_extensions(io::DataKind::volume) +
+                       "; with %03d in the name, one numbered file for each time step")
       ->type_name("GRIDFILE")
       ->required();
   command->add_option("--step", options->step, "time step, counted from 0 (default: the first of one file)")
       ->type_name("INDEX")
       ->check(CLI::Range(0, 1'000'000));
-  command->add_option("--grid", options->grid, "grid to convert, of a file with several (default: the first usable one)")
-      ->type_name("GRID");
-  command->add_option("--name", options->name, "name of the grid in the output (default: that of the input)")->type_name("GRID");
-  command->add_option("--shape", options->shape, "of a .raw file: voxels along x, y and z")
+  command->add_option("--grid", options->grid, "grid to convert (default: the first usable grid)")->type_name("GRID");
+  command->add_option("--name", options->name, "name of the grid in the output (default: the name in the input)")->type_name("GRID");
+  command->add_option("--shape", options->shape, "number of voxels along x, y and z of a .raw file")
       ->type_name("NX NY NZ")
       ->check(accepted(">= 1"))
       ->expected(3);
-  command->add_option("--spacing", options->spacing, "of a .raw file: voxel edges, world units")
+  command->add_option("--spacing", options->spacing, "voxel edges of a .raw file, world units")
       ->type_name("X Y Z")
       ->check(accepted("> 0"))
       ->expected(3)
       ->capture_default_str();
-  command->add_option("--origin", options->origin, "of a .raw file: centre of the first voxel, world units")
+  command->add_option("--origin", options->origin, "centre of the first voxel of a .raw file, world units")
       ->type_name("X Y Z")
       ->expected(3)
       ->capture_default_str();
-  command->add_option("--type", options->type, "of a .raw file: type of a voxel")->type_name("TYPE")->capture_default_str();
+  command->add_option("--type", options->type, "voxel type of a .raw file")->type_name("TYPE")->capture_default_str();
   command->callback([&chosen, options] { chosen = [options] { return import_file(*options); }; });
 }
 

@@ -128,16 +128,16 @@ Outcome describe_scene(const std::string& path) {
              format_readable(program->coupling.damping_ns_per_m), format_readable(program->coupling.max_force_n),
              program->coupling.force == CouplingForce::conservative ? ", conservative" : "");
   if (scene.workspace.is_explicit)
-    fmt::print("workspace: 1 world unit is {} m of the hand\n", format_readable(scene.workspace.meters_per_unit));
+    fmt::print("workspace: 1 world unit is {} m of the device\n", format_readable(scene.workspace.meters_per_unit));
   else
     fmt::print(
-        "workspace: not stated; replay takes 1 world unit for 1 m of the hand, view and feel fit the data into the device's reach\n");
+        "workspace: not stated; replay maps 1 world unit to 1 m of the device, view and feel fit the data into the device's workspace\n");
   std::string drawn;
   for (const scene::Drawable& kind : scene::drawables())
     drawn += fmt::format("{}{} {}", drawn.empty() ? "" : ", ", kind.items(scene.entities).size(), kind.plural);
   fmt::print("drawn: {}\n", drawn);
   if (const int steps = scene::step_count(scene); steps > 1) {
-    const std::string now = scene::current_step_time(scene) ? ", now at " + scene::format_time(scene) : "";
+    const std::string now = scene::current_step_time(scene) ? ", current time " + scene::format_time(scene) : "";
     fmt::print("time: {} steps{}\n", steps, sanitize_for_terminal(now));
   }
   return Done{};
@@ -159,20 +159,20 @@ void add_info(CLI::App& program, CommandAction& chosen) {
   auto step = std::make_shared<int>(0);
   CLI::App* command = program.add_subcommand("info", "describes a data file, a mesh, curves, points, a scene or a recording");
   add_source(*command, "FILE", *path,
-             "a data file, a folder of DICOM images, a triangle mesh, curves, a table of points, a scene (.json) or a recording (.catlog)")
+             "data file, folder of DICOM images, triangle mesh, curves, table of points, scene (.json) or recording (.catlog)")
       ->type_name("FILE");
-  command->add_option("--grid", *grid, "only this grid of a data file: its name, or the number of a DICOM series (default: all)")
-      ->type_name("GRID");
+  command->add_option("--grid", *grid, "name of a grid of a data file, or number of a DICOM series (default: all)")->type_name("GRID");
   command->add_option("--step", *step, "time step of a data file, counted from 0 (default: 0)")
       ->type_name("INDEX")
       ->check(CLI::Range(0, 1'000'000));
-  command->add_flag("--json", *json, "prints the same facts as one JSON object");
-  CLI::Option* costs =
-      command->add_flag("--cost", *cost, "prints expected bytes and times instead: of loading, GPU mirrors, creation, a tick and a frame");
-  command->add_flag("--measure", *measure, "also does this work and prints what it measured")->needs(costs);
-  command->add_flag("--formats", *formats, "lists the formats that are read instead");
-  command->add_flag("--schema", *schema, "prints the JSON Schema of scenes instead, for an editor");
-  command->add_option("--keys", *part, "lists the keys of a part of a scene instead: volumes, chain, camera, ...")->type_name("PART");
+  command->add_flag("--json", *json, "prints the description as one JSON object");
+  CLI::Option* costs = command->add_flag(
+      "--cost", *cost,
+      "prints predicted costs instead: bytes and times of loading, of GPU copies, of creating objects, of a tick and of a frame");
+  command->add_flag("--measure", *measure, "also measures these costs and prints the results")->needs(costs);
+  command->add_flag("--formats", *formats, "lists the file formats instead");
+  command->add_flag("--schema", *schema, "prints the JSON Schema of scenes for editors instead");
+  command->add_option("--keys", *part, "part of a scene (volumes, chain, camera, ...) whose keys are listed instead")->type_name("PART");
   command->add_flag("--colormaps", *maps, "lists the colour maps instead");
   command->callback([&chosen, path, grid, step, schema, maps, part, formats, json, cost, measure] {
     chosen = [path, grid, step, schema, maps, part, formats, json, cost, measure]() -> Outcome {
@@ -191,9 +191,9 @@ void add_info(CLI::App& program, CommandAction& chosen) {
       if (!part->empty()) return print_keys(*part);
       if (path->empty()) return Error{"info: expected a data file or a scene (see catena info --help)"};
       if (!grid->empty() && (is_log_file(*path) || is_scene_file(*path) || scene::detect_file_kind(*path) != scene::FileKind::field))
-        return Error{*path + ": --grid goes with a data file of several grids"};
-      if (*step > 0 && (is_log_file(*path) || is_scene_file(*path))) return Error{*path + ": --step goes with a data file"};
-      if (*cost && is_log_file(*path)) return Error{*path + ": --cost: a recording draws nothing; a scene or a data file was expected"};
+        return Error{*path + ": --grid applies only to a data file"};
+      if (*step > 0 && (is_log_file(*path) || is_scene_file(*path))) return Error{*path + ": --step applies only to a data file"};
+      if (*cost && is_log_file(*path)) return Error{*path + ": --cost: is a recording; a scene or a data file was expected"};
       if (*cost) return print_costs(*path, *json, *measure);
       if (*json) return print_json_info(*path, *grid, *step);
       if (is_log_file(*path)) return print_log_info(*path);

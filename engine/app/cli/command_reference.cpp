@@ -102,7 +102,7 @@ std::string example(const CLI::Option& option, const ValueType* type) {
 
 std::string takes(const CLI::Option& option, const ValueType* type) {
   if (is_flag(option)) return "flag";
-  const std::string what = type == nullptr ? "?" : std::string(type->takes);
+  const std::string what = type == nullptr ? "?" : std::string(type->input_kind);
   if (!is_repeatable(option)) return what;
   if (option.get_delimiter() == ',') return what + "s, separated by commas";
   return what + (option.get_positional() ? ", one or more" : ", may be repeated");

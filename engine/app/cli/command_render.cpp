@@ -13,7 +13,7 @@ namespace catena::app {
 void add_render(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<RenderOptions>();
   CLI::App* command = program.add_subcommand("render", "renders an image, a sequence of images or a video, without a window");
-  add_source(*command, "SOURCE", options->source, "a scene (.json) or a data file")->type_name("FILE")->required();
+  add_source(*command, "SOURCE", options->source, "scene (.json) or data file")->type_name("FILE")->required();
   command
       ->add_option("-o,--output", options->output,
                    "image or video to write; .mp4, .webm and .gif need ffmpeg; %03d in the name numbers the frames")
@@ -57,15 +57,15 @@ void add_render(CLI::App& program, CommandAction& chosen) {
   command->add_option("--orbit", options->orbit_deg, "rotation of the camera about the target over all frames (default: 0)")
       ->type_name("DEG")
       ->check(accepted("finite"));
-  command->add_option("--elevation", options->elevation_deg, "angle by which the camera is raised (default: 0)")
+  command->add_option("--elevation", options->elevation_deg, "elevation of the camera above its direction in the scene (default: 0)")
       ->type_name("DEG")
       ->check(accepted("-90 to 90"));
   command->add_option("--zoom", options->zoom, "magnification about the centre of the image (default: 1)")
       ->type_name("FACTOR")
       ->check(accepted("0.001 to 1e6"));
-  command->add_option("--view", options->view, "view along an axis, or iso, that fits everything rendered (default: the scene's camera)")
+  command->add_option("--view", options->view, "view along an axis, or iso, that fits the whole scene (default: the scene's camera)")
       ->type_name("VIEW");
-  command->add_flag("--fit", options->fit, "fits everything rendered into the image, without turning the camera");
+  command->add_flag("--fit", options->fit, "fits the whole scene into the image, without turning the camera");
   command->add_option("--camera", options->camera, "camera key frames: t,px,py,pz,tx,ty,tz[,ux,uy,uz][,fovy]")->type_name("CAMERA.csv");
   command
       ->add_option("--head", options->head_path,
@@ -73,10 +73,10 @@ void add_render(CLI::App& program, CommandAction& chosen) {
       ->type_name("HEAD.csv");
   command
       ->add_option("--animation-phase", options->animation_phase,
-                   "phase of the animated bands of streamlines; the frames add one period (default: 0)")
+                   "phase of the animated bands of streamlines in the first frame; a sequence advances it by one period (default: 0)")
       ->type_name("PHASE")
       ->check(accepted("finite"));
-  command->add_option("--grid", options->grid, "field to show, of a data file with several (default: the first scalar one, else the first)")
+  command->add_option("--grid", options->grid, "field of a data file to show (default: the first scalar field, or else the first field)")
       ->type_name("GRID");
   command->add_option("--step", options->step, "time step, counted from 0 (default: the scene's)")
       ->type_name("INDEX")
@@ -84,15 +84,17 @@ void add_render(CLI::App& program, CommandAction& chosen) {
   command->add_option("--steps", options->steps, "time steps, one frame each")
       ->type_name("FIRST:LAST[:STRIDE]")
       ->check(accepted("from 0 on"));
-  command->add_option("--probe", options->probe, "probe path; the cursor is drawn at the state of its last row")->type_name("PROBE.csv");
+  command->add_option("--probe", options->probe, "probe path; the image shows the cursor in the state of the last row")
+      ->type_name("PROBE.csv");
   command->add_flag("--play", options->play_probe, "moves the probe along --probe over the frames");
   command->add_option("--field", options->fields, "replaces a field of the scene")->type_name("NAME=FILE[:GRID]")->allow_extra_args(false);
   options->colors.add_to(*command);
   command->add_option("--stats", options->stats, "statistics to write")->type_name("FILE.json");
   add_annotation_options(*command, options->annotate);
   command
-      ->add_option("--gpu-memory", options->gpu_memory_mb,
-                   "limit on GPU memory; what does not fit is drawn coarser, with a note (default: what the driver reports)")
+      ->add_option(
+          "--gpu-memory", options->gpu_memory_mb,
+          "limit on GPU memory; data that does not fit is rendered at a lower resolution, with a note (default: the driver's limit)")
       ->type_name("MB")
       ->check(number_between(1, 1e9));
   command->add_flag("--validation", options->validation, "enables the Vulkan validation layers and counts their messages");

@@ -49,7 +49,7 @@ Outcome replay_scene(const ReplayOptions& options) {
   if (options.scene.empty()) return Error{"SCENE is required (see catena replay --help)"};
   if (options.probe.empty()) return Error{"--probe or --log is required (see catena replay --help)"};
   if (options.output.empty()) return Error{"--output is required (see catena replay --help)"};
-  if (!is_scene_file(options.scene)) return Error{options.scene + ": expected a scene file (.json) with a chain to replay"};
+  if (!is_scene_file(options.scene)) return Error{options.scene + ": a scene file (.json) with a chain was expected"};
   CATENA_TRY(scene::Scene scene, open_scene(options.scene, options.fields));
   IoConflictChecker named = replay_files(options);
   named.add_input(scene);
@@ -77,7 +77,7 @@ Outcome replay_scene(const ReplayOptions& options) {
     widgets.emplace(std::move(file));
     widgets->write(widget_header(*program));
   }
-  ContactSummary felt;
+  ContactSummary contacts;
   tuning::TrackingErrorMonitor observer(plan ? &*plan : nullptr, *program);
   WidgetUsage use;
   ProgressLine progress("replay", static_cast<double>(path.size()));
@@ -97,7 +97,7 @@ Outcome replay_scene(const ReplayOptions& options) {
       append_widgets(line, *program, state);
       widgets->write(line);
     }
-    felt.add(state);
+    contacts.add(state);
     observer.add(state);
     use.add(state);
     if (state.tick % 1024 == 0) progress.update(static_cast<double>(state.tick));
@@ -116,9 +116,9 @@ Outcome replay_scene(const ReplayOptions& options) {
   CATENA_CHECK(commit_all(files));
   if (!scene.workspace.is_explicit) fmt::print("{}", describe_scales({program->meters_per_unit}, false));
   if (!(program->coupling.ramp_s > 0))
-    fmt::print("forces are not ramped (\"ramp_s\" is 0): where a link lets go or is switched they step\n");
+    fmt::print("forces are not ramped (\"ramp_s\" is 0): they jump when a link is released or switched\n");
   fmt::print("{}", observer.summary(scene, 1e-3 * stats.tick_ns_p50));
-  fmt::print("{}", felt.report(*program, stats));
+  fmt::print("{}", contacts.report(*program, stats));
   fmt::print("{}", use.report(*program));
   return Done{};
 }
@@ -127,15 +127,16 @@ Outcome replay_scene(const ReplayOptions& options) {
 
 void add_replay(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<ReplayOptions>();
-  CLI::App* command = program.add_subcommand("replay", "runs the chain along a probe path or a recording, with the same bits every time");
-  command->add_option("SCENE", options->scene, "scene (.json); with --log: used instead of the recorded one")->type_name("SCENE");
+  CLI::App* command =
+      program.add_subcommand("replay", "runs the chain along a probe path or a recording, with identical bits in every run");
+  command->add_option("SCENE", options->scene, "scene (.json); with --log, the scene that replaces the recorded one")->type_name("SCENE");
   command->add_option("--probe", options->probe, "probe path: t,x,y,z[,buttons][,qw,qx,qy,qz]; required without --log")
       ->type_name("PROBE.csv");
-  command->add_option("--log", options->log, "recording to run again; every bit is compared")->type_name("FILE.catlog");
+  command->add_option("--log", options->log, "recording to replay; every bit is compared")->type_name("FILE.catlog");
   command->add_option("-o,--output", options->output, "tick table to write; required without --log")->type_name("FILE.csv");
-  command->add_option("--details", options->details, "details of each link to write: gap, release ratio, force, energy")
+  command->add_option("--details", options->details, "table of the details of each link to write: gap, release ratio, force, energy")
       ->type_name("FILE.csv");
-  command->add_option("--widgets", options->widgets, "modes and poses of the widgets to write")->type_name("FILE.csv");
+  command->add_option("--widgets", options->widgets, "table of the modes and poses of the widgets to write")->type_name("FILE.csv");
   command->add_option("--stats", options->stats, "statistics to write")->type_name("FILE.json");
   options->targets.add_to(*command);
   command->add_option("--field", options->fields, "replaces a field of the scene")->type_name("NAME=FILE[:GRID]")->allow_extra_args(false);

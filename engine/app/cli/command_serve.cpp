@@ -65,15 +65,15 @@ Outcome start_serving(const ServeArguments& given) {
 
 void add_serve(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<ServeArguments>();
-  CLI::App* command = program.add_subcommand("serve", "shows a scene in a browser, on this machine or another");
-  add_source(*command, "SOURCE", options->source, "a scene (.json) or a data file")->type_name("FILE")->required();
-  command->add_option("--grid", options->grid, "field to show, of a data file with several (default: the first scalar one, else the first)")
+  CLI::App* command = program.add_subcommand("serve", "shows a scene in a browser, on this or another machine");
+  add_source(*command, "SOURCE", options->source, "scene (.json) or data file")->type_name("FILE")->required();
+  command->add_option("--grid", options->grid, "field of a data file to show (default: the first scalar field, or else the first field)")
       ->type_name("GRID");
-  command->add_option("--port", options->port, "TCP port; 0: any that is free")
+  command->add_option("--port", options->port, "TCP port; 0: any free port")
       ->type_name("PORT")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  command->add_option("--address", options->address, "numeric address to listen at; 0.0.0.0 admits other machines, without encryption")
+  command->add_option("--address", options->address, "numeric address to listen on; 0.0.0.0 admits other machines, without encryption")
       ->type_name("ADDRESS")
       ->capture_default_str();
   command->add_option("--name", options->names, "host name that browsers may use, in addition to localhost and numeric addresses")
@@ -90,13 +90,15 @@ void add_serve(CLI::App& program, CommandAction& chosen) {
                    "target or settings of the rendering of an image at rest (default: the scene's, or time=50)")
       ->type_name("QUALITY");
   command
-      ->add_option("--gpu-memory", options->gpu_memory_mb,
-                   "limit on GPU memory; what does not fit is drawn coarser, with a note (default: what the driver reports)")
+      ->add_option(
+          "--gpu-memory", options->gpu_memory_mb,
+          "limit on GPU memory; data that does not fit is rendered at a lower resolution, with a note (default: the driver's limit)")
       ->type_name("MB")
       ->check(number_between(1, 1e9));
   command->add_option("--seconds", options->seconds, "duration (default: until Ctrl-C)")->type_name("S")->check(number_at_least(0));
-  command->add_flag("--follow", options->follow, "shows new time steps of a running program once they are complete");
-  command->add_flag("--exit-with-stdin", options->until_stdin_ends, "ends when standard input ends, with the program that started it");
+  command->add_flag("--follow", options->follow, "shows each new time step of a running program when its file is complete");
+  command->add_flag("--exit-with-stdin", options->until_stdin_ends,
+                    "ends when standard input ends, so that the server ends with the program that started it");
   add_annotation_options(*command, options->annotate);
   add_realtime_options(*command, options->realtime);
   command->callback([&chosen, options] { chosen = [options] { return start_serving(*options); }; });

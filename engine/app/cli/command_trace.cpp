@@ -74,7 +74,8 @@ Result<field::VectorFieldPtr> vector_field(scene::Scene& scene, const TraceOptio
       std::vector<std::string_view> known;
       scene.entities.each<scene::FieldSource>(
           [&](scene::Entity e, const scene::FieldSource&) { known.push_back(scene.entities.get<scene::Name>(e).value); });
-      return Error{options.source + ": no field \"" + options.field + "\"; known: " + (known.empty() ? "none" : join_words(known))};
+      return Error{options.source + ": there is no field \"" + options.field +
+                   "\"; known fields: " + (known.empty() ? "none" : join_words(known))};
     }
     CATENA_TRY(any, scene::resolve_field(scene, entity, scene.entities.get<scene::FieldSource>(entity).where));
   } else {
@@ -125,7 +126,7 @@ Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, 
     curves.reserve(seeds.size());
     ProgressLine progress("trace", static_cast<double>(seeds.size()));
     std::size_t knots = 0;
-    const std::size_t most_knots = scene::knot_limit();
+    const std::size_t max_knots = scene::knot_limit();
     for (std::size_t first = 0; first < seeds.size(); first += at_once) {
       const std::span block(seeds.data() + first, std::min(at_once, seeds.size() - first));
       const auto traced = exactly ? flow::trace_all(flow, block, exact) : tracer.trace(block);
@@ -136,8 +137,8 @@ Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, 
         curves.push_back(*traced[i]);
         knots += curves.back()->knots().size();
       }
-      if (knots > most_knots)
-        return Error{options.seeds + ": " + scene::too_many_knots_message(seeds.size(), first + block.size(), most_knots)};
+      if (knots > max_knots)
+        return Error{options.seeds + ": " + scene::too_many_knots_message(seeds.size(), first + block.size(), max_knots)};
       progress.update(static_cast<double>(first + block.size()));
     }
     return curves;
@@ -225,40 +226,41 @@ Outcome trace_lines(const TraceOptions& options) {
 
 void add_trace(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<TraceOptions>();
-  CLI::App* command = program.add_subcommand("trace", "traces streamlines through seeds, as arc-length curves");
-  add_source(*command, "SOURCE", options->source, "a scene (.json) or a data file")->type_name("FILE")->required();
-  command->add_option("--field", options->field, "vector field of the scene, or grid of the file")->type_name("FIELD")->required();
+  CLI::App* command = program.add_subcommand("trace", "traces streamlines from seeds as curves parametrized by arc length");
+  add_source(*command, "SOURCE", options->source, "scene (.json) or data file")->type_name("FILE")->required();
+  command->add_option("--field", options->field, "vector field of the scene, or grid of the data file")->type_name("FIELD")->required();
   command
       ->add_option("--seeds", options->seeds,
                    "seeds: a table x,y,z (CSV), or a pattern as in a scene's \"seeds\", '{\"line\": ...}' or a .json file")
       ->type_name("SEEDS")
       ->required();
   command->add_option("-o,--output", options->output, "streamlines to write: .vtp or .csv")->type_name("LINES")->required();
-  command->add_option("--length", options->length, "longest arc length in each direction (default: 10 L)")
+  command->add_option("--length", options->length, "maximum arc length in each direction (default: 10 L)")
       ->type_name("LENGTH")
       ->check(number_above_zero());
   command
       ->add_option("--tolerance", options->tolerance,
-                   "error of a step; above 1e-9 lines are traced many at once, with knots one step apart (default: 1e-10; patterns 1e-7)")
+                   "error of a step; above 1e-9, lines are traced in batches with one knot per step (default: 1e-10; for patterns 1e-7)")
       ->type_name("TOLERANCE")
       ->check(CLI::Range(0.0, 0.01));
   command
       ->add_option("--step", options->step,
-                   "longest step; of a formula in world units (default: 0.5; as the lines need where the tolerance is at most 1e-9)")
+                   "maximum step, in world units for a formula (default: 0.5; chosen from the error if the tolerance is at most 1e-9)")
       ->type_name("VOXELS")
       ->check(CLI::Range(0.01, 4.0));
   command->add_option("--time-step", options->time_step, "time step, counted from 0 (default: the scene's)")
       ->type_name("INDEX")
       ->check(CLI::Range(0, 1'000'000));
-  command->add_option("--repeat", options->repeat, "traces a table of seeds several times, for the medians of --stats (default: 1)")
+  command->add_option("--repeat", options->repeat, "number of repetitions for a table of seeds, for the medians of --stats (default: 1)")
       ->type_name("N")
       ->check(CLI::Range(1, 1000));
   command->add_option("--stats", options->stats, "statistics to write")->type_name("FILE.json");
-  command->add_option("--kind", options->kind, "line: v and -v are the same direction; vector: they differ")
+  command
+      ->add_option("--kind", options->kind, "vector: a direction v differs from -v; line: v and -v are the same direction, as for fibres")
       ->type_name("WORD")
       ->check(CLI::IsMember({"vector", "line"}))
       ->capture_default_str();
-  command->add_option("--min-speed", options->min_speed, "a line ends where the speed is at most this (default: 0)")
+  command->add_option("--min-speed", options->min_speed, "speed at or below which a streamline ends (default: 0)")
       ->type_name("SPEED")
       ->check(number_at_least(0));
   command->callback([&chosen, options] { chosen = [options] { return trace_lines(*options); }; });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// catena tradeoff SCENE|FILE -o DIR [--effort quick|default|thorough] [--compare OTHER.json]: error against cost for the settings of a
-/// scene catena tradeoff --figure 2|3|stiffness|energy -o DIR: figures of the paper
+/// scene.
+/// catena tradeoff --figure 2|3|stiffness|energy -o DIR: figures of the paper.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -21,15 +22,14 @@ struct TradeoffOptions : MeasureOptions {
 };
 
 Outcome run_tradeoff(const TradeoffOptions& options) {
-  if (!options.source.empty() && !options.figure.empty()) return Error{"--figure goes without a scene: its scenes are its own"};
+  if (!options.source.empty() && !options.figure.empty()) return Error{"--figure was given with a SOURCE; a figure has its own scenes"};
   if (!options.source.empty()) return measure_tradeoffs(options);
   if (options.figure.empty())
     return Error{
-        "tradeoff: expected a scene or a data file to measure, --figure 2 (drift of the methods from a streamline), --figure 3 (a "
-        "penetrable surface and a curve: "
-        "the chain beside its baselines), --figure stiffness (the largest spring by damping, rate and delay) or --figure energy (what a "
-        "closed "
-        "loop of the hand gains)"};
+        "tradeoff: a scene or a data file was expected, or --figure 2 (drift of the methods from a streamline), --figure 3 (chain and "
+        "baselines on a penetrable surface and a curve), --figure stiffness (maximum stiffness against damping, rate and delay) or "
+        "--figure "
+        "energy (energy gain of a closed loop)"};
   CATENA_TRY(ResultsDir folder, ResultsDir::open(options.output));
   CATENA_CHECK(options.figure == "2"           ? figure2(folder)
                : options.figure == "3"         ? figure3(folder)
@@ -47,35 +47,35 @@ Outcome run_tradeoff(const TradeoffOptions& options) {
 void add_tradeoff(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<TradeoffOptions>();
   CLI::App* command =
-      program.add_subcommand("tradeoff", "measures error against cost for the settings of a scene; or makes figures of the paper");
+      program.add_subcommand("tradeoff", "measures error against cost for the settings of a scene, or makes figures of the paper");
   add_source(*command, "SOURCE", options->source,
-             "a scene (.json) or a data file to measure; or the tradeoff.json of a run, to make its page again")
+             "scene (.json) or data file to measure, or the tradeoff.json of an earlier run, whose page is written anew")
       ->type_name("FILE");
   command
       ->add_option("--figure", options->figure,
-                   "figure to make instead: 2: drift from a streamline; 3: a penetrable surface and a curve; stiffness: the largest "
-                   "spring; energy: energy gain of a closed loop")
+                   "figure to make instead: 2: drift from a streamline; 3: a penetrable surface and a curve; stiffness: the maximum "
+                   "stiffness; energy: energy gain of a closed loop")
       ->type_name("WORD")
       ->check(CLI::IsMember({"2", "3", "stiffness", "energy"}));
-  command->add_option("-o,--output", options->output, "folder for the page and the tables; of a figure its script and plots")
+  command->add_option("-o,--output", options->output, "folder for the page and the tables, or for the script and the plots of a figure")
       ->type_name("FOLDER")
       ->required();
   command
       ->add_option("--effort", options->effort,
-                   "time to measure: quick at most 2 minutes, default about 5, thorough up to 20 with larger images and more repeats")
+                   "extent of the measurement: quick takes at most 2 minutes, default about 5, thorough up to 20 with larger images and "
+                   "more repetitions")
       ->type_name("WORD")
       ->check(CLI::IsMember({"quick", "default", "thorough"}))
       ->capture_default_str();
-  command->add_option("--compare", options->compare, "a tradeoff.json of another machine or version, shown side by side")
+  command->add_option("--compare", options->compare, "tradeoff.json of another machine or version, shown side by side")
       ->type_name("FILE.json");
-  command->add_option("--probe", options->probe, "probe path to measure with: t,x,y,z[,buttons] (default: along the first link)")
+  command->add_option("--probe", options->probe, "probe path for the measurement: t,x,y,z[,buttons] (default: a path along the first link)")
       ->type_name("PROBE.csv");
-  command->add_option("--only", options->only, "measures only these (default: all)")
+  command->add_option("--only", options->only, "measurements to make (default: all)")
       ->type_name("WORD")
       ->delimiter(',')
       ->check(CLI::IsMember(measurement_names()));
-  command
-      ->add_option("--grid", options->grid, "field to measure, of a data file with several (default: the first scalar one, else the first)")
+  command->add_option("--grid", options->grid, "field of a data file to measure (default: the first scalar field, or else the first field)")
       ->type_name("GRID");
   command->add_option("--field", options->fields, "replaces a field of the scene")->type_name("NAME=FILE[:GRID]")->allow_extra_args(false);
   command->callback([&chosen, options] { chosen = [options] { return run_tradeoff(*options); }; });

@@ -25,12 +25,12 @@ struct UpgradeOptions {
   bool without_backup = false;
 };
 
-/// Keeps the old content of a file as FILE.bak. Error: there is such a file already, or it cannot be made.
+/// Keeps the old content of a file as FILE.bak. Error: FILE.bak exists already, or cannot be written.
 Outcome keep_backup(const std::string& file) {
   const std::string backup = file + ".bak";
   std::error_code code;
   if (fs::exists(fs::symlink_status(backup, code)))
-    return Error{one_line(backup + ": is there already; no such file was expected, for the old content of " + file)};
+    return Error{one_line(backup + ": exists already; this name is needed for the old content of " + file)};
   fs::copy_file(file, backup, code);
   return code ? Outcome(system_error(backup + ": cannot write", code.value())) : Outcome(Done{});
 }
@@ -96,7 +96,7 @@ Outcome upgrade_files(const UpgradeOptions& options) {
 
 void add_upgrade(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<UpgradeOptions>();
-  CLI::App* command = program.add_subcommand("upgrade", "replaces the names of version 0.2 in scenes, studies and recordings");
+  CLI::App* command = program.add_subcommand("upgrade", "replaces the key names of version 0.2 in scenes, studies and recordings");
   command->add_option("FILE", options->files, "scenes and studies (.json), recordings (.catlog)")->type_name("OLD")->required();
   command->add_flag("--no-backup", options->without_backup, "does not keep the old file as FILE.bak");
   command->callback([&chosen, options] { chosen = [options] { return upgrade_files(*options); }; });

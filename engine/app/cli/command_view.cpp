@@ -62,9 +62,9 @@ Outcome open_window(const ViewArguments& given, int& exit_code) {
     return stereo.apply(scene.stereo);
   };
   {
-    if (o.source.empty() && !o.grid.empty()) return Error{"--grid: there is no data file that holds it, expected a SOURCE"};
-    if (o.source.empty() && !o.fields.empty()) return Error{"--field: there is no scene whose field it could replace, expected a SOURCE"};
-    if (o.source.empty() && o.follow) return Error{"--follow: there is nothing to follow, expected a SOURCE"};
+    if (o.source.empty() && !o.grid.empty()) return Error{"--grid: a SOURCE was expected: a data file that contains the grid"};
+    if (o.source.empty() && !o.fields.empty()) return Error{"--field: a SOURCE was expected: a scene whose field is replaced"};
+    if (o.source.empty() && o.follow) return Error{"--follow: a SOURCE was expected: a scene or data file to follow"};
     CATENA_TRY(scene::Scene scene, o.source.empty() ? Result<scene::Scene>(scene::Scene())
                                    : o.follow       ? open_followed_scene(o.source, o.fields, o.grid, o.seconds)
                                                     : open_scene(o.source, o.fields, {}, o.grid));
@@ -104,22 +104,22 @@ Outcome open_window(const ViewArguments& given, int& exit_code) {
 void add_view(CLI::App& program, CommandAction& chosen, int& exit_code) {
   auto options = std::make_shared<ViewArguments>();
   CLI::App* command = program.add_subcommand("view", "opens the interactive window");
-  add_source(*command, "SOURCE", options->source, "a scene (.json) or a data file; without it the window shows how to begin")
+  add_source(*command, "SOURCE", options->source, "scene (.json) or data file (default: a welcome page with the recent files)")
       ->type_name("FILE");
   command
-      ->add_option(
-          "--device", options->device,
-          "mouse, or a haptic device whose forces are off until F; the mouse replaces a missing device (default: the scene's, or mouse)")
+      ->add_option("--device", options->device,
+                   "mouse, or a haptic device, whose forces are off until F is pressed; the mouse replaces a missing device (default: the "
+                   "scene's, or mouse)")
       ->type_name("DEVICE");
   command
       ->add_option("--device-file", options->device_file,
-                   "device settings that replace the scene's \"device\"; the device's position in a headset's room is saved there")
+                   "device settings that replace the scene's \"device\"; the registration of the device in a headset's room is saved there")
       ->type_name("FILE.json");
   command
       ->add_option("--head", options->head,
                    "tracked head in front of --screen: a table t,x,y,z in world units, or a device (default: the mouse)")
       ->type_name("HEAD.csv|DEVICE");
-  command->add_option("--grid", options->grid, "field to show, of a data file with several (default: the first scalar one, else the first)")
+  command->add_option("--grid", options->grid, "field of a data file to show (default: the first scalar field, or else the first field)")
       ->type_name("GRID");
   command->add_option("--field", options->fields, "replaces a field of the scene")->type_name("NAME=FILE[:GRID]")->allow_extra_args(false);
   command->add_option("--size", options->size, "size of the window")
@@ -128,13 +128,14 @@ void add_view(CLI::App& program, CommandAction& chosen, int& exit_code) {
       ->capture_default_str();
   command
       ->add_option("--quality", options->quality,
-                   "target or settings of an image at rest; while something moves an image takes time=MS or 50 ms (default: the scene's, "
+                   "target or settings of a still image; an image takes time=MS or 50 ms while something moves (default: the scene's, "
                    "or time=50)")
       ->type_name("QUALITY");
   options->targets.add_to(*command);
   command
-      ->add_option("--gpu-memory", options->gpu_memory_mb,
-                   "limit on GPU memory; what does not fit is drawn coarser, with a note (default: what the driver reports)")
+      ->add_option(
+          "--gpu-memory", options->gpu_memory_mb,
+          "limit on GPU memory; data that does not fit is rendered at a lower resolution, with a note (default: the driver's limit)")
       ->type_name("MB")
       ->check(number_between(1, 1e9));
   command
@@ -145,20 +146,23 @@ void add_view(CLI::App& program, CommandAction& chosen, int& exit_code) {
   command->add_option("--frames", options->frames, "number of frames after which the window closes; 0: never (default: 0)")
       ->type_name("FRAMES")
       ->check(number_between(0, std::numeric_limits<int>::max()));
-  command->add_option("--seconds", options->seconds, "draws all the time and closes after this duration; 0: never (default: 0)")
+  command
+      ->add_option("--seconds", options->seconds,
+                   "renders continuously, and closes the window after this many seconds; 0: neither (default: 0)")
       ->type_name("S")
       ->check(number_at_least(0));
-  command->add_option("--screenshot", options->screenshot, "last frame to write")->type_name("FILE.png");
-  command->add_option("--screenshot-ui", options->window_screenshot, "last frame with the panels to write")->type_name("FILE.png");
-  command->add_flag("--follow", options->follow, "shows new time steps of a running program once they are complete");
+  command->add_option("--screenshot", options->screenshot, "image of the last frame to write")->type_name("FILE.png");
+  command->add_option("--screenshot-ui", options->window_screenshot, "image of the last frame with the panels to write")
+      ->type_name("FILE.png");
+  command->add_flag("--follow", options->follow, "shows each new time step of a running program when its file is complete");
   command->add_flag("--xr", options->headset, "also shows the scene in a headset (OpenXR); the window mirrors one view");
   command->add_flag("--no-panels", options->no_panels, "starts without the panels; Tab shows them");
-  command->add_option("--frame-stats", options->frame_stats, "times of the frames to write, with histograms")->type_name("FILE.json");
+  command->add_option("--frame-stats", options->frame_stats, "table of frame times to write, with histograms")->type_name("FILE.json");
   command->add_option("--servo-stats", options->servo_stats, "statistics of the servo to write: ticks, missed deadlines, histograms")
       ->type_name("FILE.json");
-  command->add_option("--record", options->record, "recording of every tick to write; replay --log, export and info read it")
+  command->add_option("--record", options->record, "recording of every tick to write, for replay --log, export and info")
       ->type_name("FILE.catlog");
-  command->add_option("--firmware", options->firmware, "firmware image of the vendor, sent to a Falcon that has none")
+  command->add_option("--firmware", options->firmware, "firmware image of the vendor, sent to a Falcon without firmware")
       ->type_name("FIRMWARE");
   add_annotation_options(*command, options->annotate);
   add_realtime_options(*command, options->realtime);

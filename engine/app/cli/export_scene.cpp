@@ -33,7 +33,7 @@ Result<Entity> find_item(const scene::Scene& scene, int number, const std::strin
   std::vector<Entity> items;
   scene.entities.each<T>([&](Entity e, const T&) { items.push_back(e); });
   if (number >= 0 && static_cast<std::size_t>(number) < items.size()) return items[static_cast<std::size_t>(number)];
-  const std::string has = items.empty() ? "has none" : fmt::format("has those from 0 to {}", items.size() - 1);
+  const std::string has = items.empty() ? "has no items" : fmt::format("has items 0 to {}", items.size() - 1);
   return Error{fmt::format("{}: there is no item {} in \"{}\"; the scene {}", scene.path, number, list, has)};
 }
 
@@ -115,12 +115,12 @@ Result<PlaneSamples> sample_plane(const std::string& output, const scene::Slice&
   const field::Field& field = *any.get();
   const Vec3 n = direction(slice.normal);
   // the first grid axis is the projection of the world axis most parallel to the plane
-  int least = 0;
+  int minimum = 0;
   for (int a = 1; a < 3; ++a)
-    if (std::fabs(n[a]) < std::fabs(n[least])) least = a;
+    if (std::fabs(n[a]) < std::fabs(n[minimum])) minimum = a;
   Vec3 axis(0.0);
-  axis[least] = 1;
-  const Vec3 u = direction(axis - n * n[least]), v = cross(n, u);
+  axis[minimum] = 1;
+  const Vec3 u = direction(axis - n * n[minimum]), v = cross(n, u);
   double lo[2]{INFINITY, INFINITY}, hi[2]{-INFINITY, -INFINITY};
   for (int i = 0; i < 8; ++i) {
     const Vec3 d = field.corner(i) - slice.point;
@@ -141,7 +141,7 @@ Result<PlaneSamples> sample_plane(const std::string& output, const scene::Slice&
   PlaneSamples made;
   constexpr std::uint32_t kNone = 0xffffffff;
   if (count[0] * count[1] >= kNone)
-    return Error{fmt::format("{}: {:.0f} x {:.0f} samples are too many; a greater --spacing was expected", output, count[0], count[1])};
+    return Error{fmt::format("{}: {:.0f} x {:.0f} samples are too many; a larger --spacing was expected", output, count[0], count[1])};
   const auto nu = static_cast<std::size_t>(count[0]), nv = static_cast<std::size_t>(count[1]);
   std::vector<std::uint32_t> number(nu * nv, kNone);
   field::Cursor cursor;
@@ -155,7 +155,8 @@ Result<PlaneSamples> sample_plane(const std::string& output, const scene::Slice&
       made.points.push_back(p);
     }
   if (made.points.empty())
-    return Error{output + ": no sample of the slice lies within its field; a plane that meets it, or a smaller --spacing was expected"};
+    return Error{output +
+                 ": no sample of the slice lies within its field; a plane that intersects the field, or a smaller --spacing, was expected"};
   for (std::size_t j = 0; j + 1 < nv; ++j)
     for (std::size_t i = 0; i + 1 < nu; ++i) {
       const std::uint32_t a = number[j * nu + i], b = number[j * nu + i + 1], c = number[(j + 1) * nu + i + 1],
@@ -192,7 +193,7 @@ Outcome export_slice(const SceneExport& options, scene::Scene& scene) {
     mesh::MeshExport out{plane.points, {}, plane.triangles, samples.sample_points(plane.points)};
     CATENA_CHECK(write_and_tell(options.output, out));
   }
-  say(options.output, fmt::format("{} samples, {} apart", plane.points.size(), to_text(spacing)));
+  say(options.output, fmt::format("{} samples at a spacing of {}", plane.points.size(), to_text(spacing)));
   return Done{};
 }
 
@@ -209,7 +210,7 @@ Outcome export_probe(const SceneExport& options, scene::Scene& scene) {
     out.write(row + "\n");
   }
   CATENA_CHECK(out.commit());
-  say(options.output, fmt::format("{} places", path.size()));
+  say(options.output, fmt::format("{} positions", path.size()));
   return Done{};
 }
 

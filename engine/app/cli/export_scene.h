@@ -8,7 +8,7 @@
 
 namespace catena::app {
 
-/// What to export, from the command line.
+/// Options of an export, from the command line.
 struct SceneExport {
   /// `source`: a scene or a data file; `grid`: of a data file that holds several, empty: the default one; the extension of `output` selects
   /// the format

@@ -69,12 +69,12 @@ Result<std::string> json_of_file(const std::string& path, const std::string& gri
   CATENA_TRY(const std::vector<field::GridInfo> grids, read_grid_infos(at.path, grid, at.step));
   std::vector<std::string> described, notes;
   for (const field::GridInfo& g : grids) described.push_back(json_of_grid(at.path, g));
-  const scene::FileSummary look = io::needs_layout(path) ? scene::FileSummary{} : scene::summarize_file(path, grid, step);
-  if (look.steps.count > 0) CATENA_CHECK(check_step(step, look.steps.count - 1, fmt::format("--step {}", step), path));
-  for (const std::string& line : look.lines) notes.push_back(to_json_value(line));
+  const scene::FileSummary summary = io::needs_layout(path) ? scene::FileSummary{} : scene::summarize_file(path, grid, step);
+  if (summary.steps.count > 0) CATENA_CHECK(check_step(step, summary.steps.count - 1, fmt::format("--step {}", step), path));
+  for (const std::string& line : summary.lines) notes.push_back(to_json_value(line));
   JsonObject out;
   out.add("kind", "data").add("file", path).add_raw("grids", json_array(described)).add_raw("notes", json_array(notes));
-  add_steps(out, path, look.steps);
+  add_steps(out, path, summary.steps);
   return out.text();
 }
 

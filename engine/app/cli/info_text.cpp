@@ -22,12 +22,12 @@ std::string format_position(const Vec3& v) {
 
 void print_mesh(const mesh::TriangleMesh& mesh, const char* indent) {
   fmt::print("{}triangles    {}{}\n", indent, mesh.triangles().size(),
-             mesh.dropped_triangles() == 0 ? "" : fmt::format(" ({} without an area dropped)", mesh.dropped_triangles()));
+             mesh.dropped_triangles() == 0 ? "" : fmt::format(" ({} degenerate triangles dropped)", mesh.dropped_triangles()));
   fmt::print("{}vertices     {}\n", indent, mesh.vertices().size());
   fmt::print("{}world box    {} .. {}   (L = {})\n", indent, format_position(mesh.min_corner()), format_position(mesh.max_corner()),
              format_readable(mesh.domain_length()));
   fmt::print("{}open edges   {}\n", indent, mesh.open_edges());
-  fmt::print("{}other edges  {} with more than two faces, {} whose faces disagree on the outside\n", indent, mesh.non_manifold_edges(),
+  fmt::print("{}other edges  {} with more than two faces, {} with inconsistently oriented faces\n", indent, mesh.non_manifold_edges(),
              mesh.misoriented_edges());
   fmt::print("{}bytes        {} ({})\n", indent, mesh.bytes(), format_bytes(static_cast<double>(mesh.bytes())));
 }
@@ -53,8 +53,8 @@ void print_curves(const curves::CurveSet& set, const char* indent) {
   const std::string unit = set.unit.empty() ? "" : " " + set.unit;
   fmt::print("{}lines        {}{}\n", indent, set.line_count(), set.note.empty() ? "" : " (" + set.note + ")");
   fmt::print("{}points       {}\n", indent, set.points.size());
-  fmt::print("{}lengths      {}{} in the mean, the longest {}{}\n", indent, format_readable(all / static_cast<double>(set.line_count())),
-             unit, format_readable(longest), unit);
+  fmt::print("{}lengths      mean {}{}, maximum {}{}\n", indent, format_readable(all / static_cast<double>(set.line_count())), unit,
+             format_readable(longest), unit);
   fmt::print("{}world box    {} .. {}\n", indent, format_position(set.min_corner), format_position(set.max_corner));
   for (const curves::PointValues& one : set.values) {
     fmt::print("{}values       {}, {}\n", indent, in_quotes(one.name), values_text(one.values));
@@ -64,7 +64,7 @@ void print_curves(const curves::CurveSet& set, const char* indent) {
 
 void print_points(const curves::PointSet& set, const char* indent) {
   fmt::print("{}points       {}{}\n", indent, set.points.size(), set.note.empty() ? "" : " (" + set.note + ")");
-  fmt::print("{}spacing      {} in the median\n", indent, format_readable(set.median_spacing));
+  fmt::print("{}spacing      median {}\n", indent, format_readable(set.median_spacing));
   fmt::print("{}world box    {} .. {}\n", indent, format_position(set.min_corner), format_position(set.max_corner));
   for (const curves::PointValues& one : set.values) {
     fmt::print("{}values       {}, {}\n", indent, in_quotes(one.name), values_text(one.values));
@@ -91,13 +91,13 @@ void print_mapping(const field::Mapping& mapping) {
   fmt::print("  origin       {}   (world = J index + origin)\n", format_position(mapping.origin));
 }
 
-/// Returns "6, time 0, 0.1, 0.2, 0.3, 0.4, 0.5 s"; for more than kMost steps only the first and the last time.
+/// Returns "6, time 0, 0.1, 0.2, 0.3, 0.4, 0.5 s"; for more than kMaximum steps only the first and the last time.
 std::string steps_text(const scene::TimeSteps& steps) {
-  constexpr std::size_t kMost = 10;
+  constexpr std::size_t kMaximum = 10;
   const std::vector<double>& times = steps.times;
   std::string text = std::to_string(steps.count);
   if (!times.empty()) text += ", time " + format_readable(times.front());
-  const bool all = static_cast<int>(times.size()) == steps.count && times.size() <= kMost;
+  const bool all = static_cast<int>(times.size()) == steps.count && times.size() <= kMaximum;
   for (std::size_t i = 1; all && i < times.size(); ++i) text += ", " + format_readable(times[i]);
   if (!all && times.size() > 1) text += " .. " + format_readable(times.back());
   return text + (times.empty() || steps.time_unit.empty() ? "" : " " + steps.time_unit);
@@ -120,7 +120,7 @@ Outcome describe_file(const std::string& path, const std::string& grid, int step
   fmt::print("{}: {} grid{}\n", sanitize_for_terminal(path), grids.size(), grids.size() == 1 ? "" : "s");
   for (const field::GridInfo& g : grids) {
     fmt::print("{} ({}{})\n", g.name.empty() ? "(no name)" : sanitize_for_terminal(g.name), sanitize_for_terminal(g.type),
-               g.is_usable ? "" : "; not a field that Catena can show or feel");
+               g.is_usable ? "" : "; not usable as a field");
     if (!g.series_number.empty()) fmt::print("  number       {}\n", sanitize_for_terminal(g.series_number));
     if (g.image_count > 0) fmt::print("  images       {}\n", g.image_count);
     if (!g.is_usable && g.image_count > 0) continue;  // its type states why it is not usable
@@ -129,7 +129,7 @@ Outcome describe_file(const std::string& path, const std::string& grid, int step
     print_mapping(g.mapping);
     const field::Units units = field::read_units(at.path, g.name);
     if (!units.value.empty()) fmt::print("  unit         {}\n", sanitize_for_terminal(units.value));
-    if (!units.length.empty()) fmt::print("  lengths in   {}\n", sanitize_for_terminal(units.length));
+    if (!units.length.empty()) fmt::print("  length unit  {}\n", sanitize_for_terminal(units.length));
     const Vec3 lowest(g.first_index.x, g.first_index.y, g.first_index.z);
     const Vec3 edges(static_cast<double>(g.size.x - 1), static_cast<double>(g.size.y - 1), static_cast<double>(g.size.z - 1));
     const Bounds box = field::world_bounds(g.mapping, {lowest, lowest + edges});
@@ -144,9 +144,9 @@ Outcome describe_file(const std::string& path, const std::string& grid, int step
     fmt::print("  bytes        {} ({})\n", g.bytes, format_bytes(static_cast<double>(g.bytes)));
   }
   if (io::needs_layout(path)) return Done{};
-  const scene::FileSummary look = scene::summarize_file(path, grid, step);
-  CATENA_CHECK(print_steps(path, look.steps, step));
-  for (const std::string& line : look.lines) fmt::print("{}\n", sanitize_for_terminal(line));
+  const scene::FileSummary summary = scene::summarize_file(path, grid, step);
+  CATENA_CHECK(print_steps(path, summary.steps, step));
+  for (const std::string& line : summary.lines) fmt::print("{}\n", sanitize_for_terminal(line));
   return Done{};
 }
 

@@ -84,7 +84,7 @@ Outcome IoConflictChecker::check(bool keeps_scene) const {
     const std::vector<FileId> parts = field::find_data_files(input);
     for (const PlannedOutput* output : there)
       if (std::ranges::find(parts, *find_file_id(output->path)) != parts.end())
-        return Error{output->path + ": is also an input, a part of " + input + ": expected another name for the output"};
+        return Error{output->path + ": is also an input, a part of " + input + "; another name for the output was expected"};
   }
   register_inputs(files);
   return Done{};

@@ -21,17 +21,17 @@ CLI::Option* add_source(CLI::App& command, const std::string& name, std::string&
             for (const std::string& file : files)
               if (has_extension(file, single))
                 throw CLI::ValidationError(
-                    file + ": several files were expected to be one series of data files; a scene or a recording goes alone");
+                    file + ": several files were given; a single scene or recording, or the data files of one series, were expected");
         const auto one = scene::make_pattern(files);
         if (!one) throw CLI::ValidationError(one_line(one.error().message));
         source = *one;
       },
-      help + "; several files of one series are its steps in time");
+      help + "; several files of one series are its time steps");
 }
 
 void add_annotation_options(CLI::App& command, AnnotationOptions& options) {
   command.add_option("--title", options.title, "title at the top of the image")->type_name("TEXT");
-  command.add_flag("--scalar-bar", options.scalar_bar, "shows the colours of the first volume or coloured streamlines, with their values");
+  command.add_flag("--scalar-bar", options.scalar_bar, "shows a scalar bar of the first volume or of the first coloured streamlines");
   command.add_flag("--orientation-marker", options.orientation_marker, "shows the world axes in a corner");
 }
 
@@ -43,8 +43,8 @@ Outcome add_annotations(scene::Scene& scene, const AnnotationOptions& options) {
   const auto bar = scene::first_scalar_bar(scene.entities);
   if (!bar)
     return Error{
-        "--scalar-bar: nothing here has colours; a volume or streamlines with \"color_by\" were expected (--colormap NAME makes a data "
-        "file one)"};
+        "--scalar-bar: nothing in the scene is coloured by values; a volume or streamlines with \"color_by\" were expected (with a data "
+        "file, --colormap NAME)"};
   all.scalar_bars.push_back(*bar);
   return Done{};
 }
@@ -54,12 +54,12 @@ void HapticTargetOptions::add_to(CLI::App& command) {
       command
           .add_option(
               "--max-proxy-error", max_proxy_error,
-              "greatest distance of a streamline link's proxy from its line: chooses the fastest settings within it (default: the scene's)")
+              "maximum distance of a streamline link's proxy from its line; the fastest settings within it are used (default: the scene's)")
           ->type_name("ERROR")
           ->check(number_above_zero());
   command
       .add_option("--max-tick-us", max_tick_us,
-                  "longest time of a tick: chooses the most accurate settings of streamline links within it (default: the scene's)")
+                  "maximum time of a tick; the most accurate settings of streamline links within it are used (default: the scene's)")
       ->type_name("US")
       ->check(number_above_zero())
       ->excludes(error);
@@ -85,7 +85,7 @@ void ColorOptions::add_to(CLI::App& command) {
       ->check(accepted("{linear,log,symlog}"));
   command
       .add_option("--linear-below", linear_below,
-                  "of --mapping symlog: values of at most this magnitude are mapped linearly (default: a thousandth of the greatest)")
+                  "for --mapping symlog: maximum magnitude of the values that are mapped linearly (default: a thousandth of the maximum)")
       ->type_name("VALUE")
       ->check(accepted("> 0"));
 }
@@ -104,13 +104,13 @@ Result<scene::NamedColors> ColorOptions::to_named_colors() const {
   if (!linear_below.empty()) {
     const auto size = parse_double(linear_below);
     if (!size || !(*size > 0) || colors.mapping.kind != scene::ValueMapping::Kind::symlog)
-      return Error{one_line("--linear-below " + linear_below + ": a size above 0 beside --mapping symlog was expected")};
+      return Error{one_line("--linear-below " + linear_below + ": a value above 0 together with --mapping symlog was expected")};
     colors.mapping.linear_below = *size;
   }
   if (range.empty()) return colors;
   const auto lo = parse_double(range[0]), hi = parse_double(range[1]);
   if (!lo || !hi || !scene::is_color_range(*lo, *hi))
-    return Error{one_line("--range " + range[0] + " " + range[1] + ": two rising numbers LO HI were expected")};
+    return Error{one_line("--range " + range[0] + " " + range[1] + ": two increasing numbers LO HI were expected")};
   colors.range = {*lo, *hi};
   if (const std::string problem = scene::mapping_error(colors.mapping, *lo, "--range"); !problem.empty())
     return Error{one_line("--range " + range[0] + " " + range[1] + ": " + problem)};

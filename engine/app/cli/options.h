@@ -39,21 +39,21 @@ inline CLI::Validator accepted_words(std::string words) {
   return accepted("{" + words + "}");
 }
 
-/// Accepts a finite number from `least` to `most`.
-inline CLI::Validator number_between(double least, double most) {
-  const bool bounded = most < std::numeric_limits<double>::max();
+/// Accepts a finite number from `minimum` to `max_size`.
+inline CLI::Validator number_between(double minimum, double maximum) {
+  const bool bounded = maximum < std::numeric_limits<double>::max();
   return CLI::Validator(
-      [least, most, bounded](const std::string& text) -> std::string {
+      [minimum, maximum, bounded](const std::string& text) -> std::string {
         const auto value = parse_double(text);
-        if (value && *value >= least && *value <= most) return {};
-        const std::string range = bounded ? "from " + to_text(least) + " to " + to_text(most) : "of at least " + to_text(least);
+        if (value && *value >= minimum && *value <= maximum) return {};
+        const std::string range = bounded ? "from " + to_text(minimum) + " to " + to_text(maximum) : "of at least " + to_text(minimum);
         return in_quotes(text) + " is out of range; a finite number " + range + " was expected";
       },
-      bounded ? to_text(least) + " to " + to_text(most) : ">= " + to_text(least));
+      bounded ? to_text(minimum) + " to " + to_text(maximum) : ">= " + to_text(minimum));
 }
 
-/// Accepts a finite number of at least `least`.
-inline CLI::Validator number_at_least(double least) { return number_between(least, std::numeric_limits<double>::max()); }
+/// Accepts a finite number of at least `minimum`.
+inline CLI::Validator number_at_least(double minimum) { return number_between(minimum, std::numeric_limits<double>::max()); }
 
 /// Accepts a finite number above 0.
 inline CLI::Validator number_above_zero() {
@@ -77,26 +77,28 @@ inline void refuse_empty_numbers(CLI::App& command) {
 }
 
 /// Maximum values of --size WxH, pixels on each axis.
-inline constexpr std::uint32_t kMaxImageSize = 16384;  ///< Of an image that is rendered in one piece
-inline constexpr int kMaxTiledPixels = 65536;          ///< Of an image that is rendered in tiles
+inline constexpr std::uint32_t kMaxImageSize = 16384;  ///< for an image that is rendered in one piece
+inline constexpr int kMaxTiledPixels = 65536;          ///< for an image that is rendered in tiles
 
 /// States the accepted values of --size.
-inline CLI::Validator image_size_up_to(int most) { return accepted("1x1 to " + std::to_string(most) + "x" + std::to_string(most)); }
+inline CLI::Validator image_size_up_to(int max_size) {
+  return accepted("1x1 to " + std::to_string(max_size) + "x" + std::to_string(max_size));
+}
 
 /// Size of an image, pixels.
 struct ImageSize {
   std::uint32_t width = 1024, height = 768;
 };
 
-/// Parses --size WxH. `most`: maximum of width and height, pixels.
-inline Result<ImageSize> parse_image_size(const std::string& text, int most = kMaxImageSize) {
+/// Parses --size WxH. `max_size`: maximum of width and height, pixels.
+inline Result<ImageSize> parse_image_size(const std::string& text, int max_size = kMaxImageSize) {
   const auto x = text.find('x');
   if (x != std::string::npos) {
     const auto width = parse_integer(text.substr(0, x)), height = parse_integer(text.substr(x + 1));
-    if (width && height && *width >= 1 && *height >= 1 && *width <= most && *height <= most)
+    if (width && height && *width >= 1 && *height >= 1 && *width <= max_size && *height <= max_size)
       return ImageSize{static_cast<std::uint32_t>(*width), static_cast<std::uint32_t>(*height)};
   }
-  return Error{"--size " + text + ": expected WIDTHxHEIGHT, each 1 to " + std::to_string(most) + ", such as 1024x768"};
+  return Error{"--size " + text + ": expected WIDTHxHEIGHT, each 1 to " + std::to_string(max_size) + ", such as 1024x768"};
 }
 
 /// The options --stereo MODE, --eye-separation S, --zero-parallax F and --screen NAME, which override the scene.
@@ -141,15 +143,15 @@ inline Outcome check_packed_size(const scene::Stereo& stereo, const ImageSize& s
   if (packed.width >= 1 && packed.height >= 1 && packed.width <= kMaxImageSize && packed.height <= kMaxImageSize) return Done{};
   return Error{"--size " + std::to_string(size.width) + "x" + std::to_string(size.height) + ": with " +
                std::to_string(render::stereo_view_count(stereo)) + " views " + std::string(scene::to_string(stereo.mode)) +
-               " the picture has " + std::to_string(packed.width) + "x" + std::to_string(packed.height) + " pixels, expected 1 to " +
-               std::to_string(kMaxImageSize) + " each way"};
+               " the image has " + std::to_string(packed.width) + "x" + std::to_string(packed.height) + " pixels; 1 to " +
+               std::to_string(kMaxImageSize) + " along each axis were expected"};
 }
 
 /// Adds the stereo options to a command.
 inline void add_stereo_options(CLI::App& command, StereoOptions& choice) {
   command
       .add_option("--stereo", choice.mode,
-                  "stereo mode; each view has the size of --size, *-half fits all views into it (default: the scene's)")
+                  "stereo mode; each view has the size given by --size, modes *-half fit all views into that size (default: the scene's)")
       ->type_name("MODE")
       ->check(accepted_words(scene::stereo_mode_names()));
   command
@@ -159,10 +161,12 @@ inline void add_stereo_options(CLI::App& command, StereoOptions& choice) {
       ->check(accepted(">= 0"));
   command
       .add_option("--zero-parallax", choice.zero_parallax,
-                  "distance at which the two views coincide (default: the scene's, or that of the camera's target)")
+                  "distance from the camera at which the two views coincide (default: the scene's, or the distance of the camera's target)")
       ->type_name("LENGTH")
       ->check(accepted("> 0"));
-  command.add_option("--screen", choice.screen, "renders for this screen of the scene, seen from the camera's position (default: none)")
+  command
+      .add_option("--screen", choice.screen,
+                  "display screen of the scene for which the image is rendered, seen from the camera's position (default: none)")
       ->type_name("SCREEN");
 }
 
@@ -218,7 +222,7 @@ struct HapticTargetOptions {
 
 /// Adds --realtime on|off and --cpu N: real-time scheduling and core of the haptic thread.
 inline void add_realtime_options(CLI::App& command, RealtimeChoice& choice) {
-  command.add_option("--realtime", choice.realtime, "fixed priority and locked memory for the haptic thread, where permitted")
+  command.add_option("--realtime", choice.realtime, "fixed priority and locked memory of the haptic thread, where the system permits them")
       ->type_name("WORD")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();

@@ -34,7 +34,7 @@ Outcome load_from_environment() {
     if (path.empty()) continue;
     if (!fs::path(path).is_absolute())
       return Error{
-          one_line(std::string(kVariable) + ": " + path + ": is relative; absolute paths, with colons between them, were expected")};
+          one_line(std::string(kVariable) + ": " + path + ": is a relative path; absolute paths, separated by colons, were expected")};
     if (const Outcome loaded = plugin::load(path); !loaded) return Error{std::string(kVariable) + ": " + loaded.error().message};
   }
   return Done{};
@@ -59,7 +59,7 @@ Outcome load_plugins(const std::vector<std::string>& named) {
     if (const Outcome loaded = plugin::load(path); !loaded) return Error{"--plugin " + loaded.error().message};
   CATENA_CHECK(load_from_environment());
   for (const std::string& path : files_of_folder())
-    if (const Outcome loaded = plugin::load(path); !loaded) print_message("note: not loaded: " + loaded.error().message);
+    if (const Outcome loaded = plugin::load(path); !loaded) print_message("note: plug-in not loaded: " + loaded.error().message);
   return Done{};
 }
 
@@ -82,8 +82,8 @@ Outcome check_plugins(const std::vector<log::LogPlugin>& recorded, const scene::
     if (now != plugin::loaded_plugins().end() && now->hash == then->hash) return;
     missing = fmt::format("link {} ran in the plug-in {}; ", in_quotes(link.name), plugin_label(*then)) +
               (now == plugin::loaded_plugins().end()
-                   ? "--plugin with that file was expected"
-                   : fmt::format("that file was expected, and {} is loaded", plugin_label({now->file, now->hash, {}})));
+                   ? "--plugin with this file was expected"
+                   : fmt::format("this file was expected, but {} is loaded", plugin_label({now->file, now->hash, {}})));
   });
   return missing.empty() ? Outcome(Done{}) : Error{missing};
 }

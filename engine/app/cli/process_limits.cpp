@@ -26,7 +26,7 @@ namespace catena::app {
 namespace {
 
 constexpr std::size_t kThreadStack = 2u << 20;
-constexpr rlim_t kWantedStack = 8u << 20, kLeastStack = 1u << 20;
+constexpr rlim_t kWantedStack = 8u << 20, kMinStack = 1u << 20;
 
 void say_no_thread(char* line, std::size_t size) noexcept {
   try {
@@ -38,13 +38,13 @@ void say_no_thread(char* line, std::size_t size) noexcept {
 
 // Must not allocate: memory may be exhausted.
 [[noreturn]] void on_terminate() {
-  char line[256] = "catena: ended by an error that nothing handles\n";
+  char line[256] = "catena: ended by an unhandled error\n";
   try {
     if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
   } catch (const std::bad_alloc&) {
     std::snprintf(line, sizeof line, "catena: %s\n", out_of_memory_message());
   } catch (const std::exception& error) {
-    std::snprintf(line, sizeof line, "catena: ended by an error that nothing handles: %.180s\n", error.what());
+    std::snprintf(line, sizeof line, "catena: ended by an unhandled error: %.180s\n", error.what());
     if (is_thread_start_failure(error)) say_no_thread(line, sizeof line);
   } catch (...) {
   }
@@ -68,9 +68,9 @@ Outcome enlarge_first_stack() {
   if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur >= kWantedStack) return Done{};
   limit.rlim_cur = limit.rlim_max == RLIM_INFINITY ? kWantedStack : std::min(kWantedStack, limit.rlim_max);
   setrlimit(RLIMIT_STACK, &limit);
-  if (getrlimit(RLIMIT_STACK, &limit) == 0 && limit.rlim_cur < kLeastStack)
+  if (getrlimit(RLIMIT_STACK, &limit) == 0 && limit.rlim_cur < kMinStack)
     return Error{
-        fmt::format("the stack is limited to {} KiB: at least {} (ulimit -s) were expected", limit.rlim_cur / 1024, kLeastStack / 1024),
+        fmt::format("the stack is limited to {} KiB; at least {} KiB were expected (ulimit -s)", limit.rlim_cur / 1024, kMinStack / 1024),
         true};
   return Done{};
 }
@@ -109,7 +109,7 @@ int flush_output(int code) {
   if (code != 0 || ended_by_broken_pipe()) return code;
   if (why == EPIPE || reader_has_gone()) return 1;
   const std::string reason = why != 0 ? " (" + describe_errno(why) + ")" : "";
-  print_message("standard output cannot be written" + reason + ": what was printed is lost, a place that takes it was expected");
+  print_message("standard output cannot be written" + reason + ": the printed text is lost; an output that can be written was expected");
   return 1;
 }
 

@@ -5,7 +5,7 @@ namespace catena::app {
 
 namespace {
 
-// name, takes, unit, range, example, is_number
+// name, input_kind, unit, range, example, is_number
 constexpr ValueType kValueTypes[] = {
     // numbers
     {"ALPHA", "number", "", "", "0.01", true},

@@ -55,23 +55,23 @@ void ContactSummary::add(const HapticState& state) {
 std::string ContactSummary::describe_link(const LinkContact& touch, const haptics::Link& link,
                                           const haptics::HapticProgram& program) const {
   if (touch.hold_count == 0)
-    return touch.held_everywhere ? "not touched: CRITICAL, every place of the field would hold it (PARALLEL)" : "not touched";
+    return touch.held_everywhere ? "not touched: CRITICAL, every point of the field satisfies the constraint (PARALLEL)" : "not touched";
   const std::string length = hand_length(program.meters_per_unit * touch.max_gap);
   const double share_n = std::min({touch.max_force_n, program.coupling.max_force_n, program.limits.max_force_n});
   const std::string lies_on = sanitize_for_terminal(link.feature_name);
   std::string text = link.one_sided ? fmt::format("pressed {} {}", length, lies_on.empty() ? "deep" : "into " + lies_on)
-                                    : fmt::format("pulled up to {} off{}", length, lies_on.empty() ? "" : " " + lies_on);
+                                    : fmt::format("pulled up to {} away{}", length, lies_on.empty() ? "" : " from " + lies_on);
   text += fmt::format("{}; held {} of {} s",
                       program.links.size() == 1 && max_force_n_ > 0 ? fmt::format(", at most {:.2g} N", max_force_n_)
-                                                                    : fmt::format(", own share at most {:.2g} N", share_n),
+                                                                    : fmt::format(", own force at most {:.2g} N", share_n),
                       seconds(touch.held_s), seconds(last_s_ - first_s_));
-  if (touch.release_count == 1) text += ", let go once";
-  if (touch.release_count > 1) text += fmt::format(", let go {} times", touch.release_count);
+  if (touch.release_count == 1) text += ", released once";
+  if (touch.release_count > 1) text += fmt::format(", released {} times", touch.release_count);
   return text;
 }
 
 std::string ContactSummary::link_lines(const haptics::HapticProgram& program) const {
-  std::string text = program.links.empty() ? "the chain is empty: there is nothing to feel\n" : "";
+  std::string text = program.links.empty() ? "the chain is empty: there are no forces\n" : "";
   for (std::size_t i = 0; i < program.links.size(); ++i)
     text += sanitize_for_terminal(program.links[i].name) + ": " + describe_link(contacts_[i], program.links[i], program) + "\n";
   return text;
@@ -81,7 +81,7 @@ std::string ContactSummary::report(const haptics::HapticProgram& program, const 
   std::string text = fmt::format("{} ticks, {:.3f} us each (p99 {:.3f} us), force up to {:.3g} N, {:.3g} N on average\n", stats.ticks,
                                  1e-3 * stats.tick_ns_p50, 1e-3 * stats.tick_ns_p99, max_force_n_,
                                  stats.ticks > 0 ? force_sum_n_ / static_cast<double>(stats.ticks) : 0.0);
-  if (program.links.empty()) text += "  the chain is empty: there is nothing to feel\n";
+  if (program.links.empty()) text += "  the chain is empty: there are no forces\n";
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     const LinkContact& touch = contacts_[i];
     text += fmt::format("  {}: {}. Gap {:.4g} units; ticks", sanitize_for_terminal(program.links[i].name),

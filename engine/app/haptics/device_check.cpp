@@ -16,14 +16,14 @@ using haptics::DeviceInput;
 using haptics::DeviceStatus;
 
 constexpr double kRise_s = 0.2, kRest_s = 0.2, kPause_s = 0.1;
-constexpr std::uint64_t kTicksATell = 50;
+constexpr std::uint64_t kTicksPerPrompt = 50;
 constexpr double kResting_s = 0.5, kResting_m = 0.002;
-constexpr double kAgainst_m = 5e-4;  // motion against the push from which axes or signs count as wrong
+constexpr double kAgainst_m = 5e-4;  // motion against the force from which axes or signs count as wrong
 
 class Check {
  public:
-  Check(haptics::Device& device, const DeviceCheckOptions& options, const TickSchedule& pace)
-      : device_(device), options_(options), pace_(pace) {}
+  Check(haptics::Device& device, const DeviceCheckOptions& options, const TickSchedule& schedule)
+      : device_(device), options_(options), pace_(schedule) {}
 
   DeviceCheckResult run() {
     if (wait_until_ready() && watch() && options_.forces && settle()) push_all();
@@ -38,10 +38,10 @@ class Check {
     input = device_.read();
     const bool good = input.status == DeviceStatus::ready && is_finite(input.position_m) && is_finite(input.orientation);
     device_.write({good ? force_n : Vec3(0.0), Vec3(0.0)});
-    if (options_.stop != nullptr && options_.stop->load()) return fail("stopped by hand");
+    if (options_.stop != nullptr && options_.stop->load()) return fail("stopped by the user");
     if (input.status == DeviceStatus::lost)
-      return fail(fmt::format("the device was lost after {:.2f} s; is it plugged in and powered?", now_s_));
-    if (input.status == DeviceStatus::ready && !good) return fail(fmt::format("the pose is not a number after {:.2f} s", now_s_));
+      return fail(fmt::format("the device was lost after {:.2f} s; check the cable and the power supply", now_s_));
+    if (input.status == DeviceStatus::ready && !good) return fail(fmt::format("the pose is not finite after {:.2f} s", now_s_));
     return true;
   }
   bool fail(const std::string& why) {
@@ -54,7 +54,7 @@ class Check {
     DeviceInput input;
     do {
       if (!step(Vec3(0.0), input)) return false;
-      if (input.status != DeviceStatus::ready) tell();
+      if (input.status != DeviceStatus::ready) report_change();
       if (now_s_ > options_.ready_timeout_s)
         return fail(fmt::format("the device is not ready after {:.0f} s; move its grip through the workspace to home it",
                                 options_.ready_timeout_s));
@@ -98,7 +98,7 @@ class Check {
 
   /// Waits until the device outputs forces (a Falcon requires its grip to be pulled out once more) and the grip is at rest.
   bool settle() {
-    if (!(device_.capabilities().max_force_n > 0)) return fail("the device has no force output; it was expected with --forces");
+    if (!(device_.capabilities().max_force_n > 0)) return fail("the device has no force output; --forces needs a device with forces");
     const double start = now_s_;
     double since = now_s_;
     bool asked = false;
@@ -112,27 +112,29 @@ class Check {
         rest = input.position_m;
       }
       if (now_s_ - since >= kResting_s) return true;
-      if (!input.forces_on) tell();
+      if (!input.forces_on) report_change();
       if (now_s_ - start > options_.ready_timeout_s)
-        return fail(input.forces_on ? fmt::format("the grip did not rest for {:.1f} s; hold it where it is", kResting_s)
-                                    : fmt::format("the device lets no force through after {:.0f} s; {}", options_.ready_timeout_s,
-                                                  device_.status_text().empty() ? "are its forces switched off?" : device_.status_text()));
+        return fail(input.forces_on
+                        ? fmt::format("the grip did not rest for {:.1f} s; hold the grip still", kResting_s)
+                        : fmt::format("the device has not enabled its forces after {:.0f} s; {}", options_.ready_timeout_s,
+                                      device_.status_text().empty() ? "its forces may be switched off" : device_.status_text()));
       if (input.forces_on && now_s_ - start > 2 * kResting_s && !std::exchange(asked, true) && options_.prompt)
-        options_.prompt("hold the grip still, away from the ends of its reach");
+        options_.prompt("hold the grip still, away from the limits of the workspace");
     }
   }
 
-  /// Prompts with the device's request to the user when it changes. It creates a string, and therefore runs only every kTicksATell ticks.
-  void tell() {
-    if (!options_.prompt || tick_ % kTicksATell != 0) return;
+  /// Prompts with the device's request to the user when it changes. It creates a string, and therefore runs only every kTicksPerPrompt
+  /// ticks.
+  void report_change() {
+    if (!options_.prompt || tick_ % kTicksPerPrompt != 0) return;
     const std::string text = device_.status_text();
-    if (!text.empty() && text != told_) options_.prompt(text);
-    told_ = text;
+    if (!text.empty() && text != last_prompt_) options_.prompt(text);
+    last_prompt_ = text;
   }
 
   void push_all() {
-    const double most = device_.capabilities().max_force_n;
-    const double size = std::min(options_.push_n, most);
+    const double maximum = device_.capabilities().max_force_n;
+    const double size = std::min(options_.push_n, maximum);
     for (int axis = 0; axis < 3; ++axis)
       for (const double sign : {1.0, -1.0}) {
         Vec3 force(0.0);
@@ -151,16 +153,16 @@ class Check {
     for (int k = 1; k <= all; ++k) {
       const double share = std::clamp(std::min(double(k), double(2 * rise + rest - k)) / rise, 0.0, 1.0);
       if (!step(full_n * share, input)) return false;
-      if (input.status != DeviceStatus::ready) return fail("the device was no longer ready during a push");
+      if (input.status != DeviceStatus::ready) return fail("the device was no longer ready during a test force");
       const Vec3 moved = input.position_m - start;
       if (k == rise + rest) done.displacement_m = moved;
       if (norm(moved) > options_.max_travel_m)
-        return fail(fmt::format("the hand moved {:.1f} mm under a push of {:.2f} N along {}; hold the grip where it is", 1e3 * norm(moved),
+        return fail(fmt::format("the hand moved {:.1f} mm under a force of {:.2f} N along {}; hold the grip still", 1e3 * norm(moved),
                                 norm(full_n * share), axis_word(full_n)));
     }
     out_.pushes.push_back(done);
     if (dot(done.displacement_m, direction(full_n)) < -kAgainst_m)
-      return fail(fmt::format("the hand moved {:.2f} mm against a push along {}: axes or signs are wrong",
+      return fail(fmt::format("the hand moved {:.2f} mm against a force along {}: axes or signs are wrong",
                               -1e3 * dot(done.displacement_m, direction(full_n)), axis_word(full_n)));
     return true;
   }
@@ -176,7 +178,7 @@ class Check {
   DeviceCheckResult out_;
   std::uint64_t tick_ = 0;
   double now_s_ = 0;
-  std::string told_;
+  std::string last_prompt_;
 };
 
 }  // namespace
@@ -196,8 +198,8 @@ TickSchedule make_immediate_schedule(double rate_hz) {
   return [rate_hz](std::uint64_t k) { return static_cast<double>(k) / rate_hz; };
 }
 
-DeviceCheckResult check_device(haptics::Device& device, const DeviceCheckOptions& options, const TickSchedule& pace) {
-  return Check(device, options, pace).run();
+DeviceCheckResult check_device(haptics::Device& device, const DeviceCheckOptions& options, const TickSchedule& schedule) {
+  return Check(device, options, schedule).run();
 }
 
 }  // namespace catena::app

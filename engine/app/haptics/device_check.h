@@ -57,6 +57,6 @@ struct DeviceCheckResult {
 };
 
 /// Runs the check on an open device.
-DeviceCheckResult check_device(haptics::Device& device, const DeviceCheckOptions& options, const TickSchedule& pace);
+DeviceCheckResult check_device(haptics::Device& device, const DeviceCheckOptions& options, const TickSchedule& schedule);
 
 }  // namespace catena::app

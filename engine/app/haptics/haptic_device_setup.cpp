@@ -53,13 +53,13 @@ Result<HapticDeviceSetup> open_haptic_device(const scene::Scene& scene, const st
   const std::string wanted = name.empty() ? hand.settings.type : name, type = haptics::parse_device_type(wanted);
   if (type != hand.settings.type) {
     if (scene.device && haptics::is_device_type(type))
-      hand.note = fmt::format("the scene's \"device\" describes a {}: not used for {}", hand.settings.type, wanted);
+      hand.note = fmt::format("the scene's \"device\" describes a device of type {}; it is not used for {}", hand.settings.type, wanted);
     hand.settings = {};
     hand.settings.type = type;
   }
   if (rate_hz) hand.settings.rate_hz = *rate_hz;
   if (!firmware.empty()) hand.settings.firmware = firmware;
-  hand.settings.report_progress = [](const std::string& news) { print_message(news); };
+  hand.settings.report_progress = [](const std::string& message) { print_message(message); };
   CATENA_TRY(hand.device, haptics::open_device(wanted, hand.settings));
   hand.limits = haptics::compute_device_limits(hand.device->capabilities(), hand.settings);
   return hand;

@@ -43,31 +43,31 @@ std::string replay_stats_json(const haptics::ReplayStats& s, const std::string& 
 std::string describe_scales(const std::vector<double>& metres_per_unit, bool recorded) {
   std::string scales;
   for (const double scale : metres_per_unit) scales += (scales.empty() ? "" : ", then ") + to_text(scale);
-  return fmt::format("the scene states no workspace: 1 world unit is {} m of the hand{}\n", scales, recorded ? ", as recorded" : "");
+  return fmt::format("the scene states no workspace: 1 world unit is {} m of the device{}\n", scales, recorded ? ", as recorded" : "");
 }
 
 namespace {
 
-// Prints "12 ticks, all equal to the bit", or throws MachineFailure with the first difference or the gap that ended the replay.
+// Prints "12 ticks, all bit-identical", or throws MachineFailure with the first difference or the gap that ended the replay.
 Outcome verdict(const ReplayOptions& options, const log::LogReader& reader, const log::LogReplay& result) {
   const std::string& by = reader.header().catena_version;
   if (result.differing > 0)
     throw MachineFailure{fmt::format("{}: first differs at tick {}: {} ({} of {} ticks differ{})", options.log, result.first_differing,
                                      result.difference, result.differing, result.stats.ticks,
                                      by == kVersion ? "" : "; recorded by catena " + by + ", and this is " + kVersion)};
-  fmt::print("{}: {} ticks, all equal to the bit; {}\n", sanitize_for_terminal(options.log), result.stats.ticks,
-             result.stop_reason.empty() ? sanitize_for_terminal(reader.end_summary()) : "then the recording has a hole");
+  fmt::print("{}: {} ticks, all bit-identical; {}\n", sanitize_for_terminal(options.log), result.stats.ticks,
+             result.stop_reason.empty() ? sanitize_for_terminal(reader.end_summary()) : "then the recording has a gap");
   if (!result.stop_reason.empty())
-    throw MachineFailure{fmt::format("{}: {}; what follows cannot be run again", options.log, result.stop_reason)};
+    throw MachineFailure{fmt::format("{}: {}; the rest cannot be replayed", options.log, result.stop_reason)};
   return Done{};
 }
 
 }  // namespace
 
 Outcome replay_log_file(const ReplayOptions& options) {
-  if (!options.probe.empty()) return Error{"--probe and --log exclude each other: the recording has its own probe"};
+  if (!options.probe.empty()) return Error{"--probe and --log exclude each other: the recording contains the probe path"};
   if (options.targets.is_given())
-    return Error{"--max-proxy-error and --max-tick-us exclude --log: the recording has the settings of its links"};
+    return Error{"--max-proxy-error and --max-tick-us exclude --log: the recording contains the settings of the links"};
   CATENA_TRY(log::LogReader reader, log::LogReader::open(options.log));
   LogProgramBuilder scene(reader.header(), options.scene, options.fields);
   CATENA_TRY(const LinkColumns all_links, read_log_columns(options.log));
@@ -100,7 +100,7 @@ Outcome replay_log_file(const ReplayOptions& options) {
     if (!running) {
       CATENA_CHECK(open(widgets, options.widgets, widget_header(*built)));
     } else if (widgets && widget_header(*running) != widget_header(*built)) {
-      return Error{options.widgets + ": the recording goes on with other widgets; expected one set of columns"};
+      return Error{options.widgets + ": the widgets change within the recording; a table has one set of columns"};
     }
     running = built;
     if (!scene.has_workspace() && (scales.empty() || scales.back() != built->meters_per_unit)) scales.push_back(built->meters_per_unit);
@@ -182,10 +182,10 @@ LogProgramBuilder::LogProgramBuilder(log::LogHeader header, std::string scene_pa
   }
 }
 
-Outcome LogProgramBuilder::reload_scene(const std::optional<std::string>& own_text) {
-  if (scene_ && own_text_ == own_text) return Done{};
-  own_text_ = own_text;
-  if (!own_text && (from_file_ || !is_scene_file(scene_path_))) {
+Outcome LogProgramBuilder::reload_scene(const std::optional<std::string>& scene_text) {
+  if (scene_ && scene_text_ == scene_text) return Done{};
+  scene_text_ = scene_text;
+  if (!scene_text && (from_file_ || !is_scene_file(scene_path_))) {
     CATENA_TRY(scene_, open_scene(scene_path_, field_options_));
     // applies the recorded tuning: tuning again would depend on the cost curves and on the speed of this computer
     if (scene_->tuning.has_haptic_targets() && is_scene_file(header_.scene_path))
@@ -193,7 +193,7 @@ Outcome LogProgramBuilder::reload_scene(const std::optional<std::string>& own_te
     return Done{};
   }
   CATENA_TRY(const std::vector<scene::FieldOverride> overrides, parse_field_overrides(field_options_));
-  CATENA_TRY(scene_, scene::parse_scene(own_text ? *own_text : header_.scene_text, scene_path_, overrides));
+  CATENA_TRY(scene_, scene::parse_scene(scene_text ? *scene_text : header_.scene_text, scene_path_, overrides));
   return Done{};
 }
 
@@ -236,7 +236,7 @@ Outcome print_log_info(const std::string& path) {
   const log::LogHeader& header = reader.header();
   const auto seconds = static_cast<std::time_t>(header.started_unix_ns / 1'000'000'000);
   fmt::print("{}: recording of {}\n", sanitize_for_terminal(path),
-             header.scene_path.empty() ? "a scene without a name" : sanitize_for_terminal(header.scene_path));
+             header.scene_path.empty() ? "an unnamed scene" : sanitize_for_terminal(header.scene_path));
   if (!header.about.empty()) fmt::print("  about        {}\n", sanitize_for_terminal(header.about));
   for (const std::string& field : header.fields) fmt::print("  field        {}\n", sanitize_for_terminal(field));
   for (const log::LogPlugin& plugin : header.plugins) fmt::print("  plug-in      {}\n", plugin_label(plugin));
@@ -246,13 +246,13 @@ Outcome print_log_info(const std::string& path) {
   double first_s = 0, last_s = 0;
   for (log::LogEvent event = reader.next(); event != log::LogEvent::done; event = reader.next()) {
     if (event == log::LogEvent::gap) fmt::print("  gap          {}\n", sanitize_for_terminal(reader.gap().description()));
-    if (event == log::LogEvent::state) fmt::print("  begins       after tick {}, with the state of that moment\n", reader.state().tick);
+    if (event == log::LogEvent::state) fmt::print("  begins       after tick {}, with the state after that tick\n", reader.state().tick);
     if (event == log::LogEvent::program) {
       std::string names;
       for (const std::string& name : reader.program().link_names()) names += (names.empty() ? "" : ", ") + name;
       fmt::print("  program      from tick {}: {}{}\n", reader.program().first_tick,
                  names.empty() ? "no links" : sanitize_for_terminal(names),
-                 reader.program().is_known ? "" : " (the recording does not say what they are)");
+                 reader.program().is_known ? "" : " (their definitions are not in the recording)");
     }
     if (event != log::LogEvent::tick) continue;
     // ticks without a device have no valid time

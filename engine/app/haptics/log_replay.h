@@ -57,14 +57,14 @@ class LogProgramBuilder {
   bool has_workspace() const { return scene_ && scene_->workspace.is_explicit; }
 
  private:
-  Outcome reload_scene(const std::optional<std::string>& own_text);
+  Outcome reload_scene(const std::optional<std::string>& scene_text);
 
   haptics::log::LogHeader header_;
   std::string scene_path_;
   bool from_file_;
   std::vector<std::string> field_options_;
   std::optional<scene::Scene> scene_;
-  std::optional<std::string> own_text_;  ///< Scene text of scene_ if a program brought its own
+  std::optional<std::string> scene_text_;  ///< Scene text of scene_ if a program brought its own
 };
 
 /// Whether a path is a recording.

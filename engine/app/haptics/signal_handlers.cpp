@@ -31,7 +31,7 @@ void say(const char* words) { [[maybe_unused]] const auto written = write(STDERR
 /// Ends the program by its first signal: after kGraceS it has not reacted to the request, for example because a graphics driver hangs.
 void end_by_first_signal() {
   stop_guarded_device();
-  say("catena: asked to end, and it did not within 30 s: ended at once\n");
+  say("catena: did not end within 30 s of the request: ended at once\n");
   std::signal(first_signal, SIG_DFL);
   std::raise(first_signal);
 }
@@ -70,9 +70,9 @@ InterruptHandler::InterruptHandler() {
   for (int signal_number = SIGRTMIN; signal_number <= SIGRTMAX; ++signal_number) install(signal_number, true, 0);
 }
 
-InterruptHandler::InterruptHandler(const std::vector<int>& asking) {
+InterruptHandler::InterruptHandler(const std::vector<int>& signals) {
   forget_signals();
-  for (const int signal_number : asking) install(signal_number, false, static_cast<int>(SA_RESETHAND));
+  for (const int signal_number : signals) install(signal_number, false, static_cast<int>(SA_RESETHAND));
   install(SIGALRM, true, 0);
 }
 
@@ -116,15 +116,15 @@ static_assert(std::atomic<haptics::Device*>::is_always_lock_free, "a signal hand
 const char* line_of(int signal_number) {
   switch (signal_number) {
     case SIGSEGV:
-      return "catena: ended by SIGSEGV (a bug, or a stack that is full)";
+      return "catena: ended by SIGSEGV (a bug, or a stack overflow)";
     case SIGBUS:
-      return "catena: ended by SIGBUS (a file that was cut while it was read, or a bug)";
+      return "catena: ended by SIGBUS (a file was truncated while it was read, or a bug)";
     case SIGFPE:
       return "catena: ended by SIGFPE (a bug)";
     case SIGILL:
-      return "catena: ended by SIGILL (a bug, or another kind of processor)";
+      return "catena: ended by SIGILL (a bug, or an unsupported processor)";
     case SIGSYS:
-      return "catena: ended by SIGSYS (a system call that is not allowed here)";
+      return "catena: ended by SIGSYS (a system call that is not permitted)";
     case SIGTRAP:
       return "catena: ended by SIGTRAP";
     case SIGXCPU:
@@ -132,7 +132,7 @@ const char* line_of(int signal_number) {
     case SIGQUIT:
       return "catena: ended by SIGQUIT";
     default:
-      return assertion_was_reported() ? "" : "catena: ended by SIGABRT (a library gave up, or somebody sent it)";
+      return assertion_was_reported() ? "" : "catena: ended by SIGABRT (a library aborted, or another process sent the signal)";
   }
 }
 

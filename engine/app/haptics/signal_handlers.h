@@ -22,7 +22,7 @@ class InterruptHandler {
   /// Handles all signals above.
   InterruptHandler();
   /// Handles only the given signals, for commands that hold no device; the second time, a signal ends the process at once.
-  explicit InterruptHandler(const std::vector<int>& asking);
+  explicit InterruptHandler(const std::vector<int>& signals);
   ~InterruptHandler();  ///< Restores the previous handlers
   InterruptHandler(const InterruptHandler&) = delete;
   InterruptHandler& operator=(const InterruptHandler&) = delete;

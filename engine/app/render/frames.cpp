@@ -49,16 +49,16 @@ Result<double> Frames::draw(int frame, Outputs* outputs) {
   const auto ms = render::render_tiled(*renderer, next, settings, plan, channels,
                                        outputs != nullptr ? take : std::function<Outcome(const render::Band&)>());
   CATENA_CHECK(stopped);
-  if (interrupted || interrupt_->is_requested()) throw MachineFailure{"interrupted: nothing half-written was kept"};
+  if (interrupted || interrupt_->is_requested()) throw MachineFailure{"interrupted: no incomplete file was kept"};
   if (!ms) throw MachineFailure{ms.error().message};
   if (outputs != nullptr) CATENA_CHECK(outputs->end_frame());
   return extract_ms + ms->wall_ms;
 }
 
 Frames::Sample Frames::sample_of(const render::FramePacket& packet) const {
-  const bool whole = std::max(plan.samples_x(), plan.samples_y()) <= renderer->max_image_side() &&
-                     std::uint64_t(plan.samples_x()) * plan.samples_y() <= render::kMaxUntiledSamples;
-  if (plan.antialias == 1 && (plan.count() == 1 || whole)) return {packet};
+  const bool fits_one_image = std::max(plan.samples_x(), plan.samples_y()) <= renderer->max_image_side() &&
+                              std::uint64_t(plan.samples_x()) * plan.samples_y() <= render::kMaxUntiledSamples;
+  if (plan.antialias == 1 && (plan.count() == 1 || fits_one_image)) return {packet};
   const render::TileArea middle = plan.area(plan.columns() / 2, plan.rows() / 2);
   return {render::make_tile_packet(packet, plan, middle),
           double(middle.render_width) * middle.render_height / (double(plan.samples_x()) * plan.samples_y())};

@@ -117,9 +117,10 @@ Result<std::unique_ptr<ImageSink>> open_image_sink(const std::string& path, cons
 Result<std::unique_ptr<ImageSink>> open_depth_sink(const std::string& path, const ImageFormat& shape) {
   CATENA_TRY(
       render::ExrWriter exr,
-      render::ExrWriter::open(
-          path,
-          {shape.width, shape.height, {"Z"}, "Z: distance along the view axis in world units, infinite where nothing opaque is seen"}));
+      render::ExrWriter::open(path, {shape.width,
+                                     shape.height,
+                                     {"Z"},
+                                     "Z: distance along the view axis in world units, infinite where no opaque surface is visible"}));
   return sink_of(std::move(exr), [](render::ExrWriter& to, const Rows& rows) { return to.write_rows(rows.depth); });
 }
 

@@ -70,7 +70,7 @@ Outcome check_kind(const std::string& path, const char* option, std::initializer
     expected += (expected.empty() ? "" : ", ") + std::string(end);
   }
   if (is_device(path)) return Done{};
-  return Error{path + ": expected a name for " + option + " that ends in " + expected};
+  return Error{path + ": a name for " + option + " that ends in " + expected + " was expected"};
 }
 
 /// Adds every file to be written, with the option that names it, to the conflict check.
@@ -90,9 +90,10 @@ Outcome check_outputs(const RenderOptions& o, const ImageFormat& shape, int fram
   if (!o.depth.empty()) CATENA_CHECK(check_kind(o.depth, "--depth", {".exr"}));
   if (!o.ids.empty()) CATENA_CHECK(check_kind(o.ids, "--ids", {".png"}));
   if (o.bits == 16 && !o.output.ends_with(".png") && !is_device(o.output))
-    return Error{"--bits 16: goes with -o FILE.png, not with " + o.output};
+    return Error{"--bits 16: applies only to -o FILE.png, not to " + o.output};
   if (video_kind(o.output)) {
-    if (frames < 2) return Error{o.output + ": a video has several frames: expected --frames N (and --orbit DEG), or --camera PATH.csv"};
+    if (frames < 2)
+      return Error{o.output + ": a video has several frames; --frames N (and --orbit DEG), or --camera PATH.csv, was expected"};
     CATENA_CHECK(check_video(o.output, {shape.width, shape.height, shape.fps, shape.alpha}));
   }
   add_outputs(o, frames, files);

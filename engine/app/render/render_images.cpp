@@ -31,11 +31,13 @@ T machine(Result<T> result) {
 /// Size of the finished image. Stereo views in one image are rendered without tiles.
 Result<ImageSize> picture_size(const RenderOptions& o, const scene::Stereo& stereo, const ImageSize& size) {
   if (render::stereo_view_count(stereo) < 2) return size;
-  const std::string mode = "with " + std::to_string(render::stereo_view_count(stereo)) + " views in one picture";
+  const std::string mode = "with " + std::to_string(render::stereo_view_count(stereo)) + " views in one image";
   if (!o.depth.empty() || !o.ids.empty())
-    return Error{(o.depth.empty() ? "--ids: " : "--depth: ") + mode + " it would be one view's; --stereo left or right was expected"};
+    return Error{(o.depth.empty() ? "--ids: " : "--depth: ") + mode +
+                 " this image would show one view only; --stereo left or right was expected"};
   if (o.antialias > 1 || o.tile > 0)
-    return Error{(o.tile > 0 ? "--tile: " : "--antialias: ") + mode + " it is drawn in one piece; --stereo left or right was expected"};
+    return Error{(o.tile > 0 ? "--tile: " : "--antialias: ") + mode +
+                 " the image is rendered in one piece; --stereo left or right was expected"};
   CATENA_CHECK(check_packed_size(stereo, size));
   const auto packed = render::packed_size(render::stereo_packing(stereo), render::stereo_view_count(stereo), size.width, size.height);
   return ImageSize{static_cast<std::uint32_t>(packed.width), static_cast<std::uint32_t>(packed.height)};
@@ -47,7 +49,7 @@ Outcome check_frames(const RenderOptions& o, const std::vector<int>& steps) {
   if (count < 2) return Done{};
   if (o.frames < count) return Error{fmt::format("--frames {}: fewer than the {} steps of --steps {}", o.frames, count, o.steps)};
   if (!takes_all_frames(o) && !o.output.starts_with("/dev/"))
-    return Error{fmt::format("{}: one picture for {} steps; %03d in its name, or a video, was expected", o.output, count)};
+    return Error{fmt::format("{}: one image for {} steps; %03d in the name, or a video, was expected", o.output, count)};
   return Done{};
 }
 
@@ -104,12 +106,12 @@ void RenderRun::say(const std::string& line) const {
 
 Outcome RenderRun::resolve() {
   CATENA_TRY(steps_, parse_steps(o_.steps));
-  if (!steps_.empty() && o_.step >= 0) return Error{"--step: goes without --steps"};
+  if (!steps_.empty() && o_.step >= 0) return Error{"--step: excludes --steps"};
   if (!steps_.empty() && o_.frames == 0) o_.frames = static_cast<int>(steps_.size());
   CATENA_CHECK(check_frames(o_, steps_));
   CATENA_TRY(size_, parse_image_size(o_.size, kMaxTiledPixels));
   if (!std::isfinite(o_.animation_phase)) return Error{"--animation-phase: expected a finite number"};
-  if (o_.play_probe && o_.probe.empty()) return Error{"--play: there is no path to go along; --probe PATH.csv was expected"};
+  if (o_.play_probe && o_.probe.empty()) return Error{"--play: there is no probe path; --probe PATH.csv was expected"};
   if (o_.play_probe) {
     CATENA_TRY(path_, read_probe_samples(o_.probe));
   }
@@ -131,7 +133,7 @@ Outcome RenderRun::resolve() {
   format_ = {output_size_.width, output_size_.height, scene_->background.transparent, o_.bits, o_.fps, {}};
   CATENA_CHECK(check_outputs(o_, format_, motion_->frames(), files));
   if (o_.targets.is_given() && o_.probe.empty())
-    return Error{"--max-proxy-error and --max-tick-us: nothing is felt here; --probe PATH.csv was expected beside them"};
+    return Error{"--max-proxy-error and --max-tick-us: there is no probe path; --probe PATH.csv was expected"};
   stats_.load_ms = ms_since(load_start);
   return Done{};
 }
@@ -154,7 +156,8 @@ Outcome RenderRun::prepare() {
   if (is_scene_file(o_.source)) print_scene_notes(*scene_);
   if (const Outcome drawable = render::check_ray_items(first_); !drawable) return Error{o_.source + ": " + drawable.error().message};
   if (!o_.ids.empty() && first_.objects.size() > 65535)
-    return Error{o_.ids + ": the scene has " + std::to_string(first_.objects.size()) + " objects; 16 bits hold 65535"};
+    return Error{o_.ids + ": the scene has " + std::to_string(first_.objects.size()) +
+                 " objects; at most 65535 were expected, which 16 bits can number"};
   if (quality_name_ == "balanced" && render::uses_raycast(first_)) quality_.goal = {render::QualityGoal::Kind::error, kBalancedError};
   stats_.load_ms += ms_since(load_start);
   stats_.cpu_bytes = loaded_data_bytes(*scene_);
@@ -183,7 +186,7 @@ bool RenderRun::choose_settings(bool single_image) {
   const std::int64_t start = now_ns();
   render::QualityChoice choice;
   {
-    ProgressLine progress("choosing how to draw", 1);
+    ProgressLine progress("choosing the quality", 1);
     choice = machine(render::choose_quality(*frames_->renderer, sample.packet, goal, [&progress](double done) { progress.update(done); }));
   }
   stats_.settings_search_ms += ms_since(start);
@@ -191,19 +194,19 @@ bool RenderRun::choose_settings(bool single_image) {
   stats_.estimated_rmse = choice.estimated_rmse;
   say(fmt::format("quality {}{}: {}, error about {:.2f}/255{}", quality_name_, single_image ? "" : " of the sequence",
                   describe(frames_->settings), choice.estimated_rmse,
-                  choice.goal_reached ? "" : " (nothing reached the goal: the nearest was taken)"));
+                  choice.goal_reached ? "" : " (no settings reach the goal: the nearest are used)"));
   return choice.is_empty;
 }
 
 Outcome RenderRun::draw() {
   if (quality_.goal && choose_settings(true))
-    print_message("note: nothing of the scene is in the picture: it is transparent where the camera looks, or the camera looks elsewhere");
+    print_message("note: the image shows nothing of the scene: the scene is transparent there, or is outside the view");
   if (quality_name_ == "reference") {
     stats_.estimated_rmse = machine(render::half_step_difference(*frames_->renderer, frames_->sample_of(first_).packet, frames_->settings));
     if (*stats_.estimated_rmse > kConverged)
       print_message(
-          fmt::format("note: reference has not converged here: half its step changes the picture by {:.2g}/255, since opacity "
-                      "rises within a step. --quality step=0.02 is nearer to the truth",
+          fmt::format("note: reference has not converged: half the step changes the image by {:.2g}/255, because the opacity "
+                      "changes within a step; --quality step=0.02 is more accurate",
                       *stats_.estimated_rmse));
   }
   stats_.quality_mode = quality_.goal ? quality_name_ + ": " + describe(frames_->settings) : quality_name_;

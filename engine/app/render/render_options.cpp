@@ -18,22 +18,23 @@ Result<render::CameraPath> read_head_path(const std::string& path) {
   return render::CameraPath(std::move(keys));
 }
 
-Result<CameraMotion> CameraMotion::make(const RenderOptions& o, double hand_s) {
+Result<CameraMotion> CameraMotion::make(const RenderOptions& o, double probe_path_s) {
   CameraMotion motion;
   if (!std::isfinite(o.orbit_deg)) return Error{"--orbit: expected a finite angle in degrees"};
   if (!(std::fabs(o.elevation_deg) <= 90)) return Error{"--elevation: expected an angle from -90 to 90 degrees"};
   if (!(o.zoom >= 1e-3 && o.zoom <= 1e6)) return Error{"--zoom: expected a factor from 0.001 to 1000000"};
   if (!o.view.empty()) {
     motion.camera_direction_ = render::axis_direction(o.view);
-    if (!motion.camera_direction_) return Error{"--view " + o.view + ": expected +x, -x, +y, -y, +z, -z (the way the camera looks) or iso"};
+    if (!motion.camera_direction_)
+      return Error{"--view " + o.view + ": +x, -x, +y, -y, +z, -z (the viewing direction) or iso was expected"};
   }
   if (!o.camera.empty()) {
-    if (motion.camera_direction_ || o.fit) return Error{"--camera " + o.camera + ": goes without --view and --fit"};
-    if (!o.head_path.empty()) return Error{"--head " + o.head_path + ": goes without --camera"};
+    if (motion.camera_direction_ || o.fit) return Error{"--camera " + o.camera + ": excludes --view and --fit"};
+    if (!o.head_path.empty()) return Error{"--head " + o.head_path + ": excludes --camera"};
     CATENA_TRY(motion.path_, render::read_camera_path(o.camera));
   }
   if (!o.head_path.empty()) {
-    if (o.stereo.screen.empty()) return Error{"--head " + o.head_path + ": expected --screen, before which the head is"};
+    if (o.stereo.screen.empty()) return Error{"--head " + o.head_path + ": a display screen was expected (--screen)"};
     CATENA_TRY(motion.head_, read_head_path(o.head_path));
   }
   motion.fit_ = o.fit;
@@ -41,12 +42,12 @@ Result<CameraMotion> CameraMotion::make(const RenderOptions& o, double hand_s) {
   motion.elevation_deg_ = o.elevation_deg;
   motion.zoom_ = o.zoom;
   const auto duration_s = [](const std::optional<render::CameraPath>& path) { return path ? path->duration_s() : 0.0; };
-  const double by_path = std::max({duration_s(motion.path_), duration_s(motion.head_), hand_s}) * o.fps + 1;
+  const double by_path = std::max({duration_s(motion.path_), duration_s(motion.head_), probe_path_s}) * o.fps + 1;
   if (o.frames == 0 && by_path > kMaxFrames)
     return Error{(!o.camera.empty()      ? o.camera
                   : !o.head_path.empty() ? o.head_path
                                          : o.probe) +
-                 ": at " + std::to_string(o.fps) + " frames a second there are more than 100000: expected --frames N"};
+                 ": at " + std::to_string(o.fps) + " frames per second there are more than 100000 frames; --frames N was expected"};
   motion.frames_ = o.frames > 0 ? o.frames : std::max(1, static_cast<int>(std::lround(by_path)));
   return motion;
 }
@@ -77,15 +78,15 @@ Result<std::vector<int>> parse_steps(const std::string& words) {
   std::stringstream parts(words);
   for (std::string part; std::getline(parts, part, ':');) {
     const auto number = parse_double(part);
-    constexpr double kMost = 1e6;
-    if (!number || *number != std::floor(*number) || std::fabs(*number) > kMost) numbers.clear();
+    constexpr double kMaximum = 1e6;
+    if (!number || *number != std::floor(*number) || std::fabs(*number) > kMaximum) numbers.clear();
     if (!number) break;
     numbers.push_back(*number);
   }
   const double stride = numbers.size() == 3 ? numbers[2] : 1;
   if (numbers.size() < 2 || numbers.size() > 3 || numbers[0] < 0 || numbers[1] < numbers[0] || stride < 1 ||
       (numbers[1] - numbers[0]) / stride >= kMaxFrames)
-    return Error{"--steps " + words + ": expected FIRST:LAST or FIRST:LAST:STRIDE, whole numbers from 0 on"};
+    return Error{"--steps " + words + ": FIRST:LAST or FIRST:LAST:STRIDE was expected, whole numbers from 0"};
   for (double step = numbers[0]; step <= numbers[1]; step += stride) steps.push_back(static_cast<int>(step));
   return steps;
 }

@@ -54,8 +54,8 @@ Result<render::CameraPath> read_head_path(const std::string& path);
 /// of the scene, at the position of a tracked head.
 class CameraMotion {
  public:
-  /// Checks the camera options and reads the camera path. `hand_s`: duration of the probe path if it is played, else 0.
-  static Result<CameraMotion> make(const RenderOptions& options, double hand_s);
+  /// Checks the camera options and reads the camera path. `probe_path_s`: duration of the probe path if it is played, else 0.
+  static Result<CameraMotion> make(const RenderOptions& options, double probe_path_s);
   /// Number of frames: --frames, or the longest duration of --camera, --head and the played probe path at --fps, or 1.
   int frames() const { return frames_; }
   /// View of a frame, 0 to frames() - 1. `base`: the scene's view; `bounds`: of everything that is rendered; `aspect`: width / height.

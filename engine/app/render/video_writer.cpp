@@ -80,11 +80,11 @@ bool supports_alpha(const std::string& path) { return path.ends_with(".webm"); }
 Outcome check_video(const std::string& path, const VideoFormat& format) {
   if (!find_ffmpeg())
     return Error{path +
-                 ": a video needs the program ffmpeg, which is not on PATH: install it (apt-get install ffmpeg), or number pictures "
+                 ": a video needs the program ffmpeg, which is not on PATH; install it (apt-get install ffmpeg), or write numbered images "
                  "(-o x_%03d.png)"};
   const Kind kind = kind_of(*video_kind(path), format.alpha);
   if (kind.even && (format.width % 2 != 0 || format.height % 2 != 0))
-    return Error{fmt::format("{}: an .mp4 needs an even width and height: expected --size {}x{} instead of {}x{}", path,
+    return Error{fmt::format("{}: an .mp4 needs an even width and height; --size {}x{} was expected instead of {}x{}", path,
                              format.width + format.width % 2, format.height + format.height % 2, format.width, format.height)};
   return Done{};
 }

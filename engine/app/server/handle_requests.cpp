@@ -7,10 +7,10 @@
 
 namespace catena::app {
 
-void ServeSession::handle(const MoveRequest& wish) {
-  input_number_ = wish.number;
+void ServeSession::handle(const MoveRequest& request) {
+  input_number_ = request.number;
   NavigationChanges changed;
-  for (Input piece : wish.inputs) {
+  for (Input piece : request.inputs) {
     piece.width = width_;
     piece.height = height_;
     pointer_x_ = (piece.x + piece.dx) / width_;
@@ -32,10 +32,10 @@ void ServeSession::handle(const MoveRequest& wish) {
   has_changed_ = true;
 }
 
-void ServeSession::handle(const SizeRequest& wish) {
-  has_changed_ = has_changed_ || width_ != wish.width || height_ != wish.height;
-  width_ = wish.width;
-  height_ = wish.height;
+void ServeSession::handle(const SizeRequest& request) {
+  has_changed_ = has_changed_ || width_ != request.width || height_ != request.height;
+  width_ = request.width;
+  height_ = request.height;
 }
 
 void ServeSession::handle(Action action) {
@@ -83,10 +83,10 @@ void ServeSession::apply_edits(const TextEdits& edits, const std::string& what, 
   scene_sent_ = false;
 }
 
-void ServeSession::handle(const LevelRequest& wish) {
-  const auto surface = find_item<scene::Isosurface>(scene_.scene(), wish.item);
+void ServeSession::handle(const LevelRequest& request) {
+  const auto surface = find_item<scene::Isosurface>(scene_.scene(), request.item);
   if (!surface || item_pointer(surface->where).empty()) return send_note("there is no such isosurface");
-  apply_edits(make_level_edits(scene_.scene(), *surface, wish.value), "isolevel", wish.item);
+  apply_edits(make_level_edits(scene_.scene(), *surface, request.value), "isolevel", request.item);
 }
 
 namespace {
@@ -104,39 +104,41 @@ std::optional<std::pair<scene::Volume, TransferEdit>> volume_of(const scene::Sce
 
 }  // namespace
 
-void ServeSession::handle(const OpacityRequest& wish) {
-  auto found = volume_of(scene_.scene(), wish.item);
+void ServeSession::handle(const OpacityRequest& request) {
+  auto found = volume_of(scene_.scene(), request.item);
   if (!found) return send_note("there is no such volume");
-  found->second.opacities = wish.points;
-  apply_edits(make_opacity_edits(found->first, found->second), "opacity", wish.item);
+  found->second.opacities = request.points;
+  apply_edits(make_opacity_edits(found->first, found->second), "opacity", request.item);
 }
 
-void ServeSession::handle(const ColormapRequest& wish) {
-  const auto found = volume_of(scene_.scene(), wish.item);
+void ServeSession::handle(const ColormapRequest& request) {
+  const auto found = volume_of(scene_.scene(), request.item);
   if (!found) return send_note("there is no such volume");
-  apply_edits(make_color_map_edits(found->first, found->second, wish.name), "colours", wish.item);
+  apply_edits(make_color_map_edits(found->first, found->second, request.name), "colours", request.item);
 }
 
-void ServeSession::handle(const StepRequest& wish) { send_note_on_error(playback_.show(scene_, wish.step)); }
+void ServeSession::handle(const StepRequest& request) { send_note_on_error(playback_.show(scene_, request.step)); }
 
 /// During a recording its file is not offered for download, since it is incomplete.
-void ServeSession::handle(const RecordRequest& wish) {
-  if (!wish.on) return end_recording();
+void ServeSession::handle(const RecordRequest& request) {
+  if (!request.on) return end_recording();
   send_note_on_error(recording_.begin(scene_, haptics_));
   server_.offer_file(recording_.name(), recording_.path());
 }
 
 void ServeSession::end_recording() {
   if (recording_.must_end(haptics_))
-    send_note("the recording has ended: " + std::string(haptics_.recording().has_failed() ? "writing has failed" : "it is full"));
+    send_note("the recording has ended: " +
+              std::string(haptics_.recording().has_failed() ? "the file cannot be written" : "the maximum size is reached"));
   send_note_on_error(recording_.end(haptics_));
   server_.offer_file(recording_.name(), recording_.path());
 }
 
-void ServeSession::handle(const TuningRequest& wish) {
-  if (wish.position) {
-    if (!tuning_.image_tuning && !tuning_.tick_tuning) return send_note("the costs are not measured yet; \"tune\" without \"position\" was expected first");
-    return send_note_on_error(scene_.apply(tuning_.edits_at(*wish.position), "accuracy"));
+void ServeSession::handle(const TuningRequest& request) {
+  if (request.position) {
+    if (!tuning_.image_tuning && !tuning_.tick_tuning)
+      return send_note("the costs are not measured; \"tune\" without \"position\" was expected first");
+    return send_note_on_error(scene_.apply(tuning_.edits_at(*request.position), "accuracy"));
   }
   set_default_target(tuning_);
   send_note_on_error(measure_tick_costs(tuning_, scene_, haptics_, [this](const std::string& line) { send_note(line); }));

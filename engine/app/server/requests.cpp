@@ -33,7 +33,8 @@ Result<Input> piece_of(const std::vector<double>& row) {
   for (const double number : row)
     if (!(std::abs(number) <= kFarthest)) return Error{"pieces: a number is out of range"};
   const int held = static_cast<int>(row[5]);
-  if (held < 0 || held > 63 || held != row[5]) return Error{"pieces: what is held is a sum of 1 to 32"};
+  if (held < 0 || held > 63 || held != row[5])
+    return Error{"pieces: expected a sum of 1, 2, 4, 8, 16 and 32 for the buttons and keys held"};
   Input piece;
   piece.x = row[0], piece.y = row[1], piece.dx = row[2], piece.dy = row[3], piece.wheel = row[4];
   piece.left = held & 1, piece.middle = held & 2, piece.right = held & 4;
@@ -41,31 +42,31 @@ Result<Input> piece_of(const std::vector<double>& row) {
   return piece;
 }
 
-Result<std::vector<std::vector<double>>> rows_of(const json::Node& node, std::string_view key, std::size_t width, std::size_t most) {
+Result<std::vector<std::vector<double>>> rows_of(const json::Node& node, std::string_view key, std::size_t width, std::size_t maximum) {
   const json::Node* list = node.find(key);
-  if (list == nullptr || list->kind != json::Kind::array || list->items.empty() || list->items.size() > most)
-    return Error{std::string(key) + ": expected 1 to " + std::to_string(most) + " rows of numbers"};
+  if (list == nullptr || list->kind != json::Kind::array || list->items.empty() || list->items.size() > maximum)
+    return Error{std::string(key) + ": expected 1 to " + std::to_string(maximum) + " rows of numbers"};
   return json::as_rows(*list, key, width);
 }
 
 Result<ClientRequest> move_of(const json::Node& node) {
-  MoveRequest wish;
+  MoveRequest request;
   CATENA_TRY(const int number, json::get_integer(node, "number", 0, 0, 2'000'000'000));
-  wish.number = static_cast<std::uint32_t>(number);
+  request.number = static_cast<std::uint32_t>(number);
   CATENA_TRY(const auto rows, rows_of(node, "pieces", 6, kMaxInputs));
   for (const std::vector<double>& row : rows) {
     CATENA_TRY(Input piece, piece_of(row));
-    wish.inputs.push_back(std::move(piece));
+    request.inputs.push_back(std::move(piece));
   }
-  return ClientRequest{std::move(wish)};
+  return ClientRequest{std::move(request)};
 }
 
 Result<ClientRequest> opacity_of(const json::Node& node) {
-  OpacityRequest wish;
-  CATENA_TRY(wish.item, json::require_string(node, "item"));
+  OpacityRequest request;
+  CATENA_TRY(request.item, json::require_string(node, "item"));
   CATENA_TRY(const auto rows, rows_of(node, "points", 2, kMaxOpacityPoints));
-  for (const std::vector<double>& row : rows) wish.points.push_back({row[0], std::clamp(row[1], 0.0, kMaxAlpha)});
-  return ClientRequest{std::move(wish)};
+  for (const std::vector<double>& row : rows) request.points.push_back({row[0], std::clamp(row[1], 0.0, kMaxAlpha)});
+  return ClientRequest{std::move(request)};
 }
 
 }  // namespace
@@ -82,7 +83,7 @@ Result<ClientRequest> parse_request(std::string_view words) {
   if (what == "stop_recording") return ClientRequest{RecordRequest{false}};
   if (what == "step") {
     CATENA_TRY(const int step, json::get_integer(node, "value", -1, 0, 1'000'000'000));
-    if (step < 0) return Error{"step: expected a value"};
+    if (step < 0) return Error{"step: expected a number of at least 0"};
     return ClientRequest{StepRequest{step}};
   }
   if (what == "tune") {
@@ -100,18 +101,18 @@ Result<ClientRequest> parse_request(std::string_view words) {
     return ClientRequest{SizeRequest{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)}};
   }
   if (what == "level") {
-    LevelRequest wish;
-    CATENA_TRY(wish.item, json::require_string(node, "item"));
-    CATENA_TRY(wish.value, json::require_number(node, "value"));
-    return ClientRequest{std::move(wish)};
+    LevelRequest request;
+    CATENA_TRY(request.item, json::require_string(node, "item"));
+    CATENA_TRY(request.value, json::require_number(node, "value"));
+    return ClientRequest{std::move(request)};
   }
   if (what == "map") {
-    ColormapRequest wish;
-    CATENA_TRY(wish.item, json::require_string(node, "item"));
-    CATENA_TRY(wish.name, json::require_string(node, "name"));
-    return ClientRequest{std::move(wish)};
+    ColormapRequest request;
+    CATENA_TRY(request.item, json::require_string(node, "item"));
+    CATENA_TRY(request.name, json::require_string(node, "name"));
+    return ClientRequest{std::move(request)};
   }
-  return Error{"a page cannot ask for that"};
+  return Error{"unknown request"};
 }
 
 }  // namespace catena::app

@@ -21,7 +21,7 @@ constexpr const char* kServePage =
 /// Prints a warning if the server is reachable from other machines: nothing is encrypted.
 void tell_exposure(const http::ServerOptions& server) {
   if (server.address == "127.0.0.1" || server.address == "::1") return;
-  print_message("others can reach " + server.address + ", and what goes there is not encrypted: `ssh -L` is safer (docs/user/browser.md)");
+  print_message("other machines can connect to " + server.address + " without encryption: `ssh -L` is safer (docs/user/browser.md)");
 }
 
 }  // namespace

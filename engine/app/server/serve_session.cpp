@@ -70,7 +70,8 @@ Outcome ServeSession::run() {
   start_ns_ = now_ns();
   bool busy = true;
   while (is_running()) {
-    for (const http::ViewerEvent& news : server_.wait_for_events(viewers_.empty() ? kNobodyWaitS : busy ? 0 : kLookWaitS)) on_message(news);
+    for (const http::ViewerEvent& event : server_.wait_for_events(viewers_.empty() ? kNobodyWaitS : busy ? 0 : kLookWaitS))
+      on_message(event);
     for (const WidgetEdits::FinishedMove& ended : widget_edits_.take_finished(scene_.scene()))
       send_note_on_error(scene_.apply(ended.edits, ended.undo_label));
     if (const auto more = step_follower_.poll(scene_, playback_); !more) send_note(more.error().message);
@@ -91,20 +92,20 @@ Outcome ServeSession::run() {
     send_state();
   }
   CATENA_CHECK(recording_.end(haptics_));
-  const HapticState& felt = haptics_.latest_state();
-  fmt::print("{} pictures for at most {} page{} at a time, {:.1f} ms median, on {}\n", frame_times_.count(), max_viewers_,
+  const HapticState& haptic_state = haptics_.latest_state();
+  fmt::print("{} images for at most {} page{} at a time, {:.1f} ms median, on {}\n", frame_times_.count(), max_viewers_,
              max_viewers_ == 1 ? "" : "s", 1e-3 * frame_times_.draw_times().p50_us,
              sanitize_for_terminal(encoder_.renderer().stats().device));
-  fmt::print("probe {:.6g} {:.6g} {:.6g}, force {:.3g} N, {} ticks, {} deadlines missed\n", felt.probe.x, felt.probe.y, felt.probe.z,
-             norm(felt.force_n), felt.tick, felt.missed_deadlines);
+  fmt::print("probe {:.6g} {:.6g} {:.6g}, force {:.3g} N, {} ticks, {} deadlines missed\n", haptic_state.probe.x, haptic_state.probe.y,
+             haptic_state.probe.z, norm(haptic_state.force_n), haptic_state.tick, haptic_state.missed_deadlines);
   return Done{};
 }
 
 // ---- frames ----
 
 Outcome ServeSession::show_next_frame() {
-  const bool moved = std::exchange(has_changed_, false), hand_moved = std::exchange(probe_moved_, false);
-  if (const auto next = frame_builder_.next_frame(moved, hand_moved, width_, height_)) {
+  const bool moved = std::exchange(has_changed_, false), probe_moved = std::exchange(probe_moved_, false);
+  if (const auto next = frame_builder_.next_frame(moved, probe_moved, width_, height_)) {
     if (const Outcome drawn = encoder_.draw(frame_builder_, scheduler_, frame_times_, *next, width_, height_); !drawn) {
       if (drawn.error().system_failure) return drawn;
       send_note(drawn.error().message);  // an error caused by an edit: the last image stays
@@ -129,20 +130,20 @@ Outcome ServeSession::send_frame(bool exact) {
 
 // ---- viewers ----
 
-void ServeSession::on_message(const http::ViewerEvent& news) {
-  switch (news.kind) {
+void ServeSession::on_message(const http::ViewerEvent& event) {
+  switch (event.kind) {
     case http::ViewerEvent::Kind::connected:
-      return on_connect(news.viewer);
+      return on_connect(event.viewer);
     case http::ViewerEvent::Kind::disconnected:
-      return on_disconnect(news.viewer);
+      return on_disconnect(event.viewer);
     case http::ViewerEvent::Kind::message:
       break;
   }
-  const auto wish = parse_request(news.text);
-  if (!wish) return server_.send(news.viewer, http::Slot::note, note_message(wish.error().message));
-  const bool has_hand = news.viewer == controller_;
-  if (const auto* about = std::get_if<ControlRequest>(&*wish)) {
-    if (*about == ControlRequest::take && controller_ == 0) give_control_to(news.viewer);
+  const auto request = parse_request(event.text);
+  if (!request) return server_.send(event.viewer, http::Slot::note, note_message(request.error().message));
+  const bool has_hand = event.viewer == controller_;
+  if (const auto* about = std::get_if<ControlRequest>(&*request)) {
+    if (*about == ControlRequest::take && controller_ == 0) give_control_to(event.viewer);
     if (*about == ControlRequest::release && has_hand) give_control_to(0);
     return;
   }
@@ -151,7 +152,7 @@ void ServeSession::on_message(const http::ViewerEvent& news) {
       [this](const auto& asked) {
         if constexpr (!std::is_same_v<std::decay_t<decltype(asked)>, ControlRequest>) handle(asked);
       },
-      *wish);
+      *request);
 }
 
 void ServeSession::on_connect(http::ViewerId viewer) {
@@ -223,8 +224,8 @@ Outcome ServeSession::apply_stated_targets() {
 
 Outcome ServeSession::measure_image() {
   CATENA_TRY(const render::FramePacket packet, frame_builder_.make_packet(width_, height_));
-  const auto tell = [this](const std::string& line) { viewers_.empty() ? print_message(line) : send_note(line); };
-  return measure_image_costs(tuning_, scheduler_, encoder_.renderer(), packet, scene_, haptics_, tell);
+  const auto report_message = [this](const std::string& line) { viewers_.empty() ? print_message(line) : send_note(line); };
+  return measure_image_costs(tuning_, scheduler_, encoder_.renderer(), packet, scene_, haptics_, report_message);
 }
 
 }  // namespace catena::app

@@ -31,20 +31,20 @@ class ServeSession {
  private:
   bool is_running() const;
   // Pages.
-  void on_message(const http::ViewerEvent& news);
+  void on_message(const http::ViewerEvent& event);
   void on_connect(http::ViewerId viewer);
   void on_disconnect(http::ViewerId viewer);
   void give_control_to(http::ViewerId viewer);
   // Requests of the page in control.
-  void handle(const MoveRequest& wish);
-  void handle(const SizeRequest& wish);
+  void handle(const MoveRequest& request);
+  void handle(const SizeRequest& request);
   void handle(Action action);
-  void handle(const LevelRequest& wish);
-  void handle(const OpacityRequest& wish);
-  void handle(const ColormapRequest& wish);
-  void handle(const StepRequest& wish);
-  void handle(const RecordRequest& wish);
-  void handle(const TuningRequest& wish);
+  void handle(const LevelRequest& request);
+  void handle(const OpacityRequest& request);
+  void handle(const ColormapRequest& request);
+  void handle(const StepRequest& request);
+  void handle(const RecordRequest& request);
+  void handle(const TuningRequest& request);
   void end_recording();
   void start_haptics();
   void stop_haptics();

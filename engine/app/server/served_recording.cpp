@@ -44,7 +44,8 @@ Outcome ServedRecording::make_folder() {
   std::error_code error;
   const fs::path temporary = fs::temp_directory_path(error);
   std::string pattern = (temporary / kFolderPrefix).string() + "XXXXXX";
-  if (mkdtemp(pattern.data()) == nullptr) return Error{pattern + ": cannot be made: " + std::generic_category().message(errno), true};
+  if (mkdtemp(pattern.data()) == nullptr)
+    return Error{pattern + ": cannot create the folder: " + std::generic_category().message(errno), true};
   folder_ = pattern;
   if (auto lock = FolderLock::acquire(folder_)) lock_.emplace(std::move(*lock));
   if (lock_ && !FolderLock::acquire(folder_)) remove_left_behind(temporary);  // only where the file system supports locks

@@ -117,18 +117,18 @@ std::string plan_words(const LiveTuning& live) {
 }  // namespace
 
 std::string state_message(const HapticSession& hand, const SceneModel& scene, const SessionState& more) {
-  const HapticState& felt = hand.latest_state();
+  const HapticState& haptic_state = hand.latest_state();
   std::string links;
-  for (std::size_t i = 0; i < std::min(static_cast<std::size_t>(felt.link_count), hand.link_names().size()); ++i)
+  for (std::size_t i = 0; i < std::min(static_cast<std::size_t>(haptic_state.link_count), hand.link_names().size()); ++i)
     links += fmt::format(R"({}{{"name": {}, "status": "{}"}})", links.empty() ? "" : ", ", json_string(hand.link_names()[i]),
-                         to_string(felt.links[i].status));
+                         to_string(haptic_state.links[i].status));
   const scene::Document& document = scene.document();
   return fmt::format(
       R"({{"state": {{"force": {:.3f}, "max_force": {}, "links": [{}], "probe": {}, "picture": {}, "step": {}, "undo": {}, "redo": {}, )"
       R"("recording": {}, "tuning": {}}}}})",
-      norm(felt.force_n), json_number(scene.scene().coupling.max_force_n), links, more.probe_mode, json_string(more.image_description),
-      step_words(scene.scene(), more.is_playing), json_string(document.undo_label()), json_string(document.redo_label()),
-      recording_words(hand.recording(), more.recording_name), plan_words(more.tuning));
+      norm(haptic_state.force_n), json_number(scene.scene().coupling.max_force_n), links, more.probe_mode,
+      json_string(more.image_description), step_words(scene.scene(), more.is_playing), json_string(document.undo_label()),
+      json_string(document.redo_label()), recording_words(hand.recording(), more.recording_name), plan_words(more.tuning));
 }
 
 std::string note_message(const std::string& line) { return fmt::format(R"({{"note": {}}})", json_string(line)); }

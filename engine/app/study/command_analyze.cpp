@@ -35,7 +35,7 @@ Outcome analyse_folder(const AnalyseOptions& options) {
   ProgressLine progress("study analyse", 4);
   CATENA_TRY(const study::TrialTable table, study::read_trial_table(data));
   const std::vector<study::TrialRow>& rows = table.rows;
-  if (rows.empty()) return Error{one_line(data + ": there are no trials; at least one was expected")};
+  if (rows.empty()) return Error{one_line(data + ": there are no trials; at least one trial was expected")};
   progress.update(1);
   CATENA_TRY(analysis::Analysis result, analysis::analyze(study, inquiry, rows, data));
   CATENA_TRY(const std::vector<analysis::SubjectAnswers> answers, analysis::read_questionnaires(study, data, result.subjects));
@@ -57,7 +57,7 @@ Outcome analyse_folder(const AnalyseOptions& options) {
       {"answers.csv", analysis::answers_csv(study, answers)},
       {"results.json", analysis::to_json(study, inquiry, result, source, answers)}};
   if (is_path_within(options.output, data))
-    return Error{options.output + ": lies in the data folder " + data + "; another place was expected"};
+    return Error{options.output + ": is in the data folder " + data + "; another folder was expected"};
   IoConflictChecker checked;
   checked.add_input_folder(data);
   if (fs::is_directory(options.output)) {
@@ -76,10 +76,10 @@ Outcome analyse_folder(const AnalyseOptions& options) {
   CATENA_CHECK(folder.commit());
 
   const analysis::Rejections all = result.total_rejections();
-  constexpr std::size_t kMostTold = 10;
-  for (std::size_t i = 0; i < std::min(kMostTold, result.notes.size()); ++i) print_message("note: " + result.notes[i]);
-  if (result.notes.size() > kMostTold) print_message(fmt::format("note: and {} more, in the page", result.notes.size() - kMostTold));
-  fmt::print("{} subject{}, {} trials, {} left out\n", result.subjects.size(), result.subjects.size() == 1 ? "" : "s", all.trials,
+  constexpr std::size_t kMaxTold = 10;
+  for (std::size_t i = 0; i < std::min(kMaxTold, result.notes.size()); ++i) print_message("note: " + result.notes[i]);
+  if (result.notes.size() > kMaxTold) print_message(fmt::format("note: {} more notes are in the page", result.notes.size() - kMaxTold));
+  fmt::print("{} subject{}, {} trials, {} rejected\n", result.subjects.size(), result.subjects.size() == 1 ? "" : "s", all.trials,
              all.total());
   for (std::size_t i = 0; i < inquiry.findings.size(); ++i)
     fmt::print("{}: {}\n", analysis::to_string(result.findings[i].verdict), sanitize_for_terminal(inquiry.findings[i].claim));
@@ -94,8 +94,8 @@ Outcome analyse_folder(const AnalyseOptions& options) {
 
 void add_study_analyze(CLI::App& study, CommandAction& chosen) {
   auto options = std::make_shared<AnalyseOptions>();
-  CLI::App* command =
-      study.add_subcommand("analyse", "analyses the trials of a data folder: tests, intervals, plots, the paper's findings");
+  CLI::App* command = study.add_subcommand(
+      "analyse", "analyses the trials of a data folder: tests, confidence intervals, plots, and a comparison with the paper's findings");
   command->add_option("DIR", options->data, "data folder: study.json and its trials")->type_name("FOLDER")->required();
   command->add_option("-o,--output", options->output, "folder for the page, the tables and the JSON")->type_name("FOLDER")->required();
   command->callback([&chosen, options] { chosen = [options] { return analyse_folder(*options); }; });

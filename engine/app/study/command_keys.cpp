@@ -42,7 +42,7 @@ void add_study_keys(CLI::App& study, CommandAction& chosen) {
   command->add_option("PART", *part, "part whose keys are listed (default: all)")
       ->type_name("PART")
       ->check(accepted("{study,tasks,conditions,operator,questionnaire,compare,findings}"));
-  command->add_flag("--schema", *is_schema, "prints the JSON Schema of studies instead, for an editor");
+  command->add_flag("--schema", *is_schema, "prints the JSON Schema of studies for editors instead");
   command->callback([&chosen, part, is_schema] {
     chosen = [part, is_schema]() -> Outcome {
       if (!*is_schema) return print_study_keys(*part);

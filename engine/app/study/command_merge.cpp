@@ -33,7 +33,7 @@ Outcome bring_answers(const std::string& from, const std::string& to, int subjec
   CATENA_TRY(const std::string text, read_text_file(source, "a table of answers"));
   if (std::filesystem::exists(place, code)) {
     CATENA_TRY(const std::string there, read_text_file(place, "a table of answers"));
-    if (there != text) return Error{fmt::format("{}: has other answers than {}; an empty folder was expected", place, source)};
+    if (there != text) return Error{fmt::format("{}: differs from the answers in {}; an empty folder was expected", place, source)};
     return Done{};
   }
   CATENA_CHECK(study::make_folder(std::filesystem::path(place).parent_path()));
@@ -51,22 +51,23 @@ Outcome merge(const MergeOptions& options) {
   std::vector<std::string> notes;
   const bool simulated = study::is_simulated(options.folders.front());
   for (const std::string& folder : options.folders) {
-    if (is_same_file(folder, options.output)) return Error{options.output + ": is one of the folders to merge; another one was expected"};
+    if (is_same_file(folder, options.output))
+      return Error{options.output + ": is one of the folders to merge; another folder was expected"};
     if (is_path_within(options.output, folder))
-      return Error{options.output + ": lies in " + folder + ", which is merged; another place was expected"};
+      return Error{options.output + ": is in the folder " + folder + ", which is merged; another folder was expected"};
     if (study::is_simulated(folder) != simulated)
-      return Error{fmt::format("{}: {} a model did, {} people; data of one kind were expected", folder,
+      return Error{fmt::format("{}: {} has trials of a model, {} has trials of people; data of one kind was expected", folder,
                                simulated ? options.folders.front() : folder, simulated ? folder : options.folders.front())};
     CATENA_TRY(study::Study one, study::read_study((fs::path(folder) / "study.json").string()));
-    if (study && study->text != one.text) return Error{one.path + ": differs from " + study->path + "; data of one study were expected"};
+    if (study && study->text != one.text) return Error{one.path + ": differs from " + study->path + "; data of one study was expected"};
     if (!study) study.emplace(std::move(one));
     CATENA_TRY(const std::vector<int> numbers, study::list_subjects(folder, &notes));
     for (const int number : numbers) {
       CATENA_TRY(std::vector<study::TrialRow> rows, study::read_rows(folder, number, &notes));
       const auto [found, is_new] = subjects.try_emplace(number, folder, rows);
       if (!is_new && found->second.second != rows)
-        return Error{fmt::format("{}: subject {} has other trials than in {}; each subject in one folder was expected", folder, number,
-                                 found->second.first)};
+        return Error{fmt::format("{}: the trials of subject {} differ from those in {}; each subject was expected in one folder only",
+                                 folder, number, found->second.first)};
     }
   }
   CATENA_TRY(const study::DataFolder data,
@@ -75,7 +76,7 @@ Outcome merge(const MergeOptions& options) {
   for (const auto& [number, from] : subjects) {
     CATENA_TRY(const std::vector<study::TrialRow> there, data.rows(number));
     if (!there.empty() && there != from.second)
-      return Error{fmt::format("{}: subject {} is there with other trials; an empty folder was expected", options.output, number)};
+      return Error{fmt::format("{}: has different trials of subject {}; an empty folder was expected", options.output, number)};
     if (there.empty()) CATENA_CHECK(data.write_subject(number, from.second));
     CATENA_CHECK(bring_answers(from.first, options.output, number));
     trials += from.second.size();
@@ -93,9 +94,9 @@ Outcome merge(const MergeOptions& options) {
 
 void add_study_merge(CLI::App& study, CommandAction& chosen) {
   auto options = std::make_shared<MergeOptions>();
-  CLI::App* command = study.add_subcommand("merge", "joins the subjects of several data folders in one");
+  CLI::App* command = study.add_subcommand("merge", "merges the subjects of several data folders into one folder");
   command->add_option("DIR", options->folders, "data folders of one study")->type_name("FOLDER")->required();
-  command->add_option("-o,--output", options->output, "data folder to make")->type_name("FOLDER")->required();
+  command->add_option("-o,--output", options->output, "data folder to create")->type_name("FOLDER")->required();
   command->callback([&chosen, options] { chosen = [options] { return merge(*options); }; });
 }
 

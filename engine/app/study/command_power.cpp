@@ -26,21 +26,22 @@ Outcome print_power(const PowerOptions& options) {
   if (!(options.power > options.alpha && options.power <= 0.9999))
     return Error{fmt::format("--power {:g}: more than alpha and at most 0.9999 was expected", options.power)};
   CATENA_TRY(const study::Study study, study::read_study(options.study));
-  fmt::print("{}: paired, two-sided t-tests over subjects; d_z = {:g} (mean difference by the standard deviation of the differences)\n",
-             study.name, options.effect);
+  fmt::print(
+      "{}: paired, two-sided t-tests over subjects; d_z = {:g} (mean difference divided by the standard deviation of the differences)\n",
+      study.name, options.effect);
   // the tests of conditions are one family: every task and other condition, mean and deviation of error and time
   const int family = static_cast<int>(study.tasks.size()) * (static_cast<int>(study.conditions.size()) - 1) * 4;
   const auto line = [&](double alpha, const std::string& what) -> Outcome {
     CATENA_TRY(const int needed, statistics::required_subjects(size, options.power, alpha));
     fmt::print("{}: {} subjects for a power of {:g}", what, needed, options.power);
     if (study.subjects >= 2)
-      fmt::print("; the design's {} have {:.3f}", study.subjects, statistics::paired_power(size, study.subjects, alpha));
+      fmt::print("; the design's {} subjects have a power of {:.3f}", study.subjects,
+                 statistics::paired_power(size, study.subjects, alpha));
     fmt::print("\n");
     return Done{};
   };
   CATENA_CHECK(line(options.alpha, fmt::format("one test at alpha = {:g}", options.alpha)));
-  if (family > 1)
-    CATENA_CHECK(line(options.alpha / family, fmt::format("the strictest of the {} tests that Holm's method corrects together", family)));
+  if (family > 1) CATENA_CHECK(line(options.alpha / family, fmt::format("the strictest of {} tests corrected by Holm's method", family)));
   return Done{};
 }
 
@@ -48,7 +49,8 @@ Outcome print_power(const PowerOptions& options) {
 
 void add_study_power(CLI::App& study, CommandAction& chosen) {
   auto options = std::make_shared<PowerOptions>();
-  CLI::App* command = study.add_subcommand("power", "computes how many subjects a design needs to find a difference of a given size");
+  CLI::App* command =
+      study.add_subcommand("power", "computes the number of subjects that a design needs to find a difference of a given size");
   command->add_option("STUDY", options->study, "study (.json)")->type_name("STUDY")->required();
   command->add_option("--effect", options->effect, "effect size d_z: mean of the differences divided by their standard deviation")
       ->type_name("D_Z")
@@ -58,7 +60,7 @@ void add_study_power(CLI::App& study, CommandAction& chosen) {
       ->type_name("POWER")
       ->check(accepted("--alpha < P <= 0.9999"))
       ->capture_default_str();
-  command->add_option("--alpha", options->alpha, "probability of a false finding")
+  command->add_option("--alpha", options->alpha, "significance level: probability of a false finding")
       ->type_name("ALPHA")
       ->check(accepted("1e-6 to 0.5"))
       ->capture_default_str();

@@ -35,9 +35,9 @@ Result<Instructions> instructions_of(const study::Study& study) {
 /// Whether the device exerts forces must be set explicitly, never guessed: a session without forces is another experiment.
 Outcome check_forces(const StudyRunOptions& options, const haptics::DeviceCapabilities& device) {
   if (device.max_force_n > 0 && options.forces.empty())
-    return Error{"--device " + options.device + " can push: --forces on was expected, or --forces off"};
+    return Error{"--device " + options.device + " can exert forces; --forces on or --forces off was expected"};
   if (!(device.max_force_n > 0) && options.forces == "on")
-    return Error{"--forces on: " + options.device + " cannot push; a haptic device was expected"};
+    return Error{"--forces on: " + options.device + " cannot exert forces; a haptic device was expected"};
   return Done{};
 }
 
@@ -69,7 +69,7 @@ Outcome run_study(const StudyRunOptions& options) {
   Procedure procedure(study, instructions, folder.trials(), folder.finished_trials(), folder.answered_questions());
   LiveSession session(study, folder, procedure, adjust);
   CATENA_TRY(auto scene, session.next_scene());
-  print_line(fmt::format("study run: subject {}: the window opens, and the first picture is made ready", options.subject));
+  print_line(fmt::format("study run: subject {}: opening the window and preparing the first image", options.subject));
   auto window = Window::create(size.width, size.height, "catena study");
   if (!window) return Error{window.error().message, true};
   std::optional<Failure> failure;
@@ -96,22 +96,23 @@ void add_study_run(CLI::App& study, CommandAction& chosen) {
       ->type_name("SUBJECT")
       ->required()
       ->check(CLI::Range(1, study::kMaxSubject));
-  command->add_option("--device", options->device, "mouse, or a device of `catena devices`")->type_name("DEVICE")->required();
+  command->add_option("--device", options->device, "mouse, or a device that `catena devices` lists")->type_name("DEVICE")->required();
   command->add_option("-o,--output", options->folder, "data folder")->type_name("FOLDER")->required();
   command->add_option("--forces", options->forces, "whether the device may exert forces; required for a device that can")
       ->type_name("WORD")
       ->check(CLI::IsMember({"on", "off"}));
-  command->add_option("--firmware", options->firmware, "firmware image of the vendor, sent to a Falcon that has none")
+  command->add_option("--firmware", options->firmware, "firmware image of the vendor, sent to a Falcon without firmware")
       ->type_name("FIRMWARE");
   command->add_option("--size", options->size, "size of the window")
       ->type_name("WxH")
       ->check(image_size_up_to(kMaxImageSize))
       ->capture_default_str();
   command
-      ->add_option("--quality", options->quality, "target or settings of the images, as of view; error=2 is equally sharp on every machine")
+      ->add_option("--quality", options->quality,
+                   "target or settings of the images, as for view; error=2 gives the same image error on every machine")
       ->type_name("QUALITY")
       ->capture_default_str();
-  command->add_flag("--fullscreen", options->full_screen, "fills the screen (F11)");
+  command->add_flag("--fullscreen", options->full_screen, "starts in full screen (F11 changes it)");
   add_stereo_options(*command, options->stereo);
   add_realtime_options(*command, options->realtime);
   command->callback([&chosen, options] { chosen = [options] { return run_study(*options); }; });

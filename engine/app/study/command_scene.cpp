@@ -29,8 +29,8 @@ Outcome write_trial_scene(const StudySceneOptions& options) {
   CATENA_CHECK(files.check());
   const std::vector<study::Trial> session = study::make_session(study, options.subject);
   if (options.trial >= static_cast<int>(session.size()))
-    return Error{
-        fmt::format("--trial {}: a session has {} trials; 0 to {} was expected", options.trial, session.size(), session.size() - 1)};
+    return Error{fmt::format("--trial {}: a session has {} trials; a number from 0 to {} was expected", options.trial, session.size(),
+                             session.size() - 1)};
   const study::Trial& trial = session[static_cast<std::size_t>(options.trial)];
   study::StimulusGenerator maker(study);
   CATENA_TRY(const study::Stimulus stimulus, maker.generate(trial.task, trial.seed));
@@ -51,7 +51,7 @@ Outcome write_trial_scene(const StudySceneOptions& options) {
 
 void add_study_scene(CLI::App& study, CommandAction& chosen) {
   auto options = std::make_shared<StudySceneOptions>();
-  CLI::App* command = study.add_subcommand("scene", "writes a trial as a scene");
+  CLI::App* command = study.add_subcommand("scene", "writes one trial of a subject as a scene");
   command->add_option("STUDY", options->study, "study (.json)")->type_name("STUDY")->required();
   command->add_option("--subject", options->subject, "number of the subject")
       ->type_name("SUBJECT")

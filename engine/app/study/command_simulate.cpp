@@ -45,14 +45,14 @@ Result<study::Study> study_with_model(const SimulateOptions& options) {
   for (const std::string& one : options.model) {
     const std::size_t equals = one.find('=');
     const auto value = parse_double(equals == std::string::npos ? "" : one.substr(equals + 1));
-    if (!value) return Error{"--model " + in_quotes(one) + ": no NAME=NUMBER; such as depth_noise_mm=4 was expected"};
+    if (!value) return Error{"--model " + in_quotes(one) + ": NAME=NUMBER was expected, such as depth_noise_mm=4"};
     CATENA_TRY(text,
                json::set_value(text, options.study, "/operator/" + json::escape_pointer_token(one.substr(0, equals)), to_text(*value)));
   }
   return study::parse_study(text, options.study);
 }
 
-/// Every N-th subject, starting from the I-th.
+/// Share of the subjects: every N-th subject, starting from the I-th.
 struct Shard {
   int index = 1, count = 1;
 };
@@ -63,7 +63,7 @@ Result<Shard> read_shard(const std::optional<std::string>& given) {
   const std::size_t slash = text.find('/');
   const auto index = parse_integer(text.substr(0, slash)), count = parse_integer(slash == std::string::npos ? "" : text.substr(slash + 1));
   if (!index || !count || text.find(' ') != std::string::npos || *index < 1 || *index > *count || *count > study::kMaxSubject)
-    return Error{"--shard " + in_quotes(text) + ": no I/N; a share such as 1/4, 2/4, 3/4 or 4/4 was expected"};
+    return Error{"--shard " + in_quotes(text) + ": I/N was expected, such as 1/4, 2/4, 3/4 or 4/4"};
   return Shard{static_cast<int>(*index), static_cast<int>(*count)};
 }
 
@@ -119,7 +119,7 @@ Result<Session> session_in(const study::Study& study, const study::DataFolder& d
   session.done = rows.size();
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (i >= session.trials.size() || !study::find_protocol_deviation(study, rows[i], session.trials[i]).empty())
-      return Error{fmt::format("{}:{}: is no trial of a simulated session; data of `study simulate` were expected",
+      return Error{fmt::format("{}:{}: is not a trial of a simulated session; data of `study simulate` was expected",
                                study::subject_file(data.path(), subject), i + 2)};
   return session;
 }
@@ -140,8 +140,8 @@ Outcome simulate_subject(const study::Study& study, const study::DataFolder& dat
       return Error{fmt::format("{} (subject {}, trial {})", ran.error().message, trial.subject, trial.index), ran.error().system_failure};
     const study::TrialResult& measured = *ran;
     if (!std::isfinite(measured.error_mm) || !std::isfinite(measured.traveled_mm) || !is_finite(measured.end_mm))
-      return Error{fmt::format("{}: subject {}, trial {}: the model left all numbers; milder ones in \"operator\" were expected",
-                               study.path, trial.subject, trial.index)};
+      return Error{fmt::format("{}: subject {}, trial {}: the model diverged; other numbers in \"operator\" were expected", study.path,
+                               trial.subject, trial.index)};
     CATENA_CHECK(recordings.end(trial));
     CATENA_CHECK(data.append(study::make_row(study, trial, measured)));
     on_trial();
@@ -182,8 +182,8 @@ Outcome simulate(const SimulateOptions& options) {
   });
   if (fault) return fault->second;
   CATENA_CHECK(data.write_table());
-  fmt::print("{}: {} subject{} of a model, {} trials, {} of them now in {:.1f} s\n", sanitize_for_terminal(options.output), sessions.size(),
-             sessions.size() == 1 ? "" : "s", all, todo, 1e-3 * ms_since(began));
+  fmt::print("{}: {} simulated subject{}, {} trials, {} of them computed in this run in {:.1f} s\n", sanitize_for_terminal(options.output),
+             sessions.size(), sessions.size() == 1 ? "" : "s", all, todo, 1e-3 * ms_since(began));
   return Done{};
 }
 
@@ -191,20 +191,20 @@ Outcome simulate(const SimulateOptions& options) {
 
 void add_study_simulate(CLI::App& study, CommandAction& chosen) {
   auto options = std::make_shared<SimulateOptions>();
-  CLI::App* command = study.add_subcommand("simulate", "runs a study with a model in place of its subjects");
+  CLI::App* command = study.add_subcommand("simulate", "simulates the sessions of a study with a model of the subjects");
   command->add_option("STUDY", options->study, "study (.json)")->type_name("STUDY")->required();
-  command->add_option("--subjects", options->subjects, "number of subjects (default: that of the design)")
+  command->add_option("--subjects", options->subjects, "number of subjects (default: the number in the study)")
       ->type_name("N")
       ->check(CLI::Range(1, study::kMaxSubject));
-  command->add_option("-o,--output", options->output, "data folder; the trials of this study that it holds are kept")
+  command->add_option("-o,--output", options->output, "data folder; trials of this study in the folder are kept and not repeated")
       ->type_name("FOLDER")
       ->required();
   command
       ->add_option("--shard", options->shard,
-                   "every N-th subject from the I-th on, for a cluster's job array; study merge joins them (default: all)")
+                   "every N-th subject beginning with the I-th, for the jobs of a cluster; study merge joins the results (default: all)")
       ->type_name("I/N")
       ->check(accepted("1 <= I <= N"));
-  command->add_option("--model", options->model, "replaces a number of the file's \"operator\"")
+  command->add_option("--model", options->model, "replacement for a number in the study's \"operator\"")
       ->type_name("NAME=NUMBER")
       ->allow_extra_args(false);
   command->add_flag("--record", options->record, "records every tick of every trial: DIR/recordings/SUBJECT-TRIAL.catlog");

@@ -8,7 +8,7 @@
 namespace catena::app {
 
 void add_study(CLI::App& program, CommandAction& chosen) {
-  CLI::App* command = program.add_subcommand("study", "runs an experiment described by a file, and analyses its data");
+  CLI::App* command = program.add_subcommand("study", "runs a user study described by a file, and analyses the data of the study");
   command->require_subcommand(1);
   add_study_simulate(*command, chosen);
   add_study_run(*command, chosen);

@@ -84,14 +84,14 @@ Result<Instructions> parse_instructions(std::string_view text, const std::string
       CATENA_CHECK(end_page());
       const std::string moment(trim(line.substr(2)));
       if (std::ranges::find(known, moment) == known.end())
-        return error("there is no moment " + in_quotes(moment) + suggestion(moment, known_views) + "; expected " +
+        return error("there is no section " + in_quotes(moment) + suggestion(moment, known_views) + "; expected " +
                      join_alternatives(known_views));
-      if (std::ranges::find(seen, moment) != seen.end()) return error("the moment " + in_quotes(moment) + " stands here again");
+      if (std::ranges::find(seen, moment) != seen.end()) return error("the section " + in_quotes(moment) + " is repeated");
       seen.push_back(moment);
       reader.emplace(pages_of(moment));
       page_was_ended = false;
     } else if (!reader) {
-      if (!line.empty()) return error("text before the first moment; \"# introduction\" was expected");
+      if (!line.empty()) return error("text before the first section; \"# introduction\" was expected");
     } else if (ends_page(line)) {
       if (!reader->end()) return error("a page without text; a heading was expected before \"---\"");
       page_was_ended = true;

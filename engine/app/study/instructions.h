@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// The instructions of a study: a text file that anybody can write and translate. Pure functions, any thread.
+/// The instructions of a study: a text file that the experimenter writes and translates. Pure functions, any thread.
 ///
-///   # introduction                 a line "# NAME" starts the pages of a moment: "introduction", "before TASK" (before the first trial of
-///                                  that task), "end" (after the questionnaire); a moment without pages is skipped
+///   # introduction                 a line "# NAME" starts the pages of a section: "introduction", "before TASK" (before the first trial of
+///                                  that task), "end" (after the questionnaire); a section without pages is skipped
 ///   Welcome                        the first line of a page is its heading
 ///
 ///   You will see ...
@@ -26,7 +26,7 @@ struct InstructionPage {
   bool operator==(const InstructionPage&) const = default;
 };
 
-/// All pages, by moment.
+/// All pages, by section.
 struct Instructions {
   struct TaskPages {
     std::string task;
@@ -39,8 +39,8 @@ struct Instructions {
   const std::vector<InstructionPage>& pages_before_task(const std::string& task) const;
 };
 
-/// Parses the instructions. `tasks`: names of the study's tasks. Error, with file and line: an unknown or duplicate moment, a page without
-/// a heading, text before the first moment.
+/// Parses the instructions. `tasks`: names of the study's tasks. Error, with file and line: an unknown or duplicate section, a page without
+/// a heading, text before the first section.
 Result<Instructions> parse_instructions(std::string_view text, const std::string& file, const std::vector<std::string>& tasks);
 /// Reads and parses a file.
 Result<Instructions> read_instructions(const std::string& path, const std::vector<std::string>& tasks);

@@ -49,8 +49,8 @@ Outcome LiveSession::update(SceneModel& scene, HapticSession& hand) {
     return Done{};
   }
   ::unlink(recording.c_str());
-  procedure_.abort_trial(state == LiveTrial::State::device_lost ? "The device was away for a moment."
-                                                                : "The program stood still for too long.");
+  procedure_.abort_trial(state == LiveTrial::State::device_lost ? "The connection to the device was interrupted."
+                                                                : "The program was interrupted for too long.");
   return Done{};
 }
 

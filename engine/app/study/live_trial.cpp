@@ -80,7 +80,7 @@ Outcome LiveTrial::begin(SceneModel& scene, HapticSession& hand, const std::stri
 }
 
 Result<LiveTrial::State> LiveTrial::update(const HapticSession& hand) {
-  if (hand.recording().has_failed()) return Error{hand.recording().path() + ": the recording cannot be written any more", true};
+  if (hand.recording().has_failed()) return Error{hand.recording().path() + ": the recording cannot be written", true};
   // a trial with dropped ticks is invalid
   if (tick_observer_.has_lost_ticks()) return State::tick_lost;
   while (const auto tick = tick_observer_.pop()) {

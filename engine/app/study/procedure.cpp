@@ -36,7 +36,7 @@ void remove_character(std::string& from) {
 
 std::string trial_count(std::size_t n) { return fmt::format("{} trial{}", n, n == 1 ? "" : "s"); }
 
-InstructionPage pause_page() { return {"Pause", {"Rest as long as you like. The next trial waits."}}; }
+InstructionPage pause_page() { return {"Pause", {"Rest as long as you like. The next trial begins when you continue."}}; }
 
 }  // namespace
 
@@ -44,7 +44,8 @@ Procedure::Procedure(const study::Study& study, const Instructions& instructions
                      std::size_t answered)
     : study_(study), trials_(std::move(trials)) {
   if (finished > 0 || answered > 0)
-    add_pages({{"Welcome back", {fmt::format("{} of {} trials are done. The session goes on where it ended.", finished, trials_.size())}}});
+    add_pages(
+        {{"Welcome back", {fmt::format("{} of {} trials are done. The session continues with the next one.", finished, trials_.size())}}});
   else
     add_pages(instructions.introduction);
   add_trials(instructions, finished);
@@ -79,9 +80,9 @@ void Procedure::add_trials(const Instructions& instructions, std::size_t finishe
     if (first || (new_block && before->task != trial.task))
       add_pages(instructions.pages_before_task(study_.tasks[static_cast<std::size_t>(trial.task)].name));
     if (trial.training && (first || new_block || !before->training))
-      add_pages({{"Training", {fmt::format("First {} to try it. They do not count.", others(i))}}});
+      add_pages({{"Training", {fmt::format("First {} for practice. They do not count.", others(i))}}});
     if (!trial.training && before != nullptr && before->training && !new_block)
-      add_pages({{"Now it counts", {fmt::format("The training is over. Next: {}.", others(i))}}});
+      add_pages({{"Main trials", {fmt::format("The training is over. Next: {}.", others(i))}}});
     steps_.push_back({Step::Kind::trial, i});
   }
 }
@@ -176,17 +177,17 @@ std::string Procedure::progress_text() const {
     answered -= steps_[i].kind == Step::Kind::question;
   }
   return fmt::format("{} of {} trials and {} of {} questions are done{}", trials, trials_.size(), answered, question_count(),
-                     step_index_ == steps_.size() ? "" : "; the same command goes on");
+                     step_index_ == steps_.size() ? "" : "; the same command continues the session");
 }
 
 void Procedure::complete_trial() {
   if (stage() == Stage::running) advance();
 }
 
-void Procedure::abort_trial(const std::string& why) {
+void Procedure::abort_trial(const std::string& reason) {
   if (stage() != Stage::running) return;
   running_ = false;
-  pause_page_ = InstructionPage{"Once more", {why, "This trial begins again."}};
+  pause_page_ = InstructionPage{"Repeated trial", {reason, "This trial is repeated."}};
 }
 
 std::optional<Procedure::Answer> Procedure::take_answer() { return std::exchange(answer_, std::nullopt); }

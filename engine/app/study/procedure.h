@@ -34,7 +34,7 @@ class Procedure {
  public:
   static constexpr std::size_t kMaxAnswerBytes = 1000;  ///< Maximum length of a typed answer, bytes
 
-  /// What is currently shown or running; see the table above.
+  /// Stage of the procedure, as in the table above.
   enum class Stage : std::uint8_t { page, ready, running, question, finished };
 
   /// `study` must outlive this object. `trials`: the subject's session. The first `finished` trials and `answered` questions, from an
@@ -63,8 +63,8 @@ class Procedure {
 
   /// Call when the running trial has ended at its target or timeout.
   void complete_trial();
-  /// Call when the running trial is invalid: shows `why` on a page, then the trial is repeated.
-  void abort_trial(const std::string& why);
+  /// Call when the running trial is invalid: shows `reason` on a page, then the trial is repeated.
+  void abort_trial(const std::string& reason);
 
   /// An answer that was confirmed with Enter.
   struct Answer {

@@ -41,7 +41,7 @@ Outcome SubjectFolder::find_finished_trials() {
   const std::string path = study::subject_file(folder_.path(), subject_);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const bool same = i < trials_.size() && study::find_protocol_deviation(*study_, rows[i], trials_[i]).empty();
-    if (!same) return Error{fmt::format("{}:{}: this is not trial {} of the subject's session", path, i + 2, i)};
+    if (!same) return Error{fmt::format("{}:{}: the row is not trial {} of the subject's session", path, i + 2, i)};
   }
   finished_trials_ = rows.size();
   // remove the incomplete recording of an interrupted session

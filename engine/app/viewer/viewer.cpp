@@ -46,7 +46,7 @@ Failure draw_without_window(const ViewOptions& options, SceneModel& host, Haptic
     return render::write_png(options.screenshot, picture, scene.background.transparent);
   }();
   if (!draw) return {1, draw.error().message};
-  return {0, why.substr(0, why.find(';')) + "; " + options.screenshot + " was drawn without a window"};
+  return {0, why.substr(0, why.find(';')) + "; " + options.screenshot + " was rendered without a window"};
 }
 
 std::optional<Failure> plan_hand(LiveTuning& live, SceneModel& scene, const HapticSession& hand) {

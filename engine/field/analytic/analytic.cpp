@@ -117,7 +117,7 @@ Result<AnyField> make_ventricle(const AnalyticParameters& parameters) {
   if (part.empty() || part == "density") return scalar({"density", ventricle_density, 0, 1}, parameters);
   if (part == "transmural") return scalar({"transmural", ventricle_transmural, -1.875, inf}, parameters);
   if (part == "fibre") return AnyField{nullptr, std::make_shared<VentricleFibre>(parameters)};
-  return Error{fmt::format("left-ventricle has no part \"{}\": expected density, transmural or fibre", part)};
+  return Error{fmt::format("field \"left-ventricle\" has no part \"{}\", expected density, transmural or fibre", part)};
 }
 
 }  // namespace
@@ -144,15 +144,17 @@ std::vector<std::string_view> analytic_parts(std::string_view name) {
 
 Result<AnyField> make_analytic(std::string_view name, const AnalyticParameters& parameters) {
   // parameters
-  if (!is_finite(parameters.center)) return Error{fmt::format("field \"{}\": the center must be finite", name)};
+  if (!is_finite(parameters.center))
+    return Error{fmt::format("field \"{}\": the centre is not finite, expected three finite numbers", name)};
   if (!std::isfinite(parameters.scale) || parameters.scale == 0)
-    return Error{fmt::format("field \"{}\": scale is {}, expected a finite number that is not zero", name, parameters.scale)};
+    return Error{fmt::format("field \"{}\": scale is {}, expected a finite number other than 0", name, parameters.scale)};
   if (name == kVentricle) return make_ventricle(parameters);
-  if (!parameters.part.empty()) return Error{fmt::format("field \"{}\" has no parts, got \"{}\"", name, parameters.part)};
+  if (!parameters.part.empty())
+    return Error{fmt::format("field \"{}\" has no parts, but the part \"{}\" was requested", name, parameters.part)};
   if (name == kUniform) {
     const Vec3 unit = direction(parameters.direction);
     if (unit == Vec3(0.0) || !is_finite(parameters.direction))
-      return Error{"field \"uniform\": the direction must be a finite vector that is not zero"};
+      return Error{"field \"uniform\": the direction is zero or not finite, expected a finite vector other than 0"};
     return AnyField{nullptr, std::make_shared<Uniform>(unit, parameters)};
   }
   if (name == kVortices) {
@@ -167,7 +169,7 @@ Result<AnyField> make_analytic(std::string_view name, const AnalyticParameters& 
     if (f.name == name) return AnyField{nullptr, std::make_shared<NamedVector>(f, parameters)};
   std::string all;
   for (const auto n : analytic_names()) all.append(" ").append(n);
-  return Error{fmt::format("there is no analytic field \"{}\": expected one of{}", name, all)};
+  return Error{fmt::format("there is no analytic field \"{}\", expected one of{}", name, all)};
 }
 
 }  // namespace catena::field

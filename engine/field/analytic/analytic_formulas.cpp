@@ -40,7 +40,7 @@ double torus(const Vec3& p, Vec3& g) {
   const Vec3 flat(p.x, p.y, 0);
   const double r = norm(flat);
   const Vec3 to_tube = (r - 1) * direction(flat) + Vec3(0, 0, p.z);
-  // the distance has a ridge on the axis: no radial direction is preferred, the gradient is 0
+  // the distance has a ridge on the axis, where no radial direction is preferred and the gradient is 0
   g = direction(Vec3(to_tube.x, to_tube.y, p.z));
   const double s = norm(Vec3(r - 1, 0, p.z));
   if (r == 0) g = s > 0 ? Vec3(0, 0, p.z / s) : Vec3(0.0);
@@ -154,7 +154,7 @@ constexpr double endocardium = 0.75, thickness = 0.4;
 constexpr double side_margin = 0.25, base_z = 0.8, base_margin = 0.1;
 
 /// Returns 1 for u <= 0, 0 for u >= 1 and a cubic with zero end slopes between; sets `slope` to the derivative.
-double fall(double u, double& slope) {
+double falloff(double u, double& slope) {
   slope = 0;
   if (u <= 0) return 1;
   if (u >= 1) return 0;
@@ -177,8 +177,8 @@ double ventricle_density(const Vec3& p, Vec3& gradient) {
   const double t = ventricle_transmural(p, depth_gradient);
   double side_slope, base_slope;
   const bool inner = t < 0.5;
-  const double side = fall((inner ? -t : t - 1) / side_margin, side_slope);
-  const double base = fall((p.z - base_z) / base_margin, base_slope);
+  const double side = falloff((inner ? -t : t - 1) / side_margin, side_slope);
+  const double base = falloff((p.z - base_z) / base_margin, base_slope);
   gradient = depth_gradient * (base * side_slope * (inner ? -1 : 1) / side_margin) + Vec3(0, 0, side * base_slope / base_margin);
   return side * base;
 }

@@ -35,10 +35,10 @@ Vortices::Vortices(int seed, int dimensions) : is_2d_(dimensions == 2) {
 Vec3 Vortices::value(const Vec3& p) const noexcept {
   Vec3 sum = stream_;
   for (const Vortex& vortex : vortices_) {
-    Vec3 off = p - vortex.center;
-    if (is_2d_) off.z = 0;
-    const double fall = 1 + dot(off, off) * vortex.inverse_radius2;
-    sum += cross(vortex.rate, off) * (1 / (fall * fall));
+    Vec3 offset = p - vortex.center;
+    if (is_2d_) offset.z = 0;
+    const double falloff = 1 + dot(offset, offset) * vortex.inverse_radius2;
+    sum += cross(vortex.rate, offset) * (1 / (falloff * falloff));
   }
   return sum;
 }

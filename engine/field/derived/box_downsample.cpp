@@ -95,9 +95,10 @@ class Leaf {
     for (int z = down(lo_[2]); z < lo_[2] + size_[2]; z += kLeaf)
       for (int y = down(lo_[1]); y < lo_[1] + size_[1]; y += kLeaf)
         for (int x = down(lo_[0]); x < lo_[0] + size_[0]; x += kLeaf) {
-          float here = 0;
-          if (!grid_.is_constant_block({x, y, z}, here) || !std::isfinite(here) || (some && here != value)) return false;
-          value = here;
+          float block_value = 0;
+          if (!grid_.is_constant_block({x, y, z}, block_value) || !std::isfinite(block_value) || (some && block_value != value))
+            return false;
+          value = block_value;
           some = true;
         }
     return some;
@@ -222,7 +223,7 @@ Result<CoarseGrid> box_downsample(const ScalarGrid& grid, int factor) {
   if (block_count > kMaxBlocks) return Error{fmt::format("{} has {:.0f} blocks, expected at most {:.0f}", what, block_count, kMaxBlocks)};
   CATENA_CHECK(check_memory_available(what, block_count * (sizeof(nanovdb::Coord) + 1 + sizeof(float))));
 
-  // blocks: a constant one becomes a tile, or nothing if it has the background value
+  // a constant block becomes a tile, or is omitted if it has the background value
   const float background = grid.background();
   std::vector<nanovdb::Coord> origins;
   origins.reserve(static_cast<std::size_t>(block_count));
@@ -234,7 +235,7 @@ Result<CoarseGrid> box_downsample(const ScalarGrid& grid, int factor) {
   parallel_for(origins.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) is_constant[i] = Leaf(grid, axes, origins[i]).constant(constants[i]);
   });
-  // the grid's box is the box of its active voxels: its two corners are stored as active voxels
+  // the box of a grid is the box of its active voxels: the two corners of the box are stored as active voxels
   const nanovdb::Coord lowest(axes[0].first, axes[1].first, axes[2].first), highest(axes[0].last, axes[1].last, axes[2].last);
   const auto leaf_of = [&](const nanovdb::Coord& c) { return nanovdb::Coord(down(c[0]), down(c[1]), down(c[2])); };
   std::vector<NanoBlock<float>> blocks;
@@ -245,8 +246,8 @@ Result<CoarseGrid> box_downsample(const ScalarGrid& grid, int factor) {
     const bool empty = is_constant[i] && constants[i] == background;
     if (empty && !corner) continue;
     const Leaf leaf(grid, axes, origins[i]);
-    const bool whole = leaf.begin == std::array{0, 0, 0} && leaf.end == std::array{kLeaf, kLeaf, kLeaf};
-    if (is_constant[i] && whole && !empty) {
+    const bool is_complete = leaf.begin == std::array{0, 0, 0} && leaf.end == std::array{kLeaf, kLeaf, kLeaf};
+    if (is_constant[i] && is_complete && !empty) {
       blocks.push_back({origins[i], NanoBlock<float>::kTile, constants[i]});
     } else {
       blocks.push_back({origins[i], static_cast<std::uint32_t>(leaves.size()), 0.f});
@@ -285,7 +286,7 @@ Result<CoarseGrid> box_downsample(const ScalarGrid& grid, int factor) {
       Mapping::from_linear(fine.world_from_index_linear * double(factor), fine.world_from_index(Vec3(0.5 * (factor - 1))));
   CoarseGrid coarse;
   CATENA_TRY(coarse.grid, grid_from_buffers<ScalarGrid>(grid.name(), mapping, std::move(buffers)));
-  // nearest stays nearest; every other coarse grid is a preview and uses linear interpolation, also that of a cubic grid
+  // the interpolation "nearest" is kept; all other coarse grids, which are previews, use linear interpolation
   if (grid.interpolation() == Interpolation::nearest) coarse.grid = coarse.grid->with_interpolation(Interpolation::nearest);
   coarse.domain = {{axes[0].domain_lo, axes[1].domain_lo, axes[2].domain_lo}, {axes[0].domain_hi, axes[1].domain_hi, axes[2].domain_hi}};
   return coarse;

@@ -37,15 +37,17 @@ template <class T>
 struct GhostLimits;
 template <>
 struct GhostLimits<float> {
-  double least, most;
-  explicit GhostLimits(const GridStats& s) : least(s.min - (s.max - s.min)), most(s.max + (s.max - s.min)) {}
-  float hold(double v) const { return static_cast<float>(std::clamp(std::clamp(v, least, most), double{-FLT_MAX}, double{FLT_MAX})); }
+  double min_value, max_value;
+  explicit GhostLimits(const GridStats& s) : min_value(s.min - (s.max - s.min)), max_value(s.max + (s.max - s.min)) {}
+  float clamp(double v) const {
+    return static_cast<float>(std::clamp(std::clamp(v, min_value, max_value), double{-FLT_MAX}, double{FLT_MAX}));
+  }
 };
 template <>
 struct GhostLimits<nanovdb::Vec3f> {
   GhostLimits<float> axis[3];
   explicit GhostLimits(const GridStats& s) : axis{of(s, 0), of(s, 1), of(s, 2)} {}
-  nanovdb::Vec3f hold(const Vec3& v) const { return {axis[0].hold(v.x), axis[1].hold(v.y), axis[2].hold(v.z)}; }
+  nanovdb::Vec3f clamp(const Vec3& v) const { return {axis[0].clamp(v.x), axis[1].clamp(v.y), axis[2].clamp(v.z)}; }
 
  private:
   static GhostLimits<float> of(const GridStats& s, int a) {
@@ -99,9 +101,9 @@ class Neighbourhood {
           const int at = window_at(x - block[0] + kReach, y - block[1] + kReach, z - block[2] + kReach);
           value_[at] = values ? values->getValue(n) : constant;
           const bool in_box = x >= lo_[0] && y >= lo_[1] && z >= lo_[2] && x <= hi_[0] && y <= hi_[1] && z <= hi_[2];
-          const bool here = in_box && (valid ? valid->valueMask().isOn(n) : all_valid) && is_finite_value(value_[at]);
-          present_[at] = here;
-          (here ? some_present : some_missing) = true;
+          const bool is_present = in_box && (valid ? valid->valueMask().isOn(n) : all_valid) && is_finite_value(value_[at]);
+          present_[at] = is_present;
+          (is_present ? some_present : some_missing) = true;
         }
   }
 
@@ -181,8 +183,8 @@ class GhostMaker {
     for (int axes = 1; axes <= 3; ++axes) {
       int longest = 0, rows = 0;
       decltype(corner_value(T())) sum(0.0);
-      for (const Coord& way : directions_.by_axes[axes]) {
-        const int step = window_at(way[0], way[1], way[2]);
+      for (const Coord& direction : directions_.by_axes[axes]) {
+        const int step = window_at(direction[0], direction[1], direction[2]);
         int length = 0;
         while (length < kReach && window.present(at + (length + 1) * step)) ++length;
         if (length == 0 || length < longest) continue;
@@ -192,7 +194,7 @@ class GhostMaker {
         ++rows;
       }
       if (longest == 0) continue;
-      ghost = limits_.hold(sum * (1.0 / rows));
+      ghost = limits_.clamp(sum * (1.0 / rows));
       return true;
     }
     return false;
@@ -208,24 +210,24 @@ class GhostMaker {
 
 template <class T>
 Result<HaloGrid<T>> make_halo(const GridStorage<T>& storage, const GridStats& stats) {
-  const GhostMaker<T> maker(storage, stats);
-  if (!(maker.blocks() <= kMaxHaloBlocks))
-    return Error{fmt::format("has {:.3g} blocks of 8^3 voxels, expected at most {:.3g} for the interpolation \"cubic\"", maker.blocks(),
-                             kMaxHaloBlocks)};
-  const std::vector<Coord> origins = maker.with_ghosts();
+  const GhostMaker<T> ghost_maker(storage, stats);
+  if (!(ghost_maker.blocks() <= kMaxHaloBlocks))
+    return Error{fmt::format("has {:.3g} blocks of 8^3 voxels, expected at most {:.3g} for the interpolation \"cubic\"",
+                             ghost_maker.blocks(), kMaxHaloBlocks)};
+  const std::vector<Coord> origins = ghost_maker.with_ghosts();
   using Leaf = typename NanoTypes<T>::Leaf;
   CATENA_CHECK(
-      check_memory_available("its cubic interpolation", static_cast<double>(origins.size()) * (sizeof(Leaf) + sizeof(NanoBlock<T>))));
-  HaloGrid<T> made{reserve_leaves<T>(origins.size()), nullptr};
+      check_memory_available("the cubic interpolation", static_cast<double>(origins.size()) * (sizeof(Leaf) + sizeof(NanoBlock<T>))));
+  HaloGrid<T> result{reserve_leaves<T>(origins.size()), nullptr};
   parallel_for(origins.size(), 8, [&](std::size_t begin, std::size_t end) {
     Neighbourhood<T> window(storage);
-    for (std::size_t n = begin; n < end; ++n) maker.fill(origins[n], window, NanoBuilder<T>::leaf_at(made.memory.data(), n));
+    for (std::size_t n = begin; n < end; ++n) ghost_maker.fill(origins[n], window, NanoBuilder<T>::leaf_at(result.memory.data(), n));
   });
   std::vector<NanoBlock<T>> blocks(origins.size());
   for (std::size_t n = 0; n < origins.size(); ++n) blocks[n] = {origins[n], static_cast<std::uint32_t>(n), {}};
-  CATENA_TRY(made.memory, build_from_blocks<T>(std::move(made.memory), origins.size(), std::move(blocks), T(0.f)));
-  made.grid = &as_nano_grid<T>(made.memory);
-  return made;
+  CATENA_TRY(result.memory, build_from_blocks<T>(std::move(result.memory), origins.size(), std::move(blocks), T(0.f)));
+  result.grid = &as_nano_grid<T>(result.memory);
+  return result;
 }
 
 template Result<HaloGrid<float>> make_halo(const GridStorage<float>&, const GridStats&);

@@ -20,26 +20,27 @@ template <class Size>
 double largest(const Field& field, const Size& size) {
   const Box& box = field.index_box();
   const Vec3 extent = box.hi - box.lo;
-  const auto places = [&](int axis) { return field.is_grid() ? std::max(1, static_cast<int>(extent[axis])) : kFormulaNodes; };
-  const int nx = places(0), ny = places(1), nz = places(2);
-  const auto place = [&](int axis, int i, int n) {
+  const auto position_count = [&](int axis) { return field.is_grid() ? std::max(1, static_cast<int>(extent[axis])) : kFormulaNodes; };
+  const int nx = position_count(0), ny = position_count(1), nz = position_count(2);
+  const auto coordinate = [&](int axis, int i, int n) {
     return field.is_grid() ? box.lo[axis] + std::min(i + 0.5, extent[axis]) : box.lo[axis] + extent[axis] * i / (n - 1);
   };
-  double most = 0;
+  double maximum = 0;
   std::mutex mutex;
   parallel_for(static_cast<std::size_t>(nz), 1, [&](std::size_t begin, std::size_t end) {
     Cursor cursor;
-    double here = 0;
+    double local_maximum = 0;
     for (int z = static_cast<int>(begin); z < static_cast<int>(end); ++z)
       for (int y = 0; y < ny; ++y)
         for (int x = 0; x < nx; ++x) {
-          const double m = size(field.mapping().world_from_index(Vec3(place(0, x, nx), place(1, y, ny), place(2, z, nz))), cursor);
-          if (std::isfinite(m)) here = std::max(here, m);
+          const double m =
+              size(field.mapping().world_from_index(Vec3(coordinate(0, x, nx), coordinate(1, y, ny), coordinate(2, z, nz))), cursor);
+          if (std::isfinite(m)) local_maximum = std::max(local_maximum, m);
         }
     const std::lock_guard lock(mutex);
-    most = std::max(most, here);
+    maximum = std::max(maximum, local_maximum);
   });
-  return most;
+  return maximum;
 }
 
 /// Marks the corners of all valid cells, in slices z .. z + layers - 1 of the box. A cell whose corners are all marked becomes valid as
@@ -73,7 +74,7 @@ double compute_max_gradient(const ScalarField& field) {
   const DisplayRange range = display_range(field);
   return largest(field, [&](const Vec3& world, Cursor& cursor) {
     const ScalarSample sample = field.sample(world, cursor);
-    // outliers do not count; the center of a cell with an outlier at a corner is out of the range as well
+    // outliers are skipped; the center of a cell with an outlier at a corner is out of range as well
     const bool counts = (range.below.count == 0 || sample.value >= range.lo) && (range.above.count == 0 || sample.value <= range.hi);
     return sample.inside && counts ? norm(sample.gradient) : 0.0;
   });
@@ -86,7 +87,7 @@ Result<std::shared_ptr<const ScalarGrid>> make_magnitude_grid(const VectorGrid& 
                     static_cast<int>(box.hi.z - box.lo.z) + 1};
   CATENA_CHECK(check_dense_memory(what, size, 1, grid.has_mask()));
 
-  // read slice by slice
+  // the magnitudes are computed slice by slice
   const std::size_t plane = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
   std::vector<float> xyz(3 * plane);
   const auto read = [&](int z, int layers, std::span<float> values, std::span<std::uint8_t> valid) -> Outcome {
@@ -115,9 +116,9 @@ Result<std::shared_ptr<const ScalarGrid>> make_magnitude_grid(const VectorGrid& 
       return Done{};
     };
   source.range = storage.data_range;
-  auto made = make_dense_grid<ScalarGrid>(grid.name(), mapping, source, what + " ");
-  if (!made) return Error{made.error().message + "; magnitudes that fit into 32-bit floats were expected"};
-  return made;
+  auto result = make_dense_grid<ScalarGrid>(grid.name(), mapping, source, what + " ");
+  if (!result) return Error{result.error().message + "; magnitudes that fit into 32-bit floats were expected"};
+  return result;
 }
 
 }  // namespace catena::field

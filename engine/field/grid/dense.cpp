@@ -151,11 +151,11 @@ bool DenseSlab<T>::is_constant(std::size_t block, T& value) const {
 template <class T>
 void DenseSlab<T>::gather(std::size_t block, T* values, nanovdb::Mask<3>& active) const {
   const nanovdb::Coord o = origin(block);
-  const bool whole = source_.size.x - o[0] >= kLeafEdge && source_.size.y - o[1] >= kLeafEdge && layers_ == kLeafEdge;
-  active.set(whole);
+  const bool is_complete = source_.size.x - o[0] >= kLeafEdge && source_.size.y - o[1] >= kLeafEdge && layers_ == kLeafEdge;
+  active.set(is_complete);
   for_voxels(block, [&](std::uint32_t n, std::size_t at) {
     values[n] = values_[at];
-    if (!whole) active.setOn(n);
+    if (!is_complete) active.setOn(n);
     return true;
   });
 }
@@ -173,7 +173,8 @@ Outcome check_dense_memory(const std::string& what, const Index3& size, int comp
   const double blocks = static_cast<double>(blocks_of(size.x)) * blocks_of(size.y) * blocks_of(size.z);
   constexpr double kMaxBlocks = 4e9;
   if (blocks > kMaxBlocks)
-    return Error{fmt::format("{} has {:.0f} blocks of 8^3 voxels, expected at most {:.0f}", what, blocks, kMaxBlocks)};
+    return Error{fmt::format("{} needs {:.0f} blocks of 8^3 voxels; a smaller grid, of at most {:.0f} blocks, was expected", what, blocks,
+                             kMaxBlocks)};
   const bool vector = components == 3;
   const double leaf = vector ? sizeof(NanoTypes<nanovdb::Vec3f>::Leaf) + sizeof(NanoBlock<nanovdb::Vec3f>)
                              : sizeof(NanoTypes<float>::Leaf) + sizeof(NanoBlock<float>);
@@ -205,25 +206,25 @@ Result<std::shared_ptr<const Grid>> make_dense_grid(std::string name, const Mapp
       if (source.read_cells && add_bits(slab, size, &DenseSlab<T>::gather_cells, cells)) some_cell_invalid = true;
     }
   }
-  const auto told = [&](const Error& e) { return Error{prefix + e.message}; };
+  const auto with_prefix = [&](const Error& e) { return Error{prefix + e.message}; };
   NanoBuffers buffers;
   auto values = build_from_blocks<T>(std::move(grid.memory), grid.leaves, std::move(grid.blocks), T(0.f));
-  if (!values) return told(values.error());
+  if (!values) return with_prefix(values.error());
   buffers.values = std::move(*values);
   buffers.range = source.range;
   if (some_cell_invalid) {
     auto all = build_from_blocks<nanovdb::ValueMask>(std::move(cells.memory), cells.leaves, std::move(cells.blocks), false);
-    if (!all) return told(all.error());
+    if (!all) return with_prefix(all.error());
     buffers.input_cell_mask = std::move(*all);
   }
   if (source.has_mask && (some_invalid || some_cell_invalid)) {
     auto voxels = build_from_blocks<nanovdb::ValueMask>(std::move(mask.memory), mask.leaves, std::move(mask.blocks), false);
-    if (!voxels) return told(voxels.error());
+    if (!voxels) return with_prefix(voxels.error());
     buffers.valid_voxels = std::move(*voxels);
   }
-  auto made = grid_from_buffers<Grid>(std::move(name), mapping, std::move(buffers));
-  if (!made) return told(made.error());
-  return made;
+  auto result = grid_from_buffers<Grid>(std::move(name), mapping, std::move(buffers));
+  if (!result) return with_prefix(result.error());
+  return result;
 }
 
 template class DenseSlab<float>;

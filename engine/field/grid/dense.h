@@ -74,7 +74,8 @@ template <class Grid>
 Result<std::shared_ptr<const Grid>> make_dense_grid(std::string name, const Mapping& mapping, const DenseSource& source,
                                                     const std::string& prefix, bool drop_full_mask = false);
 
-/// Checks the memory budget for the most that make_dense_grid allocates; `what` as in check_memory_available.
+/// Checks the memory budget for the maximum that make_dense_grid() allocates, and its limit of 4e9 blocks of 8^3 voxels; `what` as in
+/// check_memory_available().
 Outcome check_dense_memory(const std::string& what, const Index3& size, int components, bool masked);
 
 }  // namespace catena::field

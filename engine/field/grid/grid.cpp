@@ -73,8 +73,8 @@ std::shared_ptr<const ScalarGrid> ScalarGrid::with_interpolation(Interpolation i
 }
 
 Result<std::shared_ptr<const ScalarGrid>> ScalarGrid::as_cubic() const {
-  CATENA_TRY(auto made, make_halo(*storage_, stats_));
-  auto ghosts = std::make_shared<const Halo>(Halo{std::move(made)});
+  CATENA_TRY(auto halo, make_halo(*storage_, stats_));
+  auto ghosts = std::make_shared<const Halo>(Halo{std::move(halo)});
   return std::shared_ptr<const ScalarGrid>(
       std::make_shared<ScalarGrid>(name(), mapping(), index_box(), storage_, stats_, Interpolation::cubic, std::move(ghosts)));
 }
@@ -95,13 +95,13 @@ ScalarSample ScalarGrid::sample(const Vec3& world, Cursor& cursor) const noexcep
     }
   }
   const ScalarCellCache& walk = walk_to(*this, *storage_, halo_.get(), base, cursor);
-  const Vec3 place = position_in_cell(index, walk.base);
+  const Vec3 position = position_in_cell(index, walk.base);
   if (interpolation_ != Interpolation::nearest) [[likely]] {
     Vec3 g;
-    trilinear(walk.corner, place, s.value, g);
+    trilinear(walk.corner, position, s.value, g);
     s.gradient = mapping().world_from_index_gradient(g);
   } else {
-    s.value = walk.corner[(place.x >= 0.5 ? 1u : 0u) + (place.y >= 0.5 ? 2u : 0u) + (place.z >= 0.5 ? 4u : 0u)];
+    s.value = walk.corner[(position.x >= 0.5 ? 1u : 0u) + (position.y >= 0.5 ? 2u : 0u) + (position.z >= 0.5 ? 4u : 0u)];
   }
   s.inside = walk.valid && index_box().contains(index, kDomainSlack);
   return s;
@@ -146,8 +146,8 @@ VectorGrid::VectorGrid(std::string name, const Mapping& mapping, const Box& inde
 VectorGrid::~VectorGrid() = default;
 
 Result<std::shared_ptr<const VectorGrid>> VectorGrid::as_cubic() const {
-  CATENA_TRY(auto made, make_halo(*storage_, stats_));
-  auto ghosts = std::make_shared<const Halo>(Halo{std::move(made)});
+  CATENA_TRY(auto halo, make_halo(*storage_, stats_));
+  auto ghosts = std::make_shared<const Halo>(Halo{std::move(halo)});
   return std::shared_ptr<const VectorGrid>(
       std::make_shared<VectorGrid>(name(), mapping(), index_box(), storage_, stats_, std::move(ghosts)));
 }

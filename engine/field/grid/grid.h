@@ -147,18 +147,19 @@ class CATENA_EXPORT VectorGrid final : public VectorField {
 CATENA_EXPORT std::shared_ptr<const ScalarGrid> make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size,
                                                                  std::span<const float> values, std::span<const std::uint8_t> valid = {},
                                                                  std::span<const std::uint8_t> cells = {});
-/// The same for vectors, three floats per voxel in world axes.
+/// Makes a vector grid from values in memory, by the rules of make_scalar_grid(). `xyz`: three floats per voxel, in world axes.
 CATENA_EXPORT std::shared_ptr<const VectorGrid> make_vector_grid(std::string name, const Mapping& mapping, const Index3& size,
                                                                  std::span<const float> xyz, std::span<const std::uint8_t> valid = {},
                                                                  std::span<const std::uint8_t> cells = {});
 
-/// Samples a field at `resolution` nodes along each axis, both ends included, over the cube lo..hi (the grid that `generate` writes). Nodes
-/// where the field is not inside are invalid.
+/// Samples a field at `resolution` nodes along each axis, both ends included, over the cube lo..hi in world units (the grid that `generate`
+/// writes). Nodes where the field is not inside are invalid. Aborts on an unusable request: see try_sample_on_grid(), if it can be
+/// unusable.
 CATENA_EXPORT std::shared_ptr<const ScalarGrid> sample_on_grid(const ScalarField& field, int resolution, double lo, double hi);
-/// The same for vectors.
+/// Samples a vector field at nodes, by the rules of the function for scalar fields above.
 CATENA_EXPORT std::shared_ptr<const VectorGrid> sample_on_grid(const VectorField& field, int resolution, double lo, double hi);
-/// The same for a request of the user. Error: no node is inside (the sampling is too coarse for the field's domain), a sample does not fit
-/// into a 32-bit float, the box is not usable, or the memory budget is exceeded.
+/// Samples a field at nodes as sample_on_grid() does, but checks the request. Error: no node is inside (the sampling is too coarse for the
+/// field's domain), a sample does not fit into a 32-bit float, the box is not usable, or the memory budget is exceeded.
 CATENA_EXPORT Result<AnyField> try_sample_on_grid(const AnyField& field, int resolution, double lo, double hi);
 
 }  // namespace catena::field

@@ -61,7 +61,7 @@ Result<std::shared_ptr<const Grid>> grid_from_buffers(std::string name, const Ma
   if (box.empty()) return Error{"has no active voxels, expected a grid with data"};
   if (!is_within_index_limits(box)) return index_range_error(box);
   const auto [stats, ranged] = compute_stats(values, valid);
-  if (!ranged && valid) return Error{"has no valid voxel with a finite value: the mask leaves nothing of it"};
+  if (!ranged && valid) return Error{"has no valid voxel with a finite value: the mask excludes all finite values"};
   if (!ranged) return Error{"has no finite value in any active voxel"};
   // storage
   auto storage = std::make_unique<typename Grid::Storage>();
@@ -69,11 +69,11 @@ Result<std::shared_ptr<const Grid>> grid_from_buffers(std::string name, const Ma
   storage->values = &values;
   if (valid) {
     if (buffers.valid_cells.size() == 0) {
-      const bool own = buffers.input_cell_mask.size() > 0;
-      const NanoMask* own_cells = own ? &as_nano_grid<nanovdb::ValueMask>(buffers.input_cell_mask) : nullptr;
+      const bool has_input_mask = buffers.input_cell_mask.size() > 0;
+      const NanoMask* own_cells = has_input_mask ? &as_nano_grid<nanovdb::ValueMask>(buffers.input_cell_mask) : nullptr;
       CATENA_TRY(buffers.valid_cells, erode_mask(*valid, box, own_cells, &NanoMemory::reserve,
-                                                 [](double bytes) { return check_memory_available("its mask", bytes); }));
-      buffers.has_cell_mask = own;
+                                                 [](double bytes) { return check_memory_available("the mask", bytes); }));
+      buffers.has_cell_mask = has_input_mask;
     }
     storage->has_cell_mask = buffers.has_cell_mask;
     storage->valid_voxels = valid;

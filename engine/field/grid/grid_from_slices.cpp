@@ -8,7 +8,7 @@
 namespace catena::field {
 namespace {
 
-constexpr int kMostVoxels = 65536;  // per axis
+constexpr int kMaxVoxels = 65536;  // per axis
 
 template <class Grid>
 Result<AnyField> grid_of(const std::string& name, const Mapping& mapping, const DenseSource& source) {
@@ -25,10 +25,11 @@ Result<AnyField> grid_of(const std::string& name, const Mapping& mapping, const 
 
 Result<AnyField> make_grid_from_slices(std::string name, const Mapping& mapping, const SliceSource& layers) {
   const Index3& size = layers.size;
-  if (std::min({size.x, size.y, size.z}) < 2 || std::max({size.x, size.y, size.z}) > kMostVoxels)
+  if (std::min({size.x, size.y, size.z}) < 2 || std::max({size.x, size.y, size.z}) > kMaxVoxels)
     return Error{
-        fmt::format("{}: has {} x {} x {} voxels; from 2 to {} along each axis were expected", name, size.x, size.y, size.z, kMostVoxels)};
-  if (!mapping.is_invertible()) return Error{name + ": its map from voxels to the world cannot be inverted; a regular matrix was expected"};
+        fmt::format("{}: has {} x {} x {} voxels; from 2 to {} along each axis were expected", name, size.x, size.y, size.z, kMaxVoxels)};
+  if (!mapping.is_invertible())
+    return Error{name + ": the transform from voxels to the world cannot be inverted; a regular matrix was expected"};
   CATENA_CHECK(check_dense_memory(name, size, layers.is_vector ? 3 : 1, false));
   const DenseSource source{size, false, [&](int z, int, std::span<float> out, std::span<std::uint8_t>) -> Outcome {
                              layers.read(z, out);

@@ -64,7 +64,7 @@ std::shared_ptr<const VectorGrid> sample_on_grid(const VectorField& field, int r
 
 Result<AnyField> try_sample_on_grid(const AnyField& field, int resolution, double lo, double hi) {
   const std::string what =
-      "field \"" + field.get()->name() + "\", " + std::to_string(resolution) + " nodes an axis from " + to_text(lo) + " to " + to_text(hi);
+      "field \"" + field.get()->name() + "\", " + std::to_string(resolution) + " nodes per axis from " + to_text(lo) + " to " + to_text(hi);
   const double spacing = (hi - lo) / (resolution - 1);
   if (!std::isfinite(spacing) || !(lo + spacing > lo))
     return Error{what + ": the spacing is not a usable number; a smaller or larger box was expected"};

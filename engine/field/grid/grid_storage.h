@@ -112,7 +112,7 @@ struct CubicCellCache : CellCache<T, Corner> {
       : CellCache<T, Corner>(grid, v), samples{}, halo(ghost_grid) {}
 };
 
-/// Returns the cell cache in the cursor's memory. It is constructed anew when the cursor was last used with another grid (or with one that
+/// Returns the cell cache in the cursor's memory. It is constructed again when the cursor was last used with another grid (or with one that
 /// was freed at the same address). `ghosts`: the halo grid, for a CubicCellCache.
 template <class W, class Storage, class... Ghosts>
 W& cell_cache(Cursor& cursor, const void* owner, std::uint64_t version, const Storage& storage, const Ghosts&... ghosts) {
@@ -159,7 +159,7 @@ void fetch_cubic_samples(W& walk, const Storage& storage, const Index3& base) {
   for (int a = 0; a < 3; ++a) split[a] = step[a] == 0 ? 4 : std::min(4, 8 - (first[a] & 7));
   const bool inner = storage.is_legal_base({first[0], first[1], first[2]}) &&
                      storage.is_legal_base({base.x + storage.step.x, base.y + storage.step.y, base.z + storage.step.z});
-  const bool whole = inner && !storage.has_invalid_cells;
+  const bool all_valid = inner && !storage.has_invalid_cells;
   for (int part = 0; part < 8; ++part) {
     int from[3], to[3];
     for (int a = 0; a < 3; ++a) {
@@ -170,7 +170,7 @@ void fetch_cubic_samples(W& walk, const Storage& storage, const Index3& base) {
     if (from[0] >= to[0] || from[1] >= to[1] || from[2] >= to[2]) continue;
     const nanovdb::Coord corner(first[0] + from[0] * step[0], first[1] + from[1] * step[1], first[2] + from[2] * step[2]);
     const auto* leaf = walk.values.probeLeaf(corner);
-    const auto* ghosts = whole ? nullptr : walk.halo.probeLeaf(corner);
+    const auto* ghosts = all_valid ? nullptr : walk.halo.probeLeaf(corner);
     const auto constant = leaf ? typename Storage::Value(0.f) : walk.values.getValue(corner);
     for (int z = from[2]; z < to[2]; ++z)
       for (int y = from[1]; y < to[1]; ++y)

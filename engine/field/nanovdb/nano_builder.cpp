@@ -149,7 +149,7 @@ Result<NanoMemory> build_from_blocks(NanoMemory memory, std::uint64_t leaves, st
     for (std::size_t i = run.first; i < run.first + run.count; ++i) counts.lowers += lower_runs[i].is_tile ? 0 : 1;
   }
   if (counts.entries > kMaxRootEntries)
-    return Error{fmt::format("reaches over {} nodes of {}^3 voxels, expected at most {}", counts.entries, kUpperEdge, kMaxRootEntries)};
+    return Error{fmt::format("extends over {} nodes of {}^3 voxels, expected at most {}", counts.entries, kUpperEdge, kMaxRootEntries)};
   // write the nodes from the leaves up
   memory.resize(NanoBuilder<T>::bytes(counts));
   NanoBuilder<T> build(memory.data(), counts, background);
@@ -203,9 +203,9 @@ struct NanoMemory::Region {
   ~Region() { ::munmap(start, bytes); }
 };
 
-NanoMemory NanoMemory::from_mapping(void* start, std::size_t bytes, bool held) {
+NanoMemory NanoMemory::from_mapping(void* start, std::size_t bytes, bool is_counted) {
   NanoMemory memory;
-  memory.region_ = std::make_shared<Region>(start, bytes, held);
+  memory.region_ = std::make_shared<Region>(start, bytes, is_counted);
   memory.data_ = static_cast<std::byte*>(start);
   memory.size_ = bytes;
   return memory;
@@ -232,8 +232,8 @@ void NanoMemory::resize(std::size_t bytes) {
   if (start == MAP_FAILED) throw std::bad_alloc();
   // clears the rest of the last page, which may have been written before
   if (bytes < region_->bytes) {
-    const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)), rest = (page - bytes % page) % page;
-    std::memset(static_cast<std::byte*>(start) + bytes, 0, rest);
+    const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)), remainder = (page - bytes % page) % page;
+    std::memset(static_cast<std::byte*>(start) + bytes, 0, remainder);
   }
   region_->start = start;
   region_->bytes = size_ = bytes;

@@ -95,9 +95,9 @@ class Eroder {
 
   void look_at(Region& region) const {
     const Clipped mask(valid_, box_), cells(cells_ != nullptr ? *cells_ : valid_, box_);
-    const Fill own = cells_ != nullptr ? cells.region(region.origin) : Fill::all;
-    if (own == Fill::none) return;
-    if (own == Fill::all && surrounded(region.origin, kLowerEdge, [&](const Coord& c) { return mask.region(c); })) {
+    const Fill cell_fill = cells_ != nullptr ? cells.region(region.origin) : Fill::all;
+    if (cell_fill == Fill::none) return;
+    if (cell_fill == Fill::all && surrounded(region.origin, kLowerEdge, [&](const Coord& c) { return mask.region(c); })) {
       region.fill = Fill::all;
       return;
     }
@@ -105,10 +105,10 @@ class Eroder {
     for (std::uint32_t n = 0; n < kLowerEntries; ++n) {
       const Coord block = lower_coord(region.origin, n);
       const Fill fill = mask.block(block);
-      const Fill own_block = cells_ != nullptr ? cells.block(block) : Fill::all;
-      if (fill == Fill::none || own_block == Fill::none) continue;
+      const Fill block_fill = cells_ != nullptr ? cells.block(block) : Fill::all;
+      if (fill == Fill::none || block_fill == Fill::none) continue;
       const std::uint64_t bit = std::uint64_t{1} << (n & 63);
-      if (fill == Fill::all && own_block == Fill::all && surrounded(block, kLeafEdge, state)) {
+      if (fill == Fill::all && block_fill == Fill::all && surrounded(block, kLeafEdge, state)) {
         region.full[n >> 6] |= bit;
       } else {
         region.partial[n >> 6] |= bit;
@@ -154,17 +154,18 @@ class Eroder {
 template <class Visit>
 void for_bits(const std::array<std::uint64_t, 64>& bits, const Visit& visit) {
   for (std::uint32_t w = 0; w < 64; ++w)
-    for (std::uint64_t left = bits[w]; left != 0; left &= left - 1) visit(64 * w + static_cast<std::uint32_t>(std::countr_zero(left)));
+    for (std::uint64_t remaining = bits[w]; remaining != 0; remaining &= remaining - 1)
+      visit(64 * w + static_cast<std::uint32_t>(std::countr_zero(remaining)));
 }
 
 }  // namespace
 
 Result<NanoMemory> erode_mask(const NanoMask& valid, const ActiveBox& box, const NanoMask* cells, const NanoAllocator& allocate,
-                              const std::function<Outcome(double bytes)>& ask) {
+                              const std::function<Outcome(double bytes)>& check_memory) {
   const Eroder eroder(valid, box, cells);
   // classify each region
   const std::vector<Coord> origins = eroder.candidates();
-  CATENA_CHECK(ask(static_cast<double>(origins.size()) * sizeof(Region)));
+  CATENA_CHECK(check_memory(static_cast<double>(origins.size()) * sizeof(Region)));
   std::vector<Region> regions(origins.size());
   parallel_for(regions.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
@@ -183,7 +184,7 @@ Result<NanoMemory> erode_mask(const NanoMask& valid, const ActiveBox& box, const
     if (n == 0 || upper_of(regions[n].origin) != upper_of(regions[n - 1].origin)) ++counts.uppers;
   }
   counts.entries = counts.uppers;
-  CATENA_CHECK(ask(static_cast<double>(NanoBuilder<Mask>::bytes(counts))));
+  CATENA_CHECK(check_memory(static_cast<double>(NanoBuilder<Mask>::bytes(counts))));
   NanoMemory memory = allocate(NanoBuilder<Mask>::bytes(counts));
   // write the nodes
   NanoBuilder<Mask> build(memory.data(), counts, false);

@@ -17,7 +17,7 @@ constexpr std::size_t kGrain = 64;
 
 std::uint64_t cube(std::int64_t edge) { return static_cast<std::uint64_t>(edge * edge * edge); }
 
-GridStats nothing() {
+GridStats empty_stats() {
   GridStats s;
   s.min = kInfinity;
   s.max = -kInfinity;
@@ -104,8 +104,8 @@ void add_leaf(GridStats& s, const typename NanoTypes<T>::Leaf& leaf, const MaskV
     const std::uint64_t counted =
         leaf.mValueMask.template getWord<std::uint64_t>(x) & (valid ? valid->word(leaf.mBBoxMin, x) : ~std::uint64_t{0});
     s.active_voxels += static_cast<std::uint64_t>(std::popcount(counted));
-    for (std::uint64_t left = counted; left != 0; left &= left - 1)
-      if (!widen(s, leaf.mValues[64 * x + std::countr_zero(left)])) ++s.nan_count;
+    for (std::uint64_t remaining = counted; remaining != 0; remaining &= remaining - 1)
+      if (!widen(s, leaf.mValues[64 * x + std::countr_zero(remaining)])) ++s.nan_count;
   }
 }
 
@@ -118,10 +118,10 @@ void add_tile(GridStats& s, const nanovdb::Coord& origin, std::int32_t edge, con
 
 /// Calls body(part, begin, end) for ranges of the array in parallel, each with its own `part`, and merges the parts into `all`.
 template <class Part, class Merge, class Body>
-void in_parts(Part& all, std::size_t count, std::size_t grain, const Part& nothing_yet, const Merge& merge_parts, const Body& body) {
+void in_parts(Part& all, std::size_t count, std::size_t grain_size, const Part& initial, const Merge& merge_parts, const Body& body) {
   std::mutex mutex;
-  parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
-    Part part = nothing_yet;
+  parallel_for(count, grain_size, [&](std::size_t begin, std::size_t end) {
+    Part part = initial;
     body(part, begin, end);
     const std::lock_guard<std::mutex> lock(mutex);
     merge_parts(all, part);
@@ -178,28 +178,28 @@ bool is_within_index_limits(const ActiveBox& box) {
 template <class T>
 NanoStats compute_stats(const nanovdb::NanoGrid<T>& grid, const NanoMask* valid) {
   const NanoNodes<T> nodes = view_nodes(grid);
-  GridStats all = nothing();
-  in_parts(all, nodes.leaves.size(), kGrain, nothing(), merge, [&](GridStats& part, std::size_t begin, std::size_t end) {
-    std::optional<MaskView> own;
-    if (valid) own.emplace(*valid);
-    for (std::size_t n = begin; n < end; ++n) add_leaf<T>(part, nodes.leaves[n], own ? &*own : nullptr);
+  GridStats all = empty_stats();
+  in_parts(all, nodes.leaves.size(), kGrain, empty_stats(), merge, [&](GridStats& part, std::size_t begin, std::size_t end) {
+    std::optional<MaskView> valid_view;
+    if (valid) valid_view.emplace(*valid);
+    for (std::size_t n = begin; n < end; ++n) add_leaf<T>(part, nodes.leaves[n], valid_view ? &*valid_view : nullptr);
   });
   const auto add_nodes = [&](const auto& array) {
-    in_parts(all, array.size(), 1, nothing(), merge, [&](GridStats& part, std::size_t begin, std::size_t end) {
-      std::optional<MaskView> own;
-      if (valid) own.emplace(*valid);
+    in_parts(all, array.size(), 1, empty_stats(), merge, [&](GridStats& part, std::size_t begin, std::size_t end) {
+      std::optional<MaskView> valid_view;
+      if (valid) valid_view.emplace(*valid);
       for (std::size_t n = begin; n < end; ++n)
         for_active_tiles(array[n], [&](const nanovdb::Coord& origin, std::int32_t edge, const auto& value) {
-          add_tile(part, origin, edge, value, own ? &*own : nullptr);
+          add_tile(part, origin, edge, value, valid_view ? &*valid_view : nullptr);
         });
     });
   };
   add_nodes(nodes.lowers);
   add_nodes(nodes.uppers);
-  std::optional<MaskView> own;
-  if (valid) own.emplace(*valid);
+  std::optional<MaskView> valid_view;
+  if (valid) valid_view.emplace(*valid);
   for (const auto& entry : nodes.entries)
-    if (entry.isActive()) add_tile(all, entry.origin(), kUpperEdge, entry.value, own ? &*own : nullptr);
+    if (entry.isActive()) add_tile(all, entry.origin(), kUpperEdge, entry.value, valid_view ? &*valid_view : nullptr);
   NanoStats result{all, all.min <= all.max};
   finish(result.stats, typename NanoTypes<T>::Value{});
   if (!result.has_range) {

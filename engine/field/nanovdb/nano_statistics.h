@@ -53,7 +53,7 @@ struct NanoStats {
 template <class T>
 NanoStats compute_stats(const nanovdb::NanoGrid<T>& grid, const NanoMask* valid);
 
-/// Computes the display range of the same values (base/display_range.h); `stats` are theirs.
+/// Computes the display range (base/display_range.h) of the values that compute_stats() counts; `stats` are their statistics.
 template <class T>
 DisplayRange compute_display_range(const nanovdb::NanoGrid<T>& grid, const NanoMask* valid, const GridStats& stats);
 
@@ -66,9 +66,10 @@ std::uint64_t count_voxels(const NanoMask& mask);
 /// Along an axis with a single slice a cell has no thickness. Cost and memory grow with the surface of large tiles, not with their volume.
 /// Private to this module and to engine/io/vdb.
 
-/// Makes the mask of valid cells. `ask` checks the memory budget: it is called with a size in bytes before working memory and before the
-/// buffer are allocated, and may return an Error. `allocate` provides the buffer, in one piece of the exact size. Error: that of `ask`.
+/// Makes the mask of valid cells. `check_memory` checks the memory budget: it is called with a size in bytes before working memory and
+/// before the buffer are allocated, and may return an Error. `allocate` provides the buffer, in one piece of the exact size. Error: that of
+/// `check_memory`.
 Result<NanoMemory> erode_mask(const NanoMask& valid, const ActiveBox& box, const NanoMask* cells, const NanoAllocator& allocate,
-                              const std::function<Outcome(double bytes)>& ask);
+                              const std::function<Outcome(double bytes)>& check_memory);
 
 }  // namespace catena::field

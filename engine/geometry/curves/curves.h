@@ -32,7 +32,7 @@ struct CATENA_EXPORT CurveSet {
   std::vector<PointValues> values{};       ///< Scalars per point; may be empty.
   std::string unit{};                      ///< Unit of length; empty: not specified by the file.
   bool is_patient_space = false;           ///< True: the axes are those of patient space (see the top of this file).
-  std::string note{};                      ///< What was left out or rounded, as text for the user; may be empty.
+  std::string note{};                      ///< Text for the user about points left out or rounded; may be empty.
   Vec3 min_corner{0.0}, max_corner{0.0};   ///< Corners of the bounding box of all points, world units.
   std::uint64_t version = 0;               ///< Unique in the process.
   MemoryReservation memory_reservation{};  ///< Counts the memory against the data budget.
@@ -54,9 +54,9 @@ inline constexpr std::size_t kMaxPoints = 1'000'000'000;  ///< Files with more p
 /// fewer than two points.
 class CATENA_EXPORT CurveSetBuilder {
  public:
-  /// Checks the memory budget for `most_points` points and reserves them. `name` begins every message. Returns an Error when there are more
+  /// Checks the memory budget for `max_points` points and reserves them. `name` begins every message. Returns an Error when there are more
   /// than kMaxPoints or too little memory.
-  static Result<CurveSetBuilder> create(std::string name, std::size_t most_points, std::vector<std::string> value_names);
+  static Result<CurveSetBuilder> create(std::string name, std::size_t max_points, std::vector<std::string> value_names);
 
   /// Appends a point to the open line. `values`: one per name in `value_names`. Returns false, and adds nothing, when the point is not
   /// finite or a coordinate exceeds 1e15, where squared distances lose their precision.

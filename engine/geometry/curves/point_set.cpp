@@ -19,37 +19,37 @@ double spacing_of(const std::vector<glm::vec3>& points) {
   std::vector<double> nearest;
   const std::size_t step = 1 + points.size() / kSampled;
   for (std::size_t i = 0; i < points.size(); i += step) {
-    float least = std::numeric_limits<float>::infinity();
+    float min_distance2 = std::numeric_limits<float>::infinity();
     for (const glm::vec3& p : points) {
       const glm::vec3 e = p - points[i];
       const float d = e.x * e.x + e.y * e.y + e.z * e.z;
-      if (d > 0 && d < least) least = d;
+      if (d > 0 && d < min_distance2) min_distance2 = d;
     }
-    if (std::isfinite(least)) nearest.push_back(std::sqrt(static_cast<double>(least)));
+    if (std::isfinite(min_distance2)) nearest.push_back(std::sqrt(static_cast<double>(min_distance2)));
   }
   return quantile(nearest, 0.5);
 }
 
 }  // namespace
 
-void PointSet::set_positions(const std::vector<Vec3>& places) {
-  // single precision resolves a coordinate to 1 in 2^24: at a distance of this many box edges that leaves 1 in 4096 of an edge
+void PointSet::set_positions(const std::vector<Vec3>& positions) {
+  // single precision resolves 2^-24 of a coordinate, which is 1/4096 of an edge at a distance of this many box edges
   constexpr double kFarEdges = 4096;
   Bounds box;
-  double reach = 0;
-  for (const Vec3& p : places) {
+  double max_coordinate = 0;
+  for (const Vec3& p : positions) {
     box.extend(p);
-    reach = std::max(reach, max_abs(p));
+    max_coordinate = std::max(max_coordinate, max_abs(p));
   }
-  origin = reach > kFarEdges * max_abs(box.hi - box.lo) ? box.center() : Vec3(0.0);
+  origin = max_coordinate > kFarEdges * max_abs(box.hi - box.lo) ? box.center() : Vec3(0.0);
   points.clear();
-  points.reserve(places.size());
-  for (const Vec3& p : places) points.emplace_back(p - origin);
+  points.reserve(positions.size());
+  for (const Vec3& p : positions) points.emplace_back(p - origin);
 }
 
-const PointValues* PointSet::find_values(std::string_view wanted) const {
+const PointValues* PointSet::find_values(std::string_view value_name) const {
   for (const PointValues& one : values)
-    if (one.name == wanted) return &one;
+    if (one.name == value_name) return &one;
   return nullptr;
 }
 

@@ -14,7 +14,7 @@ struct CATENA_EXPORT PointSet {
   Vec3 origin{0.0};                       ///< Origin of `points`, world units; 0 unless they are far from it and close together.
   std::vector<glm::vec3> points;          ///< Positions relative to `origin`.
   std::vector<PointValues> values{};      ///< Numeric columns.
-  std::string note{};                     ///< What was left out, as text for the user; may be empty.
+  std::string note{};                     ///< Text for the user about data left out; may be empty.
   Vec3 min_corner{0.0}, max_corner{0.0};  ///< Corners of the bounding box of all points, world units.
   RobustBounds robust_bounds;             ///< Bounding box without outliers.
   /// Median distance from a point to its nearest neighbor, world units, estimated from a sample; 0: not defined.
@@ -25,7 +25,7 @@ struct CATENA_EXPORT PointSet {
   /// Position of point i, world units.
   Vec3 position(std::size_t i) const { return origin == Vec3(0.0) ? Vec3(points[i]) : origin + Vec3(points[i]); }
   /// Stores these world positions as `origin` and `points`.
-  void set_positions(const std::vector<Vec3>& places);
+  void set_positions(const std::vector<Vec3>& positions);
   /// Memory used by points and values, bytes.
   std::size_t bytes() const { return points.size() * (sizeof(glm::vec3) + values.size() * sizeof(float)); }
   const PointValues* find_values(std::string_view name) const;  ///< Values with that name; nullptr: none.

@@ -21,8 +21,8 @@ RobustBounds compute_robust_bounds(std::span<const glm::vec3> points) {
   for (int a = 0; a < 3; ++a) {
     values.clear();
     for (std::size_t i = 0; i < points.size(); i += step) values.push_back(points[i][a]);
-    const auto at = [&](double share) {
-      const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    const auto at = [&](double fraction) {
+      const auto k = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
       std::nth_element(values.begin(), values.begin() + k, values.end());
       return static_cast<double>(values[static_cast<std::size_t>(k)]);
     };
@@ -31,10 +31,10 @@ RobustBounds compute_robust_bounds(std::span<const glm::vec3> points) {
   }
   // with too few points, or nearly all at one position, no point counts as an outlier
   const double widest = max_abs(high - low),
-               reach = widest > 0 && points.size() >= kFew ? kFence * widest : std::numeric_limits<double>::infinity();
+               margin = widest > 0 && points.size() >= kFew ? kFence * widest : std::numeric_limits<double>::infinity();
   for (const glm::vec3& p : points) {
     bool within = true;
-    for (int a = 0; a < 3; ++a) within = within && p[a] >= low[a] - reach && p[a] <= high[a] + reach;
+    for (int a = 0; a < 3; ++a) within = within && p[a] >= low[a] - margin && p[a] <= high[a] + margin;
     if (within)
       core.box.extend(Vec3(p));
     else

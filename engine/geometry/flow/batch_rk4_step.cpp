@@ -41,12 +41,12 @@ const float* VelocityBricks::make_brick(std::size_t at) const {
   const auto i = static_cast<std::uint32_t>(at);
   const field::Index3 first{static_cast<std::int32_t>(lo_.x), static_cast<std::int32_t>(lo_.y), static_cast<std::int32_t>(lo_.z)};
   const std::uint32_t x = i % bricks_[0], y = i / bricks_[0] % bricks_[1], z = i / bricks_[0] / bricks_[1];
-  std::unique_ptr<float[]> made(new float[kFloatsPerBrick]());
+  std::unique_ptr<float[]> brick(new float[kFloatsPerBrick]());
   fill_brick(
       {first.x + static_cast<std::int32_t>(8 * x), first.y + static_cast<std::int32_t>(8 * y), first.z + static_cast<std::int32_t>(8 * z)},
-      made.get());
+      brick.get());
   const float* expected = nullptr;
-  if (brick_table_[at].compare_exchange_strong(expected, made.get(), std::memory_order_acq_rel)) return made.release();
+  if (brick_table_[at].compare_exchange_strong(expected, brick.get(), std::memory_order_acq_rel)) return brick.release();
   return expected;
 }
 
@@ -175,12 +175,12 @@ CATENA_INLINE void step_all(const VelocityBricks& bricks, const StepControl& con
   for (int i = 0; i < kLanes; ++i) {
     const float relative2 = kRelative2 * g.displacement2[i];
     g.max_error2[i] = control.tolerance2 < relative2 ? control.tolerance2 : relative2;
-    const float share = std::sqrt(std::sqrt(std::sqrt(g.max_error2[i] / (g.error2[i] + 1e-37f))));
-    float factor = 0.9f * share;
+    const float ratio = std::sqrt(std::sqrt(std::sqrt(g.max_error2[i] / (g.error2[i] + 1e-37f))));
+    float factor = 0.9f * ratio;
     factor = factor < 0.2f ? 0.2f : factor;
     factor = factor > 3.0f ? 3.0f : factor;
-    const float longest = control.max_step / std::sqrt(g.speed2[i] + 1e-37f), wanted = std::fabs(g.h[i]) * factor;
-    g.next_h[i] = std::copysign(wanted < longest ? wanted : longest, g.h[i]);
+    const float longest = control.max_step / std::sqrt(g.speed2[i] + 1e-37f), target_step = std::fabs(g.h[i]) * factor;
+    g.next_h[i] = std::copysign(target_step < longest ? target_step : longest, g.h[i]);
   }
 }
 
@@ -204,8 +204,8 @@ bool has_avx2_lanes() {
 
 void step_lanes(const VelocityBricks& bricks, const StepControl& control, LaneGroup& group) {
 #if defined(__x86_64__)
-  static const bool wide = has_avx2_lanes();
-  if (wide) return step_avx2(bricks, control, group);
+  static const bool use_avx2 = has_avx2_lanes();
+  if (use_avx2) return step_avx2(bricks, control, group);
 #endif
   step_baseline(bricks, control, group);
 }

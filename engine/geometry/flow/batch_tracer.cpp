@@ -34,13 +34,13 @@ class BatchBranch {
   /// Initializes the lane at the seed; returns false if `out` is already complete.
   bool start(LaneGroup& group, int i);
   /// Processes the lane's step from step_lanes() and sets up the next one; returns false if `out` is complete.
-  bool take(LaneGroup& group, int i);
+  bool process_step(LaneGroup& group, int i);
 
  private:
-  bool place(LaneGroup& group, int i, const Vec3& world, double first_step);
+  bool place_lane(LaneGroup& group, int i, const Vec3& world, double first_step);
   bool shorten(LaneGroup& group, int i, float factor);
-  bool go_by_hand(LaneGroup& group, int i);
-  bool came_round(const LaneGroup& group, int i);
+  bool continue_exactly(LaneGroup& group, int i);
+  bool close_if_lap(const LaneGroup& group, int i);
   double world_length(const Vec3& local) const;
   double speed(const Float4& k) const;
   void add_knots();
@@ -55,13 +55,13 @@ class BatchBranch {
   Vec3 seed_local_{0.0};
   Vec3 seed_normal_{0.0};  ///< the tangent as a covector in local coordinates
   double height_ = 0;      ///< signed distance from the seed's plane, world units
-  double way_ = 0;         ///< length of the line so far: the sum of its chords, world units
+  double traveled_ = 0;    ///< length of the line so far: the sum of its chords, world units
   Branch& out_;
 };
 
 constexpr float kShortest = 1e-4f;   ///< voxels: below this step length the exact tracer continues
 constexpr double kFirstStep = 0.25;  ///< voxels
-constexpr double kByHand = 0.5;      ///< voxels: length that the exact tracer covers per call
+constexpr double kExactPiece = 0.5;  ///< voxels: length that the exact tracer covers per call
 
 /// Plain square root: rates, positions and voxel sizes of a batch are far from overflow and underflow.
 double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
@@ -93,11 +93,11 @@ double BatchBranch::speed(const Float4& k) const { return world_length(vector_of
 bool BatchBranch::start(LaneGroup& group, int i) {
   seed_local_ = bricks_.local_from_index(flow_.field->mapping().index_from_world(seed_));
   seed_normal_ = tangent_ * bricks_.world_from_rate();
-  return place(group, i, seed_, kFirstStep) || go_by_hand(group, i);
+  return place_lane(group, i, seed_, kFirstStep) || continue_exactly(group, i);
 }
 
 /// Sets the lane to a position; returns false if rounding puts it outside the box, or if it is too slow for floats.
-bool BatchBranch::place(LaneGroup& group, int i, const Vec3& world, double first_step) {
+bool BatchBranch::place_lane(LaneGroup& group, int i, const Vec3& world, double first_step) {
   const Vec3 local = bricks_.local_from_index(flow_.field->mapping().index_from_world(world));
   const Double4 q{local.x, local.y, local.z, 0};
   Float4 k;
@@ -114,42 +114,43 @@ bool BatchBranch::place(LaneGroup& group, int i, const Vec3& world, double first
 
 bool BatchBranch::shorten(LaneGroup& group, int i, float factor) {
   const Float4 moved = group.k[i] * group.h[i];
-  if (!(moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2] > kShortest * kShortest)) return go_by_hand(group, i);
+  if (!(moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2] > kShortest * kShortest)) return continue_exactly(group, i);
   group.h[i] *= factor;
   return true;
 }
 
-/// Continues with the exact tracer until the line ends (returns false), or in pieces of `kByHand` until the lane can take over (true).
-bool BatchBranch::go_by_hand(LaneGroup& group, int i) {
+/// Continues with the exact tracer until the line ends (returns false), or in pieces of `kExactPiece` until the lane can take over (true).
+bool BatchBranch::continue_exactly(LaneGroup& group, int i) {
   std::vector<Knot>& knots = out_.knots;
   const double domain = flow_.field->domain_length();
   add_knots();
   for (;;) {
     const Knot from = knots.back();
     TraceOptions piece = options_;
-    const double left = options_.length - std::fabs(from.s);
-    if (!(left > 1e-12 * domain) || knots.size() >= options_.max_knots) return false;
+    const double remaining = options_.length - std::fabs(from.s);
+    if (!(remaining > 1e-12 * domain) || knots.size() >= options_.max_knots) return false;
     // a line that the exact tracer starts at the seed is traced completely, including the test for a closed line
-    const bool whole = knots.size() == 1;
-    piece.length = whole ? left : std::min(left, kByHand * flow_.field->max_voxel_edge());
-    const Branch tail = trace_branch(flow_, from.p, sign_, piece);
-    for (std::size_t n = 1; n < tail.knots.size(); ++n) {
-      const double s = from.s + tail.knots[n].s, way = std::fabs(s) - std::fabs(knots.back().s);
-      if (way < 1e-10 * domain && (n + 1 < tail.knots.size() || !(way > 0))) continue;
-      knots.push_back({s, tail.knots[n].p, tail.knots[n].t});
+    const bool starts_at_seed = knots.size() == 1;
+    piece.length = starts_at_seed ? remaining : std::min(remaining, kExactPiece * flow_.field->max_voxel_edge());
+    const Branch continuation = trace_branch(flow_, from.p, sign_, piece);
+    for (std::size_t n = 1; n < continuation.knots.size(); ++n) {
+      const double s = from.s + continuation.knots[n].s, distance = std::fabs(s) - std::fabs(knots.back().s);
+      if (distance < 1e-10 * domain && (n + 1 < continuation.knots.size() || !(distance > 0))) continue;
+      knots.push_back({s, continuation.knots[n].p, continuation.knots[n].t});
     }
-    const Termination how = tail.end.termination;
-    out_.end = how == Termination::lap && !whole ? LineEnd{} : tail.end;
-    if (how == Termination::boundary || how == Termination::critical || how == Termination::incoherent || whole || tail.knots.size() < 2)
+    const Termination termination = continuation.end.termination;
+    out_.end = termination == Termination::lap && !starts_at_seed ? LineEnd{} : continuation.end;
+    if (termination == Termination::boundary || termination == Termination::critical || termination == Termination::incoherent ||
+        starts_at_seed || continuation.knots.size() < 2)
       return false;
-    way_ = std::fabs(knots.back().s);
+    traveled_ = std::fabs(knots.back().s);
     height_ = dot(knots.back().p - seed_, tangent_);
     out_.end = {};
-    if (place(group, i, knots.back().p, kFirstStep)) return true;
+    if (place_lane(group, i, knots.back().p, kFirstStep)) return true;
   }
 }
 
-bool BatchBranch::take(LaneGroup& group, int i) {
+bool BatchBranch::process_step(LaneGroup& group, int i) {
   // rejected: a stage left the box or its valid cells (NaN), the line turned by more than 60 degrees, or the error is too large
   const float speed2 = group.speed2[i];
   const RawStep& last = steps_.back();
@@ -164,33 +165,33 @@ bool BatchBranch::take(LaneGroup& group, int i) {
   if (flow_.min_speed > 0 && !(speed(group.k_end[i]) > flow_.min_speed)) return shorten(group, i, 0.5f);
 
   // accepted
-  if (sign_ > 0 && came_round(group, i)) return false;
+  if (sign_ > 0 && close_if_lap(group, i)) return false;
   steps_.back().h = group.h[i];
-  way_ += world_length(vector_of(group.end[i]) - vector_of(group.q[i]));
+  traveled_ += world_length(vector_of(group.end[i]) - vector_of(group.q[i]));
   group.q[i] = group.end[i];
   group.k[i] = group.k_end[i];
   group.h[i] = group.next_h[i];
   steps_.push_back(raw_step(group.q[i], 0, group.k[i]));
-  if (way_ >= options_.length || out_.knots.size() + steps_.size() >= options_.max_knots) {
+  if (traveled_ >= options_.length || out_.knots.size() + steps_.size() >= options_.max_knots) {
     add_knots();
     return false;
   }
   // step length near 0: close to a zero of the field
-  return speed2 * group.h[i] * group.h[i] >= kShortest * kShortest || go_by_hand(group, i);
+  return speed2 * group.h[i] * group.h[i] >= kShortest * kShortest || continue_exactly(group, i);
 }
 
 /// Returns true and completes the line if the step crosses the seed's plane in the seed's direction, within lap_gap_ of the seed.
-bool BatchBranch::came_round(const LaneGroup& group, int i) {
-  const Vec3 end = vector_of(group.end[i]), off = end - seed_local_;
-  const double before = height_, after = dot(off, seed_normal_);
-  height_ = after;
-  if (!(before < 0 && after >= 0)) return false;
+bool BatchBranch::close_if_lap(const LaneGroup& group, int i) {
+  const Vec3 end = vector_of(group.end[i]), offset = end - seed_local_;
+  const double height_before = height_, height_after = dot(offset, seed_normal_);
+  height_ = height_after;
+  if (!(height_before < 0 && height_after >= 0)) return false;
   const Vec3 from = vector_of(group.q[i]);
-  if (world_length(off) > 2 * world_length(end - from) + lap_gap_) return false;
+  if (world_length(offset) > 2 * world_length(end - from) + lap_gap_) return false;
   const double h = static_cast<double>(group.h[i]);
   const Hermite piece(from, end - from, h, vector_of(group.k[i]), vector_of(group.k_end[i]));
   const double theta =
-      illinois_root(0.0, before, 1.0, after, [&](double at) { return dot(piece.evaluate(at) - seed_local_, seed_normal_); });
+      illinois_root(0.0, height_before, 1.0, height_after, [&](double at) { return dot(piece.evaluate(at) - seed_local_, seed_normal_); });
   if (world_length(piece.evaluate(theta) - seed_local_) > lap_gap_ || theta * h <= 0) return false;
   steps_.back().h = static_cast<float>(theta * h);
   const RawStep first = steps_.front();
@@ -207,14 +208,14 @@ void BatchBranch::add_knots() {
   if (steps_.empty()) return;
   const field::Mapping& mapping = flow_.field->mapping();
   const Mat3& linear = bricks_.world_from_rate();
-  const auto place_of = [&](const RawStep& step) {
+  const auto position_of = [&](const RawStep& step) {
     return mapping.world_from_index(bricks_.index_from_local({step.q[0], step.q[1], step.q[2]}));
   };
   std::vector<Knot>& knots = out_.knots;
   Vec3 p = knots.back().p, w = linear * vector_of(steps_.front().k);
   double length = length_of(w), s = std::fabs(knots.back().s);
   for (std::size_t i = 1; i < steps_.size(); ++i) {
-    const Vec3 p_next = place_of(steps_[i]), w_next = linear * vector_of(steps_[i].k);
+    const Vec3 p_next = position_of(steps_[i]), w_next = linear * vector_of(steps_[i].k);
     const double h = static_cast<double>(steps_[i - 1].h), length_next = length_of(w_next);
     // Simpson's rule on the cubic of the step
     const Vec3 middle = (1.5 / h) * (p_next - p) - 0.25 * (w + w_next);
@@ -236,22 +237,22 @@ void BatchBranch::add_knots() {
 }
 
 constexpr double kLapGap = 0.01;           ///< voxels
-constexpr float kLongestStep = 0.5f;       ///< voxels
+constexpr float kMaxStep = 0.5f;           ///< voxels
 constexpr double kByHandTolerance = 1e-8;  ///< tolerance of the exact tracer's pieces, as errors grow near saddles
 
 using Slots = std::vector<std::optional<Result<CurvePtr>>>;
 
-std::vector<Result<CurvePtr>> taken(Slots& slots) {
+std::vector<Result<CurvePtr>> take_results(Slots& slots) {
   std::vector<Result<CurvePtr>> results;
   results.reserve(slots.size());
   for (auto& slot : slots) results.push_back(std::move(*slot));
   return results;
 }
 
-/// Runs one worker per core, `most` at most; each worker takes seeds until none is left.
-void on_all_cores(std::size_t most, const std::function<void()>& worker) {
+/// Runs one worker per core, `max_workers` at most; each worker takes seeds until none is left.
+void on_all_cores(std::size_t max_workers, const std::function<void()>& worker) {
   const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-  parallel_for(std::min(cores, most), 1, [&](std::size_t begin, std::size_t end) {
+  parallel_for(std::min(cores, max_workers), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) worker();
   });
 }
@@ -262,10 +263,10 @@ std::vector<std::uint32_t> along_curve(const Flow& flow, std::span<const Vec3> s
   keys.reserve(seeds.size());
   const field::Box& box = flow.field->index_box();
   for (std::size_t i = 0; i < seeds.size(); ++i) {
-    const Vec3 place = flow.field->mapping().index_from_world(seeds[i]) - box.lo;
+    const Vec3 local = flow.field->mapping().index_from_world(seeds[i]) - box.lo;
     std::uint64_t key = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const double x = place[axis] / 4;
+      const double x = local[axis] / 4;
       const auto n = static_cast<std::uint64_t>(x > 0 && x < 1048576 ? x : 0);
       for (int bit = 0; bit < 20; ++bit) key |= (n >> bit & 1) << (3 * bit + axis);
     }
@@ -286,7 +287,7 @@ class Worker {
       : bricks_(bricks), flow_(flow), seeds_(seeds), order_(order), next_(next), slots_(slots) {
     const double tolerance = options.tolerance * flow.field->domain_length() / flow.field->max_voxel_edge();
     control_.tolerance2 = static_cast<float>(tolerance * tolerance);
-    control_.max_step = options.max_step > 0 ? static_cast<float>(options.max_step) : kLongestStep;
+    control_.max_step = options.max_step > 0 ? static_cast<float>(options.max_step) : kMaxStep;
     trace_.length = options.length;
     trace_.max_knots = options.max_knots;
     trace_.max_step = options.max_step * flow.field->max_voxel_edge();
@@ -301,7 +302,7 @@ class Worker {
     while (busy_ > 0) {
       step_lanes(bricks_, control_, group_);
       for (int i = 0; i < kLanes; ++i)
-        if (lanes_[i].branch && !lanes_[i].branch->take(group_, i)) end_branch(i);
+        if (lanes_[i].branch && !lanes_[i].branch->process_step(group_, i)) end_branch(i);
     }
   }
 
@@ -323,9 +324,9 @@ class Worker {
 
   void begin_next(int i) {
     for (;;) {
-      const std::size_t turn = next_.fetch_add(1, std::memory_order_relaxed);
-      if (turn >= order_.size()) return rest(i);
-      const std::size_t at = order_[turn];
+      const std::size_t order_index = next_.fetch_add(1, std::memory_order_relaxed);
+      if (order_index >= order_.size()) return rest(i);
+      const std::size_t at = order_[order_index];
       const auto tangent = seed_tangent(flow_, seeds_[at]);
       if (!tangent) {
         slots_[at] = tangent.error();
@@ -349,9 +350,9 @@ class Worker {
 
   void end_branch(int i) {
     Lane& lane = lanes_[i];
-    const bool ahead = lane.branch->sign() > 0;
+    const bool is_forward = lane.branch->sign() > 0;
     lane.branch.reset();
-    if (ahead && lane.forward.end.termination != Termination::lap) return begin_branch(i, -1);
+    if (is_forward && lane.forward.end.termination != Termination::lap) return begin_branch(i, -1);
     slots_[lane.seed] = join_branches(flow_, seeds_[lane.seed], lane.forward, lane.backward);
     --busy_;
     begin_next(i);
@@ -395,7 +396,7 @@ std::vector<Result<CurvePtr>> BatchTracer::trace(std::span<const Vec3> seeds) co
   Slots slots(seeds.size());
   std::atomic<std::size_t> next{0};
   on_all_cores((seeds.size() + kLanes - 1) / kLanes, [&] { Worker(*bricks_, flow_, options_, seeds, order, next, slots).run(); });
-  return taken(slots);
+  return take_results(slots);
 }
 
 std::vector<Result<CurvePtr>> trace_all(const Flow& flow, std::span<const Vec3> seeds, const TraceOptions& options) {
@@ -405,7 +406,7 @@ std::vector<Result<CurvePtr>> trace_all(const Flow& flow, std::span<const Vec3> 
     for (std::size_t at; (at = next.fetch_add(1, std::memory_order_relaxed)) < seeds.size();)
       slots[at] = flow::trace(flow, seeds[at], options);
   });
-  return taken(slots);
+  return take_results(slots);
 }
 
 }  // namespace catena::flow

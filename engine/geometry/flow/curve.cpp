@@ -166,7 +166,7 @@ std::uint32_t NearestOnCurve::build_node(std::uint32_t line, std::uint32_t first
 void NearestOnCurve::test_interval(std::size_t line, std::size_t k, const Vec3& x, NearestPoint& best) const noexcept {
   const Knot &a = curves_[line]->knots()[k], &b = curves_[line]->knots()[k + 1];
   const double h = b.s - a.s, below = dot(a.vector_to(x), a.t), above = dot(b.vector_to(x), b.t);
-  const auto offer = [&](double s, const Vec3& p) {
+  const auto update_best = [&](double s, const Vec3& p) {
     const Vec3 e = x - p;
     if (!(dot(e, e) < best.distance2)) return;
     best.line = line;
@@ -174,15 +174,15 @@ void NearestOnCurve::test_interval(std::size_t line, std::size_t k, const Vec3& 
     best.s = s;
     best.distance2 = dot(e, e);
   };
-  offer(a.s, a.p);
-  offer(b.s, b.p);
+  update_best(a.s, a.p);
+  update_best(b.s, b.p);
   if (!(below >= 0 && above <= 0)) return;
   const Hermite piece(a.p, a.vector_to(b), h, a.t, b.t);
   const double theta = piece.foot(x, below * h, above * h);
-  offer(theta >= 1 ? b.s : a.s + theta * h, theta >= 1 ? b.p : piece.evaluate(theta));
+  update_best(theta >= 1 ? b.s : a.s + theta * h, theta >= 1 ? b.p : piece.evaluate(theta));
 }
 
-NearestPoint NearestOnCurve::search(const Vec3& x, int most, double within) const noexcept {
+NearestPoint NearestOnCurve::search(const Vec3& x, int max_work, double within) const noexcept {
   NearestPoint best;
   best.distance2 = within * within;
   best.s = curves_.front()->knots().front().s;
@@ -193,7 +193,7 @@ NearestPoint NearestOnCurve::search(const Vec3& x, int most, double within) cons
   std::array<Waiting, kDepth> waiting;
   std::size_t count = 0;
   waiting[count++] = {0, 0};
-  while (count > 0 && best.work < most) {
+  while (count > 0 && best.work < max_work) {
     const Waiting next = waiting[--count];
     if (!(next.distance2 < best.distance2)) continue;
     const Node& node = nodes_[next.node];

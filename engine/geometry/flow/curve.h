@@ -80,19 +80,20 @@ struct Knot {
   }
 };
 
-/// Why a line ends: at the domain boundary, at a critical point, at the maximum length, after a lap, or in an incoherent cell.
+/// Reason for the end of a line: at the domain boundary, at a critical point, at the maximum length, after a lap, or in an incoherent cell.
 enum class Termination { boundary, critical, length, lap, incoherent };
 CATENA_EXPORT const char* to_string(Termination end);  ///< One of BOUNDARY, CRITICAL, LENGTH, LAP, INCOHERENT.
 
-/// How a line ends, and the sample status there: boundary (box, mask or not_finite), critical (zero), incoherent, or ok.
+/// Reason for the end of a line, and the sample status there: boundary (box, mask or not_finite), critical (zero), incoherent, or ok.
 struct LineEnd {
-  Termination termination;  ///< How the line ends.
+  Termination termination;  ///< Reason for the end.
   SampleStatus status;      ///< Status of the sample at the end.
-  /// Combines how a line ends with the sample status there.
-  LineEnd(Termination how = Termination::length, SampleStatus why = SampleStatus::ok) : termination(how), status(why) {}
+  /// Combines the reason for the end of a line with the sample status there.
+  LineEnd(Termination reason = Termination::length, SampleStatus sample_status = SampleStatus::ok)
+      : termination(reason), status(sample_status) {}
   bool operator==(const LineEnd&) const = default;
   /// Compares the termination only.
-  bool operator==(Termination how) const { return termination == how; }
+  bool operator==(Termination reason) const { return termination == reason; }
 };
 
 /// A streamline as an arc-length curve: knots (s, position, unit tangent) with cubic Hermite dense output between them.
@@ -176,7 +177,7 @@ class CATENA_EXPORT NearestOnCurve {
   }
 
  private:
-  NearestPoint search(const Vec3& x, int most, double within) const noexcept;
+  NearestPoint search(const Vec3& x, int max_candidates, double within) const noexcept;
   struct Node {
     Vec3 lo{0.0}, hi{0.0};
     std::uint32_t line = 0, first = 0, count = 0;  ///< Leaf: curve, first interval and number of intervals.

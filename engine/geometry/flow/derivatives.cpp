@@ -58,9 +58,9 @@ VelocityGradient of_formula(const field::VectorField& field, const Vec3& world, 
   const double delta = kDifference * field.domain_length();
   Vec3 at[7];
   for (int i = 0; i < 7; ++i) {
-    Vec3 place = world;
-    if (i > 0) place[(i - 1) / 2] += i % 2 == 1 ? delta : -delta;
-    const field::VectorSample sample = field.sample(place, cursor);
+    Vec3 position = world;
+    if (i > 0) position[(i - 1) / 2] += i % 2 == 1 ? delta : -delta;
+    const field::VectorSample sample = field.sample(position, cursor);
     ++evaluations;
     if (!sample.inside || !is_finite(sample.value)) return out;
     at[i] = sample.value;

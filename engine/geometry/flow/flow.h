@@ -31,8 +31,8 @@ struct Flow {
   double min_speed = 0;                       ///< Speeds up to this count as zero; unit of the field.
 };
 
-/// Why there is no direction: outside the domain (or not finite), speed zero or below min_speed, no single axis, or turned too far from the
-/// direction at the start of the step.
+/// Reason for a missing direction: outside the domain (or not finite), speed zero or below min_speed, no single axis, or turned too far
+/// from the direction at the start of the step.
 enum class StopReason { none, outside, still, incoherent, turned };
 
 /// Minimum coherence (line_field.h) at which a line field has a direction. Measured on a synthetic heart with noise of 10 degrees and seams

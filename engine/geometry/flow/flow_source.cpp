@@ -11,24 +11,24 @@ constexpr double kSeedSlack = 1e-9;  ///< voxels: a seed this close to a face of
 /// Returns the first theta in [0, 1] at which a coordinate (cubic polynomial c0 .. c3) of the piece passes `face` upward (`side` 1) or
 /// downward (-1); 2 if there is none.
 double first_passage(double c0, double c1, double c2, double c3, double face, double side) {
-  const auto beyond = [&](double theta) { return side * (c0 + theta * (c1 + theta * (c2 + theta * c3)) - face); };
+  const auto excess = [&](double theta) { return side * (c0 + theta * (c1 + theta * (c2 + theta * c3)) - face); };
   // monotonic intervals between the extrema
-  double stations[4] = {0, 1, 1, 1};
+  double limits[4] = {0, 1, 1, 1};
   int count = 1;
   const double a = 3 * c3, b = c2, discriminant = b * b - a * c1;
   if (discriminant > 0) {
-    const double root = std::sqrt(discriminant), far = -(b + (b < 0 ? -root : root));
-    double first = a != 0 ? far / a : 2, second = far != 0 ? c1 / far : 2;
+    const double root = std::sqrt(discriminant), stable_root = -(b + (b < 0 ? -root : root));
+    double first = a != 0 ? stable_root / a : 2, second = stable_root != 0 ? c1 / stable_root : 2;
     if (first > second) std::swap(first, second);
-    if (first > 0 && first < 1) stations[count++] = first;
-    if (second > 0 && second < 1) stations[count++] = second;
+    if (first > 0 && first < 1) limits[count++] = first;
+    if (second > 0 && second < 1) limits[count++] = second;
   }
-  stations[count++] = 1;
-  double from = 0, value = beyond(0);
+  limits[count++] = 1;
+  double from = 0, value = excess(0);
   for (int i = 1; i < count; ++i) {
-    const double next = beyond(stations[i]);
-    if (next > kSlack) return value >= 0 ? from : illinois_root(from, value, stations[i], next, beyond);
-    from = stations[i];
+    const double next = excess(limits[i]);
+    if (next > kSlack) return value >= 0 ? from : illinois_root(from, value, limits[i], next, excess);
+    from = limits[i];
     value = next;
   }
   return 2;
@@ -55,11 +55,11 @@ CellFlowSource::CellFlowSource(const Flow& flow, field::Cursor* cursor)
 
 glm::vec3 CellFlowSource::rounding_error(const Vec3& q) const {
   constexpr double kFar = 500;  // times L
-  const Vec3 place = world(q);
-  if (max_abs(place) <= kFar * grid_->domain_length()) return glm::vec3(0.0f);
+  const Vec3 position = world(q);
+  if (max_abs(position) <= kFar * grid_->domain_length()) return glm::vec3(0.0f);
   // exact rounding error of the sum (Knuth's TwoSum)
-  const Vec3 within = world_difference(q), &origin = mapping_.origin, rest = place - within;
-  return glm::vec3((within - (place - rest)) + (origin - rest));
+  const Vec3 within = world_difference(q), &origin = mapping_.origin, remainder = position - within;
+  return glm::vec3((within - (position - remainder)) + (origin - remainder));
 }
 
 field::VectorCell CellFlowSource::load_cell(const field::Index3& base) {
@@ -105,12 +105,14 @@ bool CellFlowSource::start(const Vec3& seed, const Vec3& u, double sign, Vec3& q
   const field::Index3 found = grid_->cell_base(q + Vec3(first_.x, first_.y, first_.z));
   const field::Index3 base{found.x - first_.x, found.y - first_.y, found.z - first_.z};
   const std::int32_t bases[3] = {base.x, base.y, base.z};
-  int beside[3];
+  int neighbor_step[3];
   for (int axis = 0; axis < 3; ++axis)
-    beside[axis] = q[axis] - bases[axis] <= kSeedSlack ? -1 : bases[axis] + 1 - q[axis] <= kSeedSlack ? 1 : 0;
+    neighbor_step[axis] = q[axis] - bases[axis] <= kSeedSlack ? -1 : bases[axis] + 1 - q[axis] <= kSeedSlack ? 1 : 0;
   for (int c = 0; c < 8; ++c) {
-    if (((c & 1) && beside[0] == 0) || ((c & 2) && beside[1] == 0) || ((c & 4) && beside[2] == 0)) continue;
-    if (!enter_cell({base.x + (c & 1 ? beside[0] : 0), base.y + (c & 2 ? beside[1] : 0), base.z + (c & 4 ? beside[2] : 0)})) continue;
+    if (((c & 1) && neighbor_step[0] == 0) || ((c & 2) && neighbor_step[1] == 0) || ((c & 4) && neighbor_step[2] == 0)) continue;
+    if (!enter_cell(
+            {base.x + (c & 1 ? neighbor_step[0] : 0), base.y + (c & 2 ? neighbor_step[1] : 0), base.z + (c & 4 ? neighbor_step[2] : 0)}))
+      continue;
     if (c != 0)
       for (int axis = 0; axis < 3; ++axis) q[axis] = std::clamp(q[axis], lo_[axis], hi_[axis]);
     return true;
@@ -118,9 +120,9 @@ bool CellFlowSource::start(const Vec3& seed, const Vec3& u, double sign, Vec3& q
   return false;
 }
 
-StopReason CellFlowSource::seed_tangent_at(const Vec3& place, Vec3& u) {
+StopReason CellFlowSource::seed_tangent_at(const Vec3& position, Vec3& u) {
   Vec3 q, w;
-  if (!start(place, Vec3(0.0), 1, q)) return StopReason::outside;
+  if (!start(position, Vec3(0.0), 1, q)) return StopReason::outside;
   // for a line field the reference side is that of the nearest voxel
   if (flow_.is_line_field) reference_ = field::line_axis(load_cell(base_).corner, q - lo_).axis;
   return rate(q, w, u);
@@ -143,38 +145,38 @@ StopReason CellFlowSource::seed_tangent_at(const Vec3& place, Vec3& u) {
 }
 
 CellAdvance CellFlowSource::advance_cell(Vec3& q, const Vec3& w) {
-  CellAdvance settled = CellAdvance::here;
-  for (int hops = 0; hops < 6; ++hops) {
+  CellAdvance result = CellAdvance::here;
+  for (int crossings = 0; crossings < 6; ++crossings) {
     int axis = 0, side = 0;
     for (; axis < 3; ++axis) {
       side =
           q[axis] < lo_[axis] || (q[axis] == lo_[axis] && w[axis] < 0) ? -1 : q[axis] > hi_[axis] || (q[axis] == hi_[axis] && w[axis] > 0);
       if (side != 0) break;
     }
-    if (axis == 3) return settled;
+    if (axis == 3) return result;
     if (!cross_face({0, axis, 0, side})) {
       q[axis] = side < 0 ? lo_[axis] : hi_[axis];
       return CellAdvance::boundary;
     }
-    settled = CellAdvance::moved;
+    result = CellAdvance::moved;
   }
-  return settled;
+  return result;
 }
 
-bool CellFlowSource::find_exit(const Hermite& piece, CellExit& way) const {
-  way.theta = 2;
+bool CellFlowSource::find_exit(const Hermite& piece, CellExit& exit) const {
+  exit.theta = 2;
   for (int axis = 0; axis < 3; ++axis)
     for (int side = -1; side <= 1; side += 2) {
       const double face = side < 0 ? lo_[axis] : hi_[axis];
       const double theta = first_passage(piece.c0[axis], piece.c1[axis], piece.c2[axis], piece.c3[axis], face, side);
-      if (theta < way.theta) way = {theta, axis, face, side};
+      if (theta < exit.theta) exit = {theta, axis, face, side};
     }
-  return way.theta <= 1;
+  return exit.theta <= 1;
 }
 
-bool CellFlowSource::cross_face(const CellExit& way) {
+bool CellFlowSource::cross_face(const CellExit& exit) {
   field::Index3 next = base_;
-  (way.axis == 0 ? next.x : way.axis == 1 ? next.y : next.z) += way.side;
+  (exit.axis == 0 ? next.x : exit.axis == 1 ? next.y : next.z) += exit.side;
   return enter_cell(next);
 }
 

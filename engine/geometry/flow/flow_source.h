@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// What a line is traced through: a formula in world coordinates, or a grid cell by cell in index coordinates, so that cell faces are exact
-/// numbers. Both classes have the interface that the exact tracer (trace.cpp) uses:
+/// Sources of the direction along a traced line: a formula in world coordinates, or a grid cell by cell in index coordinates, so that cell
+/// faces are exact numbers. Both classes have the interface that the exact tracer (trace.cpp) uses:
 ///   start(seed, u, sign, q)   starts at the seed, along sign * u; false: outside the domain
 ///   rate(q, w, u)             u the unit direction of motion in the world, w = dq/ds; or why there is none
-///   advance_cell(q, w)        makes the cell into which the motion goes the current one
-///   find_exit(piece, way)     finds the first point where a Hermite piece leaves the current cell
+///   advance_cell(q, w)        makes the cell that the motion enters the current cell
+///   find_exit(piece, exit)    finds the first point where a Hermite piece leaves the current cell
 /// Off the haptic thread, but without allocation.
 #pragma once
 #include "engine/field/grid/grid.h"
@@ -30,12 +30,12 @@ class FormulaFlowSource {
  public:
   explicit FormulaFlowSource(const Flow& flow) : flow_(flow) {}
   /// Computes the direction u of the field at the seed, or why there is none.
-  StopReason seed_tangent_at(const Vec3& place, Vec3& u) {
-    const StopReason stop = seed_direction(flow_, place, cursor_, u);
-    if (stop == StopReason::outside) outside_status_ = flow_.field->status_outside(place, cursor_);
+  StopReason seed_tangent_at(const Vec3& position, Vec3& u) {
+    const StopReason stop = seed_direction(flow_, position, cursor_, u);
+    if (stop == StopReason::outside) outside_status_ = flow_.field->status_outside(position, cursor_);
     return stop;
   }
-  SampleStatus outside_status() const { return outside_status_; }  ///< Why the last position outside the domain was outside.
+  SampleStatus outside_status() const { return outside_status_; }  ///< Status of the last position outside the domain.
   bool start(const Vec3& seed, const Vec3& u, double sign, Vec3& q) {
     q = seed;
     reference_ = sign * u;
@@ -72,8 +72,8 @@ class CellFlowSource {
  public:
   /// `cursor`: cache of grid accessors to use; null: a cursor of its own.
   explicit CellFlowSource(const Flow& flow, field::Cursor* cursor = nullptr);
-  SampleStatus outside_status() const { return outside_status_; }  ///< Why the last cell that could not be entered could not.
-  StopReason seed_tangent_at(const Vec3& place, Vec3& u);
+  SampleStatus outside_status() const { return outside_status_; }  ///< Status of the last cell that could not be entered.
+  StopReason seed_tangent_at(const Vec3& position, Vec3& u);
   bool start(const Vec3& seed, const Vec3& u, double sign, Vec3& q);
   Vec3 world(const Vec3& q) const { return mapping_.world_from_index(q); }
   Vec3 world_difference(const Vec3& d) const { return mapping_.world_from_index_linear * d; }
@@ -83,9 +83,9 @@ class CellFlowSource {
   /// Moves to neighboring cells while q lies on (or beyond) a face and w points outward. At the boundary q is put onto the face.
   CellAdvance advance_cell(Vec3& q, const Vec3& w);
   /// Finds the first point where `piece` leaves the current cell. Returns false when it stays inside.
-  bool find_exit(const Hermite& piece, CellExit& way) const;
+  bool find_exit(const Hermite& piece, CellExit& exit) const;
   /// Enters the neighboring cell behind a face. Returns false when there is none or it is not valid.
-  bool cross_face(const CellExit& way);
+  bool cross_face(const CellExit& exit);
   void set_reference(const Vec3& motion) { reference_ = motion; }
   double max_step() const { return max_step_; }
 
@@ -114,21 +114,21 @@ class CellFlowSource {
   double max_step_ = 0;
 };
 
-/// Shortens a step of length h from q (rate w there) that leaves the cell through `way`, so that it ends on the face: repeats true steps
+/// Shortens a step of length h from q (rate w there) that leaves the cell through `exit`, so that it ends on the face: repeats true steps
 /// until |q - face| <= 1e-14 L. `rate` is that of the cell; `domain` is L. Returns false when a stage stopped; `step.stop` holds the
 /// reason.
 template <class Medium, class Rate>
-bool land_on_face(const Medium& medium, const Tableau& tableau, const Vec3& q, const Vec3& w, const CellExit& way, double domain,
+bool land_on_face(const Medium& medium, const Tableau& tableau, const Vec3& q, const Vec3& w, const CellExit& exit, double domain,
                   Rate&& rate, double& h, Step& step) {
-  double lo = 0, hi = h, at = way.theta * h;
-  const double unit = norm(medium.world_difference(Vec3(way.axis == 0, way.axis == 1, way.axis == 2)));
+  double lo = 0, hi = h, at = exit.theta * h;
+  const double unit = norm(medium.world_difference(Vec3(exit.axis == 0, exit.axis == 1, exit.axis == 2)));
   for (int i = 0; i < 12; ++i) {
     step = runge_kutta_step(tableau, q, w, at, true, rate);
     if (step.stop != StopReason::none) return false;
-    const double miss = way.side * (q[way.axis] + step.displacement[way.axis] - way.face);
+    const double miss = exit.side * (q[exit.axis] + step.displacement[exit.axis] - exit.face);
     if (std::fabs(miss) * unit <= 1e-14 * domain) break;
     (miss < 0 ? lo : hi) = at;
-    const double next = at - miss / (way.side * step.end_rate[way.axis]);
+    const double next = at - miss / (exit.side * step.end_rate[exit.axis]);
     if (!(hi - lo > 1e-16 * h)) break;
     at = next > lo && next < hi ? next : 0.5 * (lo + hi);
   }

@@ -103,12 +103,12 @@ Step runge_kutta_step(const Tableau& tableau, const Vec3& q, const Vec3& first, 
   return step;
 }
 
-/// Factor by which the step size changes after an error: 0.9 (tolerance/error)^(1/4), clamped to `least`..`most`. Uses square roots
-/// only, so that results are bitwise repeatable.
-inline double step_factor(double error, double tolerance, double least, double most) {
-  if (!(error > 0)) return most;
+/// Factor by which the step size changes after an error: 0.9 (tolerance/error)^(1/4), clamped to `min_factor`..`max_factor`. Uses square
+/// roots only, so that results are bitwise repeatable.
+inline double step_factor(double error, double tolerance, double min_factor, double max_factor) {
+  if (!(error > 0)) return max_factor;
   const double factor = 0.9 * std::sqrt(std::sqrt(tolerance / error));
-  return factor > least ? std::min(factor, most) : least;
+  return factor > min_factor ? std::min(factor, max_factor) : min_factor;
 }
 
 }  // namespace catena::flow

@@ -16,7 +16,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 const double kGoldenAngle = kPi * (3 - std::sqrt(5.0));
 
-double share(int i, int count) { return count > 1 ? static_cast<double>(i) / (count - 1) : 0.5; }
+double parameter_of(int i, int count) { return count > 1 ? static_cast<double>(i) / (count - 1) : 0.5; }
 
 double fraction(double x) { return x - std::floor(x); }
 
@@ -31,12 +31,12 @@ bool clip(const field::Box& box, const Vec3& from, const Vec3& to, double& first
   first = 0;
   last = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    const double way = to[axis] - from[axis];
-    if (way == 0) {
+    const double delta = to[axis] - from[axis];
+    if (delta == 0) {
       if (from[axis] < box.lo[axis] || from[axis] > box.hi[axis]) return false;
       continue;
     }
-    double a = (box.lo[axis] - from[axis]) / way, b = (box.hi[axis] - from[axis]) / way;
+    double a = (box.lo[axis] - from[axis]) / delta, b = (box.hi[axis] - from[axis]) / delta;
     if (a > b) std::swap(a, b);
     first = std::max(first, a);
     last = std::min(last, b);
@@ -49,7 +49,7 @@ bool clip(const field::Box& box, const Vec3& from, const Vec3& to, double& first
 std::vector<Vec3> seeds_on_line(const Vec3& from, const Vec3& to, int count) {
   std::vector<Vec3> seeds;
   for (int i = 0; i < count; ++i) {
-    const double t = share(i, count);
+    const double t = parameter_of(i, count);
     seeds.push_back((1 - t) * from + t * to);
   }
   return seeds;
@@ -58,7 +58,7 @@ std::vector<Vec3> seeds_on_line(const Vec3& from, const Vec3& to, int count) {
 std::vector<Vec3> seeds_on_plane(const Vec3& origin, const Vec3& u, const Vec3& v, int count_u, int count_v) {
   std::vector<Vec3> seeds;
   for (int j = 0; j < count_v; ++j)
-    for (int i = 0; i < count_u; ++i) seeds.push_back(origin + share(i, count_u) * u + share(j, count_v) * v);
+    for (int i = 0; i < count_u; ++i) seeds.push_back(origin + parameter_of(i, count_u) * u + parameter_of(j, count_v) * v);
   return seeds;
 }
 
@@ -86,22 +86,25 @@ std::vector<Vec3> seeds_on_isosurface(const field::ScalarField& field, double le
   field::Cursor cursor;
   const long most_lines = std::max(4096L, 64L * count);
   for (long n = 1; n <= most_lines && static_cast<int>(seeds.size()) < count; ++n) {
-    const double turn = static_cast<double>(n);
-    const Vec3 from = centre + radius * on_unit_sphere(fraction(turn * 0.8566748838545029), fraction(turn * 0.7338918566271260));
-    const Vec3 to = centre + radius * on_unit_sphere(fraction(turn * 0.6287067210378087), fraction(turn * 0.5385972572236101));
+    const double line_number = static_cast<double>(n);
+    const Vec3 from =
+        centre + radius * on_unit_sphere(fraction(line_number * 0.8566748838545029), fraction(line_number * 0.7338918566271260));
+    const Vec3 to =
+        centre + radius * on_unit_sphere(fraction(line_number * 0.6287067210378087), fraction(line_number * 0.5385972572236101));
     double first, last;
     if (!clip(box, mapping.index_from_world(from), mapping.index_from_world(to), first, last)) continue;
     const int steps = std::max(1, static_cast<int>(std::ceil((last - first) * norm(to - from) / step)));
-    const auto place = [&](double t) { return (1 - t) * from + t * to; };
+    const auto point_at = [&](double t) { return (1 - t) * from + t * to; };
     double t_before = first;
-    field::ScalarSample before = field.sample(place(first), cursor);
+    field::ScalarSample previous = field.sample(point_at(first), cursor);
     for (int i = 1; i <= steps && static_cast<int>(seeds.size()) < count; ++i) {
       const double t = first + (last - first) * i / steps;
-      const field::ScalarSample here = field.sample(place(t), cursor);
-      const double a = before.value - level, b = here.value - level;
-      if (before.inside && here.inside && std::isfinite(a) && std::isfinite(b) && (a < 0) != (b < 0))
-        seeds.push_back(place(illinois_root(t_before, a, t, b, [&](double at) { return field.sample(place(at), cursor).value - level; })));
-      before = here;
+      const field::ScalarSample current = field.sample(point_at(t), cursor);
+      const double a = previous.value - level, b = current.value - level;
+      if (previous.inside && current.inside && std::isfinite(a) && std::isfinite(b) && (a < 0) != (b < 0))
+        seeds.push_back(
+            point_at(illinois_root(t_before, a, t, b, [&](double at) { return field.sample(point_at(at), cursor).value - level; })));
+      previous = current;
       t_before = t;
     }
   }
@@ -150,25 +153,25 @@ class Neighbours {
 };
 
 /// Returns the arc length from the seed in the direction `sign` of s up to which the line keeps its distance from others and itself. Adds
-/// the samples to `own` and `own_neighbours`, not to `neighbours`.
-double reach(const Curve& curve, double sign, double d_test, const Neighbours& neighbours, std::vector<Sample>& own,
-             Neighbours& own_neighbours) {
+/// the samples to `own_samples` and `own_neighbours`, not to `neighbours`.
+double free_length(const Curve& curve, double sign, double d_test, const Neighbours& neighbours, std::vector<Sample>& own_samples,
+                   Neighbours& own_neighbours) {
   const double end = sign > 0 ? curve.knots().back().s : -curve.knots().front().s, step = kSampleShare * d_test;
-  double kept = 0;
+  double reached = 0;
   for (double s = step;; s += step) {
     const double at = std::min(s, end);
     const Vec3 p = curve.position(sign * at);
-    if (neighbours.near(p, d_test, [](const Sample&) { return true; })) return kept;
+    if (neighbours.near(p, d_test, [](const Sample&) { return true; })) return reached;
     // samples of the same line count if it returns to them: along the line they must be more than 2 * d_test away
-    const auto comes_back = [&](const Sample& sample) {
-      const double way = std::fabs(sample.s - sign * at), round = curve.is_closed() ? curve.period() - way : way;
-      return std::min(way, round) > 2 * d_test;
+    const auto returns_here = [&](const Sample& sample) {
+      const double difference = std::fabs(sample.s - sign * at), round = curve.is_closed() ? curve.period() - difference : difference;
+      return std::min(difference, round) > 2 * d_test;
     };
-    if (own_neighbours.near(p, d_test, comes_back)) return kept;
-    own.push_back({p, sign * at});
-    own_neighbours.add(own.back());
-    kept = at;
-    if (s >= end) return kept;
+    if (own_neighbours.near(p, d_test, returns_here)) return reached;
+    own_samples.push_back({p, sign * at});
+    own_neighbours.add(own_samples.back());
+    reached = at;
+    if (s >= end) return reached;
   }
 }
 
@@ -184,12 +187,12 @@ CurvePtr extract_subcurve(const Curve& curve, double s0, double s1) {
     knot.t = direction(derivative);
     return knot;
   };
-  const double least = 1e-10 * curve.domain_length();
-  const bool from_start = s0 - knots.front().s <= least, to_end = knots.back().s - s1 <= least;
+  const double tolerance = 1e-10 * curve.domain_length();
+  const bool from_start = s0 - knots.front().s <= tolerance, to_end = knots.back().s - s1 <= tolerance;
   if (from_start && to_end) return std::make_shared<const Curve>(curve);
   std::vector<Knot> part{from_start ? knots.front() : knot_at(s0)};
   for (const Knot& knot : knots)
-    if (knot.s > s0 + least && knot.s < s1 - least) part.push_back(knot);
+    if (knot.s > s0 + tolerance && knot.s < s1 - tolerance) part.push_back(knot);
   part.push_back(to_end ? knots.back() : knot_at(s1));
   const bool cut = curve.is_closed();
   return std::make_shared<const Curve>(std::move(part), false, from_start && !cut ? curve.first_end() : LineEnd{},
@@ -206,35 +209,35 @@ std::vector<CurvePtr> trace_evenly_spaced(const Flow& flow, const EvenSpacingOpt
 
   // traces the candidates together and accepts them in their order
   std::vector<Vec3> candidates;
-  const auto take = [&] {
+  const auto accept_candidates = [&] {
     const auto traced = tracer.trace(candidates);
     for (std::size_t i = 0; i < candidates.size() && lines.size() < spacing.max_lines; ++i) {
       if (!traced[i] || !is_free(candidates[i])) continue;
       const Curve& curve = **traced[i];
-      std::vector<Sample> own{{candidates[i], 0}};
+      std::vector<Sample> own_samples{{candidates[i], 0}};
       Neighbours own_neighbours(d_sep);
-      own_neighbours.add(own.front());
-      const double ahead = reach(curve, 1, d_test, neighbours, own, own_neighbours);
-      const bool whole = curve.is_closed() && ahead >= curve.period();
-      const double behind = curve.is_closed() ? 0 : reach(curve, -1, d_test, neighbours, own, own_neighbours);
-      if (ahead + behind < d_sep) continue;
-      lines.push_back(whole ? *traced[i] : extract_subcurve(curve, -behind, ahead));
-      for (const Sample& sample : own) neighbours.add(sample);
+      own_neighbours.add(own_samples.front());
+      const double forward_length = free_length(curve, 1, d_test, neighbours, own_samples, own_neighbours);
+      const bool is_complete = curve.is_closed() && forward_length >= curve.period();
+      const double backward_length = curve.is_closed() ? 0 : free_length(curve, -1, d_test, neighbours, own_samples, own_neighbours);
+      if (forward_length + backward_length < d_sep) continue;
+      lines.push_back(is_complete ? *traced[i] : extract_subcurve(curve, -backward_length, forward_length));
+      for (const Sample& sample : own_samples) neighbours.add(sample);
     }
     candidates.clear();
   };
 
   for (const Vec3& start : spacing.start_points) {
     candidates.assign(1, start);
-    take();
+    accept_candidates();
   }
   field::Cursor cursor;
   for (std::size_t next = 0; next < lines.size() && lines.size() < spacing.max_lines; ++next) {
     const CurvePtr line = lines[next];
     const double s0 = line->knots().front().s, s1 = line->knots().back().s;
-    const int places = std::max(1, static_cast<int>((s1 - s0) / d_sep));
-    for (int i = 0; i <= places; ++i) {
-      const double s = s0 + (s1 - s0) * i / places;
+    const int intervals = std::max(1, static_cast<int>((s1 - s0) / d_sep));
+    for (int i = 0; i <= intervals; ++i) {
+      const double s = s0 + (s1 - s0) * i / intervals;
       Vec3 p, t;
       line->evaluate_interval(line->find_interval(s), s, p, t);
       t = direction(t);
@@ -245,10 +248,10 @@ std::vector<CurvePtr> trace_evenly_spaced(const Flow& flow, const EvenSpacingOpt
         const auto crowds = [&](const Vec3& other) { return norm(other - candidate) < d_sep; };
         if (std::any_of(candidates.begin(), candidates.end(), crowds)) continue;
         candidates.push_back(candidate);
-        if (candidates.size() == kAtOnce) take();
+        if (candidates.size() == kAtOnce) accept_candidates();
       }
     }
-    take();
+    accept_candidates();
   }
   return lines;
 }

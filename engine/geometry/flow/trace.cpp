@@ -56,16 +56,16 @@ class March {
 
   /// Advances to the cell that the motion enters and evaluates the rate there; returns the line's end if it ends here.
   std::optional<LineEnd> start_in_cell() {
-    for (int tries = 0; tries < 4; ++tries) {
+    for (int attempt = 0; attempt < 4; ++attempt) {
       Vec3 u;
       const StopReason stop = medium_.rate(q_, w_, u);
       if (stop != StopReason::none) return make_line_end(stop, medium_.outside_status());
       if (dot(u, u_) < 0.5) return critical();
       u_ = u;
       medium_.set_reference(u_);
-      const CellAdvance settled = medium_.advance_cell(q_, w_);
-      if (settled == CellAdvance::boundary) return boundary();
-      if (settled == CellAdvance::here) break;
+      const CellAdvance cell_advance = medium_.advance_cell(q_, w_);
+      if (cell_advance == CellAdvance::boundary) return boundary();
+      if (cell_advance == CellAdvance::here) break;
     }
     return std::nullopt;
   }
@@ -81,7 +81,7 @@ class March {
     Step step = runge_kutta_step(tableaus::dp54, q_, w_, h, true, rates());
     if (step.stop != StopReason::none) return shorten(knots, step.stop, h);
     Vec3 u_end = u_last_;
-    // far from the origin the tolerance is limited by the rounding of positions: a smaller one would halve the step endlessly
+    // far from the origin the rounding of positions limits the tolerance: a smaller tolerance would halve the step endlessly
     const double rounding = kRounding * norm(medium_.world_difference(q_));
     const double tolerance = std::max(options_.tolerance * domain_, rounding);
     const double hermite_tolerance = std::max(options_.hermite_tolerance * domain_, rounding);
@@ -95,22 +95,23 @@ class March {
     const double grown = h * std::min(step_factor(error, tolerance, 0.5, 3.0), step_factor(gap, hermite_tolerance, 0.5, 3.0));
 
     // the step leaves the cell: it is shortened to end on the face
-    CellExit way;
-    const bool left = !forced && medium_.find_exit(piece, way);
-    if (left) {
-      if (way.theta * h <= 1e-14 * domain_) {
+    CellExit cell_exit;
+    const bool leaves_cell = !forced && medium_.find_exit(piece, cell_exit);
+    if (leaves_cell) {
+      if (cell_exit.theta * h <= 1e-14 * domain_) {
         ++idle_;
-        if (!medium_.cross_face(way)) return boundary();
+        if (!medium_.cross_face(cell_exit)) return boundary();
         return start_without_settling();
       }
-      if (!land_on_face(medium_, tableaus::dp54, q_, w_, way, domain_, rates(), h, step)) return shorten(knots, StopReason::turned, h);
+      if (!land_on_face(medium_, tableaus::dp54, q_, w_, cell_exit, domain_, rates(), h, step))
+        return shorten(knots, StopReason::turned, h);
       u_end = u_last_;
       piece = Hermite(q_, step.displacement, h, w_, step.end_rate);
     }
     forced_ = forced ? std::min(2 * forced_, domain_) : 1e-8 * domain_;
     idle_ = 0;
     Vec3 next = q_ + step.displacement;
-    if (left) next[way.axis] = way.face;
+    if (leaves_cell) next[cell_exit.axis] = cell_exit.face;
     if (sign_ > 0 && closes(next, h, piece, knots)) return LineEnd{Termination::lap, SampleStatus::ok};
 
     // accept the step
@@ -122,9 +123,9 @@ class March {
     h_ = std::max(grown, h);
     medium_.set_reference(u_);
     std::optional<LineEnd> end;
-    if (left && !medium_.cross_face(way)) end = boundary();
+    if (leaves_cell && !medium_.cross_face(cell_exit)) end = boundary();
     if (!end) end = start_in_cell();
-    // of knots closer than 1e-10 L only the later one is stored; the seed's is always stored
+    // if knots are closer than 1e-10 L, only the later one is stored; the knot at the seed is always stored
     const bool close = s_ - std::fabs(knots.back().s) < 1e-10 * domain_;
     if (close && knots.size() > 1) knots.pop_back();
     if (!close || knots.size() > 1 || end) knots.push_back({sign_ * s_, medium_.world(q_), sign_ * u_, medium_.rounding_error(q_)});
@@ -166,26 +167,26 @@ class March {
     const Vec3 p = knots.back().p;
     const auto zero = find_zero(flow_, p, u_, kCapture * domain_, zero_cursor_, 56, evaluations);
     if (!zero) return std::nullopt;
-    const double way = norm(*zero - p);
-    if (dot(*zero - p, u_) < 0.2 * way) return std::nullopt;  // the zero is beside the line, or the line circles around a center
-    if (way > 1e-12 * domain_) knots.push_back({sign_ * (s_ + way), *zero, sign_ * direction(*zero - p)});
+    const double distance = norm(*zero - p);
+    if (dot(*zero - p, u_) < 0.2 * distance) return std::nullopt;  // the zero is beside the line, or the line circles around a center
+    if (distance > 1e-12 * domain_) knots.push_back({sign_ * (s_ + distance), *zero, sign_ * direction(*zero - p)});
     return critical();
   }
 
   /// Tests for a closed line: the step crosses the seed's plane within 1e-7 L of the seed, in the seed's direction.
   bool closes(const Vec3& next, double h, const Hermite& piece, std::vector<Knot>& knots) {
     const Vec3 end = medium_.world(next);
-    const double before = height_, after = dot(end - seed_, u_seed_);
-    height_ = after;
-    if (!(before < 0 && after >= 0) || norm(end - seed_) > 2 * h + 1e-6 * domain_) return false;
+    const double height_before = height_, height_after = dot(end - seed_, u_seed_);
+    height_ = height_after;
+    if (!(height_before < 0 && height_after >= 0) || norm(end - seed_) > 2 * h + 1e-6 * domain_) return false;
     const auto height = [&](double theta) { return dot(medium_.world(piece.evaluate(theta)) - seed_, u_seed_); };
-    double at = h * illinois_root(0.0, before, 1.0, after, height);
+    double at = h * illinois_root(0.0, height_before, 1.0, height_after, height);
     for (int i = 0; i < 2 && at > 0; ++i) {
       const Step landing = runge_kutta_step(tableaus::dp54, q_, w_, at, true, rates());
       if (landing.stop != StopReason::none) return false;
-      const Vec3 place = medium_.world(q_ + landing.displacement);
-      if (norm(place - seed_) > 1e-7 * domain_ || dot(u_last_, u_seed_) < 0.5) return false;
-      at -= dot(place - seed_, u_seed_) / dot(u_last_, u_seed_);
+      const Vec3 position = medium_.world(q_ + landing.displacement);
+      if (norm(position - seed_) > 1e-7 * domain_ || dot(u_last_, u_seed_) < 0.5) return false;
+      at -= dot(position - seed_, u_seed_) / dot(u_last_, u_seed_);
     }
     if (at <= 1e-12 * domain_ && knots.size() > 2) knots.pop_back();
     knots.push_back({std::max(s_ + at, s_ * (1 + 1e-15)), seed_, u_seed_});
@@ -221,13 +222,14 @@ std::string domain_text(const field::Field& field) {
 Error no_direction(const Flow& flow, const Vec3& seed, StopReason stop) {
   const std::string name = flow.field->name().empty() ? "the field" : "field '" + flow.field->name() + "'";
   if (stop == StopReason::outside)
-    return Error{"seed " + triple(seed) + " lies outside the domain of " + name + " (its box goes from " + domain_text(*flow.field) +
-                 "; masked and non-finite cells do not count)"};
+    return Error{"seed " + triple(seed) + " is outside the domain of " + name + " (a box from " + domain_text(*flow.field) +
+                 " without masked and non-finite cells)"};
   if (stop == StopReason::incoherent)
-    return Error{"seed " + triple(seed) + ": the axes of the line field " + name + " disagree there, so no single line passes through it"};
+    return Error{"seed " + triple(seed) + ": the axes of the line field " + name +
+                 " disagree at the seed, so that no single line passes through it"};
   if (flow.min_speed > 0)
-    return Error{"seed " + triple(seed) + ": the speed of " + name + " is not above min_speed " + to_text(flow.min_speed) + " there"};
-  return Error{"seed " + triple(seed) + ": " + name + " is zero there, so no line passes through it"};
+    return Error{"seed " + triple(seed) + ": the speed of " + name + " at the seed is not above min_speed " + to_text(flow.min_speed)};
+  return Error{"seed " + triple(seed) + ": " + name + " is zero at the seed, so that no line passes through it"};
 }
 
 template <class Medium>
@@ -238,17 +240,17 @@ Result<Vec3> tangent_in(Medium medium, const Flow& flow, const Vec3& seed) {
 }
 
 template <class Medium>
-Branch march_in(Medium medium, const Flow& flow, const Vec3& place, double sign, const TraceOptions& options) {
+Branch march_in(Medium medium, const Flow& flow, const Vec3& start, double sign, const TraceOptions& options) {
   Vec3 u;
-  const StopReason stop = medium.seed_tangent_at(place, u);
+  const StopReason stop = medium.seed_tangent_at(start, u);
   if (stop != StopReason::none) return {{}, make_line_end(stop, medium.outside_status())};
-  return March<Medium>(medium, flow, options).run(place, u, sign);
+  return March<Medium>(medium, flow, options).run(start, u, sign);
 }
 
 template <class Medium>
 Result<CurvePtr> trace_in(Medium medium, const Flow& flow, const Vec3& seed, const TraceOptions& options) {
   CATENA_TRY(const Vec3 u, tangent_in(medium, flow, seed));
-  // backward as well, unless the line is closed
+  // the line is traced backward as well, unless it is closed
   Branch forward = March<Medium>(medium, flow, options).run(seed, u, 1);
   Branch backward;
   if (forward.end.termination != Termination::lap) backward = March<Medium>(medium, flow, options).run(seed, u, -1);
@@ -262,9 +264,9 @@ Result<Vec3> seed_tangent(const Flow& flow, const Vec3& seed) {
   return flow.field->grid() ? tangent_in(CellFlowSource(flow), flow, seed) : tangent_in(FormulaFlowSource(flow), flow, seed);
 }
 
-Branch trace_branch(const Flow& flow, const Vec3& place, double sign, const TraceOptions& options) {
-  return flow.field->grid() ? march_in(CellFlowSource(flow), flow, place, sign, options)
-                            : march_in(FormulaFlowSource(flow), flow, place, sign, options);
+Branch trace_branch(const Flow& flow, const Vec3& start, double sign, const TraceOptions& options) {
+  return flow.field->grid() ? march_in(CellFlowSource(flow), flow, start, sign, options)
+                            : march_in(FormulaFlowSource(flow), flow, start, sign, options);
 }
 
 Result<CurvePtr> join_branches(const Flow& flow, const Vec3& seed, const Branch& forward, const Branch& backward) {
@@ -275,7 +277,7 @@ Result<CurvePtr> join_branches(const Flow& flow, const Vec3& seed, const Branch&
   knots.reserve(backward.knots.size() + forward.knots.size());
   knots.assign(backward.knots.rbegin(), backward.knots.rend());
   knots.insert(knots.end(), forward.knots.begin() + 1, forward.knots.end());
-  if (knots.size() < 2) return Error{"seed " + triple(seed) + ": the line ends on the spot in both directions"};
+  if (knots.size() < 2) return Error{"seed " + triple(seed) + ": the line has no length in either direction"};
   return CurvePtr(std::make_shared<const Curve>(std::move(knots), false, backward.end, forward.end, domain));
 }
 

@@ -27,7 +27,7 @@ Result<Vec3> seed_tangent(const Flow& flow, const Vec3& seed);
 TraceOptions resolve_options(const Flow& flow, TraceOptions options);
 
 /// Traces one direction with the exact tracer, from a position on a line (or, by rounding, next to the domain boundary).
-Branch trace_branch(const Flow& flow, const Vec3& place, double sign, const TraceOptions& options);
+Branch trace_branch(const Flow& flow, const Vec3& start, double sign, const TraceOptions& options);
 
 /// Joins both directions at the seed. Returns an Error when the line has no length in either direction.
 Result<CurvePtr> join_branches(const Flow& flow, const Vec3& seed, const Branch& forward, const Branch& backward);

@@ -8,10 +8,10 @@
 namespace catena::flow {
 namespace {
 
-constexpr double kLeastSwirl = 0.01;      // minimum imaginary part of the complex pair, relative to |J|
-constexpr double kLeastVorticity = 1e-4;  // minimum |curl v|, relative to |J|
-constexpr double kLeastChange = 1e-6;     // minimum of L |J|, relative to |v|
-constexpr double kAlongParticle = 1e-4;   // step of the central difference of the acceleration along v for formulas, as a fraction of L
+constexpr double kMinSwirl = 0.01;       // minimum imaginary part of the complex pair, relative to |J|
+constexpr double kMinVorticity = 1e-4;   // minimum |curl v|, relative to |J|
+constexpr double kMinChange = 1e-6;      // minimum of L |J|, relative to |v|
+constexpr double kAlongParticle = 1e-4;  // step of the central difference of the acceleration along v for formulas, as a fraction of L
 
 double size_of(const Mat3& m) { return std::sqrt(dot(m[0], m[0]) + dot(m[1], m[1]) + dot(m[2], m[2])); }
 
@@ -34,13 +34,13 @@ bool complex_pair(const Mat3& j, Vec3& axis, double& swirl) {
     (value > 0 ? hi : lo) = x;
     double next = x - value / ((3 * x - 2 * trace) * x + minors);
     if (!(next > lo && next < hi)) next = 0.5 * (lo + hi);
-    const double moved = std::fabs(next - x);
+    const double change = std::fabs(next - x);
     x = next;
-    if (moved <= 1e-15 * size) break;
+    if (change <= 1e-15 * size) break;
   }
-  const double half = 0.5 * (x - trace), rest = minors + x * (x - trace), under = rest - half * half;
-  if (!(under > kLeastSwirl * kLeastSwirl * size * size)) return false;
-  swirl = std::sqrt(under);
+  const double half = 0.5 * (x - trace), pair_product = minors + x * (x - trace), swirl2 = pair_product - half * half;
+  if (!(swirl2 > kMinSwirl * kMinSwirl * size * size)) return false;
+  swirl = std::sqrt(swirl2);
   // null space of J - x: the longest cross product of two rows
   const Vec3 a(j[0][0] - x, j[1][0], j[2][0]), b(j[0][1], j[1][1] - x, j[2][1]), c(j[0][2], j[1][2], j[2][2] - x);
   for (const Vec3& n : {cross(a, b), cross(b, c), cross(c, a)})
@@ -105,9 +105,9 @@ bool NodeBlock::gradient(int i, int j, int k, Mat3& by_index) const {
     int up[3] = {i, j, k}, down[3] = {i, j, k};
     if (valid_nodes_[at(i + (axis == 0), j + (axis == 1), k + (axis == 2))] != 0) ++up[axis];
     if (valid_nodes_[at(i - (axis == 0), j - (axis == 1), k - (axis == 2))] != 0) --down[axis];
-    const int apart = up[axis] - down[axis];
-    if (apart == 0 || valid_nodes_[at(node[0], node[1], node[2])] == 0) return false;
-    by_index[axis] = (value(up[0], up[1], up[2]) - value(down[0], down[1], down[2])) * (1.0 / apart);
+    const int distance = up[axis] - down[axis];
+    if (distance == 0 || valid_nodes_[at(node[0], node[1], node[2])] == 0) return false;
+    by_index[axis] = (value(up[0], up[1], up[2]) - value(down[0], down[1], down[2])) * (1.0 / distance);
   }
   return true;
 }
@@ -117,10 +117,10 @@ CoreSample evaluate_criterion(CoreCriterion criterion, const CoreFlow& flow, con
   out.is_inside = true;
   const Mat3& j = flow.gradient;
   const double size = size_of(j), speed = norm(flow.v);
-  if (!(size * length > kLeastChange * speed) || !std::isfinite(size)) return out;
+  if (!(size * length > kMinChange * speed) || !std::isfinite(size)) return out;
   if (criterion == CoreCriterion::vorticity) {
     const Vec3 w = curl(j);
-    if (!(norm(w) > kLeastVorticity * size)) return out;
+    if (!(norm(w) > kMinVorticity * size)) return out;
     out.axis = direction(w);
   } else if (!complex_pair(j, out.axis, out.swirl)) {
     return out;
@@ -129,9 +129,9 @@ CoreSample evaluate_criterion(CoreCriterion criterion, const CoreFlow& flow, con
   perpendicular_basis(out.axis, a, b);
   const Vec3 ja = j * a, jb = j * b;
   const double aa = dot(a, ja), ab = dot(a, jb), ba = dot(b, ja), bb = dot(b, jb), det = aa * bb - ab * ba;
-  const double turns = 4 * det - (aa + bb) * (aa + bb);
-  if (!(turns > 4 * kLeastSwirl * kLeastSwirl * (aa * aa + ab * ab + ba * ba + bb * bb))) return out;
-  if (criterion == CoreCriterion::vorticity) out.swirl = 0.5 * std::sqrt(turns);
+  const double discriminant = 4 * det - (aa + bb) * (aa + bb);
+  if (!(discriminant > 4 * kMinSwirl * kMinSwirl * (aa * aa + ab * ab + ba * ba + bb * bb))) return out;
+  if (criterion == CoreCriterion::vorticity) out.swirl = 0.5 * std::sqrt(discriminant);
   if (criterion == CoreCriterion::parallel_vectors) {
     // near a core line D^2 v / Dt^2 is -swirl^2 times the velocity orthogonal to it
     const Vec3 along = direction(flow.v);
@@ -156,8 +156,8 @@ bool CoreField::sample_flow(const Vec3& world, CoreFlow& out) {
     if (!field_.index_box().contains(field_.mapping().index_from_world(world))) return false;
     int evaluations = 0;
     const VelocityGradient found = compute_velocity_gradient(field_, world, cursor_, evaluations);
-    const double share = found.scale / scale_;
-    out = {found.v * share, found.gradient * share};
+    const double ratio = found.scale / scale_;
+    out = {found.v * ratio, found.gradient * ratio};
     return found.is_valid;
   }
   const field::VectorGrid& grid = *field_.grid();
@@ -204,12 +204,12 @@ CoreSample CoreField::evaluate(const Vec3& world, const CoreFlow& flow) {
     const double speed = norm(flow.v);
     if (speed > 0) {
       // difference along the particle's path, over a voxel to both sides, or one-sided at the boundary
-      const Vec3 way = direction(flow.v) * difference_step_, here = flow.gradient * flow.v;
-      Vec3 ahead = here, behind = here;
-      const bool is_ahead = acceleration(world + way, ahead), is_behind = acceleration(world - way, behind);
-      const int apart = static_cast<int>(is_ahead) + static_cast<int>(is_behind);
-      if (apart == 0) return {};
-      second = (ahead - behind) * (speed / (apart * difference_step_));
+      const Vec3 offset = direction(flow.v) * difference_step_, at_center = flow.gradient * flow.v;
+      Vec3 ahead = at_center, behind = at_center;
+      const bool is_ahead = acceleration(world + offset, ahead), is_behind = acceleration(world - offset, behind);
+      const int distance = static_cast<int>(is_ahead) + static_cast<int>(is_behind);
+      if (distance == 0) return {};
+      second = (ahead - behind) * (speed / (distance * difference_step_));
     }
   }
   return evaluate_criterion(criterion_, flow, second, field_.domain_length());

@@ -27,10 +27,10 @@ std::vector<Vec3> spline_slopes(const std::vector<Vec3>& p, const std::vector<do
       } else if (!closed && k == n - 1) {
         m[k] = (p[k] - p[k - 1]) * (2 / h[k - 1]) - m[k - 1];
       } else {
-        const std::size_t before = k == 0 ? n - 1 : k - 1, after = (k + 1) % n;
-        const double a = 1 / h[before], b = 1 / h[k];
-        const Vec3 right = ((p[k] - p[before]) * (a * a) + (p[after] - p[k]) * (b * b)) * 3.0;
-        m[k] = (right - m[before] * a - m[after] * b) * (0.5 / (a + b));
+        const std::size_t previous = k == 0 ? n - 1 : k - 1, next = (k + 1) % n;
+        const double a = 1 / h[previous], b = 1 / h[k];
+        const Vec3 right_side = ((p[k] - p[previous]) * (a * a) + (p[next] - p[k]) * (b * b)) * 3.0;
+        m[k] = (right_side - m[previous] * a - m[next] * b) * (0.5 / (a + b));
       }
     }
   return m;
@@ -38,65 +38,65 @@ std::vector<Vec3> spline_slopes(const std::vector<Vec3>& p, const std::vector<do
 
 /// Returns the arc length of a Hermite piece, by the five-point Gauss-Legendre rule.
 double length_of(const Hermite& piece) {
-  constexpr double places[] = {0.0, 0.5384693101056831, 0.9061798459386640};
+  constexpr double abscissae[] = {0.0, 0.5384693101056831, 0.9061798459386640};
   constexpr double weights[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
   double sum = weights[0] * norm(piece.derivative(0.5));
   for (int i = 1; i < 3; ++i)
-    sum += weights[i] * (norm(piece.derivative(0.5 - 0.5 * places[i])) + norm(piece.derivative(0.5 + 0.5 * places[i])));
+    sum += weights[i] * (norm(piece.derivative(0.5 - 0.5 * abscissae[i])) + norm(piece.derivative(0.5 + 0.5 * abscissae[i])));
   return 0.5 * sum;
 }
 
 }  // namespace
 
-std::vector<Vec3> fair_points(const std::vector<Vec3>& places, bool closed, int reach) {
-  const int n = static_cast<int>(places.size());
-  std::vector<Vec3> out(places);
+std::vector<Vec3> fair_points(const std::vector<Vec3>& points, bool closed, int half_window) {
+  const int n = static_cast<int>(points.size());
+  std::vector<Vec3> out(points);
   for (int i = 0; i < n; ++i) {
-    const int half = closed ? std::min(reach, (n - 1) / 2) : std::min({reach, i, n - 1 - i});
+    const int half = closed ? std::min(half_window, (n - 1) / 2) : std::min({half_window, i, n - 1 - i});
     if (half < 2) continue;
-    const auto at = [&](int k) -> const Vec3& { return places[static_cast<std::size_t>((i + k + n) % n)]; };
+    const auto at = [&](int k) -> const Vec3& { return points[static_cast<std::size_t>((i + k + n) % n)]; };
     // least-squares parabola, parametrized by chord length
-    Mat3 normal(0.0), right(0.0);
+    Mat3 normal(0.0), right_side(0.0);
     const auto add = [&](double u, const Vec3& p) {
       const Vec3 powers(1, u, u * u);
       for (int r = 0; r < 3; ++r) {
         normal[r] += powers * powers[r];
-        right[r] += p * powers[r];
+        right_side[r] += p * powers[r];
       }
     };
     const double unit = norm(at(1) - at(0));
     add(0, Vec3(0.0));
-    for (const int way : {-1, 1}) {
+    for (const int direction_sign : {-1, 1}) {
       double u = 0;
       for (int k = 1; k <= half; ++k) {
-        u += way * norm(at(way * k) - at(way * (k - 1))) / unit;
-        add(u, at(way * k) - places[static_cast<std::size_t>(i)]);
+        u += direction_sign * norm(at(direction_sign * k) - at(direction_sign * (k - 1))) / unit;
+        add(u, at(direction_sign * k) - points[static_cast<std::size_t>(i)]);
       }
     }
     const Mat3 inverse = glm::inverse(normal);
-    const Vec3 moved = right[0] * inverse[0][0] + right[1] * inverse[1][0] + right[2] * inverse[2][0];
+    const Vec3 moved = right_side[0] * inverse[0][0] + right_side[1] * inverse[1][0] + right_side[2] * inverse[2][0];
     if (is_finite(moved)) out[static_cast<std::size_t>(i)] += moved;
   }
   return out;
 }
 
-CurvePtr spline_through(const std::vector<Vec3>& places, bool closed, const LineEnd& first, const LineEnd& last, double domain_length) {
-  const std::size_t n = places.size(), pieces = closed ? n : n - 1;
+CurvePtr spline_through(const std::vector<Vec3>& points, bool closed, const LineEnd& first, const LineEnd& last, double domain_length) {
+  const std::size_t n = points.size(), pieces = closed ? n : n - 1;
   std::vector<double> h(pieces);
-  for (std::size_t k = 0; k < pieces; ++k) h[k] = norm(places[(k + 1) % n] - places[k]);
+  for (std::size_t k = 0; k < pieces; ++k) h[k] = norm(points[(k + 1) % n] - points[k]);
   // parametrized by chord length first, then by the arc lengths of the resulting spline
-  std::vector<Vec3> slopes = spline_slopes(places, h, closed);
+  std::vector<Vec3> slopes = spline_slopes(points, h, closed);
   for (int pass = 0; pass < 2; ++pass) {
     for (std::size_t k = 0; k < pieces; ++k) {
       const std::size_t next = (k + 1) % n;
-      h[k] = length_of(Hermite(places[k], places[next] - places[k], h[k], slopes[k], slopes[next]));
+      h[k] = length_of(Hermite(points[k], points[next] - points[k], h[k], slopes[k], slopes[next]));
     }
-    slopes = spline_slopes(places, h, closed);
+    slopes = spline_slopes(points, h, closed);
   }
   std::vector<Knot> knots;
   double s = 0;
   for (std::size_t k = 0; k <= pieces; ++k) {
-    knots.push_back({s, places[k % n], direction(slopes[k % n])});
+    knots.push_back({s, points[k % n], direction(slopes[k % n])});
     if (k < pieces) s += h[k];
   }
   return std::make_shared<const Curve>(std::move(knots), closed, first, last, domain_length);

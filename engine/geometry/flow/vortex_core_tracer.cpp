@@ -8,12 +8,12 @@ namespace catena::flow {
 namespace {
 
 constexpr int kCoreCorrections = 16, kCoreHalvings = 4, kCoreEndHalvings = 12;
-constexpr double kCoreTurn = 0.5;                // minimum cosine of the angle between two steps
-constexpr double kCoreTolerance = 1e-13;         // as a fraction of L
-constexpr double kKinkTolerance = 1e-3;          // as a fraction of the spacing: accepted where grad v has a kink
-constexpr double kSameCore = 0.5;                // as a fraction of the spacing: points this close belong to one line
-constexpr double kLastStep = 0.3;                // minimum length of the last step of a line, as a fraction of the step size
-constexpr std::size_t kMostCoreSteps = 400'000;  // per line and direction
+constexpr double kCoreTurn = 0.5;               // minimum cosine of the angle between two steps
+constexpr double kCoreTolerance = 1e-13;        // as a fraction of L
+constexpr double kKinkTolerance = 1e-3;         // as a fraction of the spacing: accepted where grad v has a kink
+constexpr double kSameCore = 0.5;               // as a fraction of the spacing: points this close belong to one line
+constexpr double kLastStep = 0.3;               // minimum length of the last step of a line, as a fraction of the step size
+constexpr std::size_t kMaxCoreSteps = 400'000;  // per line and direction
 
 }  // namespace
 
@@ -25,49 +25,49 @@ CoreTracer::CoreTracer(const field::VectorField& field, CoreCriterion criterion,
       tolerance_(kCoreTolerance * field.domain_length()),
       rough_(has_kinks ? kKinkTolerance * spacing : 1e-9 * field.domain_length()) {}
 
-/// Corrects a point to the core line by Newton's method in the plane through `place` orthogonal to `along`.
-CoreTracer::CorrectedPoint CoreTracer::correct(Vec3 place, const Vec3& along) {
+/// Corrects a point to the core line by Newton's method in the plane through `position` orthogonal to `along`.
+CoreTracer::CorrectedPoint CoreTracer::correct(Vec3 position, const Vec3& along) {
   CorrectedPoint out;
-  const Vec3 from = place;
+  const Vec3 from = position;
   Vec3 a, b;
   perpendicular_basis(along, a, b);
-  CoreSample here = flow_.sample_at(place);
+  CoreSample current = flow_.sample_at(position);
   double last = 0;
   for (int i = 0; i < kCoreCorrections; ++i) {
-    out.exits_domain = !here.is_inside;
-    if (!here.is_vortex) return out;
-    const CoreSample at_a = flow_.sample_at(place + a * difference_), at_b = flow_.sample_at(place + b * difference_);
+    out.exits_domain = !current.is_inside;
+    if (!current.is_vortex) return out;
+    const CoreSample at_a = flow_.sample_at(position + a * difference_), at_b = flow_.sample_at(position + b * difference_);
     if (!at_a.is_vortex || !at_b.is_vortex) {
       out.exits_domain = !at_a.is_inside || !at_b.is_inside;
       return out;
     }
     // least squares: the residual has three components, the plane has two
-    const Vec3 fa = (at_a.residual - here.residual) * (1 / difference_), fb = (at_b.residual - here.residual) * (1 / difference_);
+    const Vec3 fa = (at_a.residual - current.residual) * (1 / difference_), fb = (at_b.residual - current.residual) * (1 / difference_);
     const double aa = dot(fa, fa), ab = dot(fa, fb), bb = dot(fb, fb), det = aa * bb - ab * ab;
     if (!(det > 1e-6 * aa * bb)) return out;
-    const double ra = -dot(fa, here.residual), rb = -dot(fb, here.residual);
-    Vec3 way = a * ((bb * ra - ab * rb) / det) + b * ((aa * rb - ab * ra) / det);
-    if (const double far = norm(way); far > 0.5 * spacing_) way *= 0.5 * spacing_ / far;
-    const double full = norm(way);
+    const double ra = -dot(fa, current.residual), rb = -dot(fb, current.residual);
+    Vec3 step = a * ((bb * ra - ab * rb) / det) + b * ((aa * rb - ab * ra) / det);
+    if (const double length = norm(step); length > 0.5 * spacing_) step *= 0.5 * spacing_ / length;
+    const double full_length = norm(step);
     // halve the step until the residual decreases
     CoreSample next;
-    bool nearer = false;
-    for (int k = 0; k < kCoreHalvings && !nearer; ++k, way *= nearer ? 1 : 0.5) {
-      next = flow_.sample_at(place + way);
-      nearer = next.is_vortex && norm(next.residual) < norm(here.residual);
+    bool improved = false;
+    for (int k = 0; k < kCoreHalvings && !improved; ++k, step *= improved ? 1 : 0.5) {
+      next = flow_.sample_at(position + step);
+      improved = next.is_vortex && norm(next.residual) < norm(current.residual);
     }
-    if (nearer) {
-      if (norm(place + way - from) > 2 * spacing_) return out;
-      place += way;
-      here = next;
+    if (improved) {
+      if (norm(position + step - from) > 2 * spacing_) return out;
+      position += step;
+      current = next;
     }
-    out.position = place;
-    out.sample = here;
-    if (!nearer || full <= tolerance_) {
-      out.ok = full <= rough_;
+    out.position = position;
+    out.sample = current;
+    if (!improved || full_length <= tolerance_) {
+      out.ok = full_length <= rough_;
       return out;
     }
-    last = full;
+    last = full_length;
   }
   out.ok = last <= rough_;
   return out;
@@ -78,42 +78,43 @@ std::uint64_t CoreTracer::bucket(std::int64_t x, std::int64_t y, std::int64_t z)
          (static_cast<std::uint64_t>(z) & 0x1fffff) << 42;
 }
 
-/// Returns true if a recorded line passes near `place`; the last points of the line `own`, which is being traced, are ignored.
-bool CoreTracer::is_traced(const Vec3& place, std::uint32_t own) const {
+/// Returns true if a recorded line passes near `position`; the last points of the line `own`, which is being traced, are ignored.
+bool CoreTracer::is_traced(const Vec3& position, std::uint32_t own) const {
   constexpr std::size_t kLast = 8;
-  const Vec3 at = place * (1 / spacing_);
+  const Vec3 at = position * (1 / spacing_);
   const auto x = static_cast<std::int64_t>(std::floor(at.x)), y = static_cast<std::int64_t>(std::floor(at.y)),
              z = static_cast<std::int64_t>(std::floor(at.z));
   for (int c = 0; c < 27; ++c) {
     const auto found = recorded_.find(bucket(x + c % 3 - 1, y + c / 3 % 3 - 1, z + c / 9 - 1));
     if (found == recorded_.end()) continue;
     for (const RecordedPoint& one : found->second)
-      if (norm(one.position - place) < (one.line == own ? kSameCore * step_ : kSameCore * spacing_) &&
+      if (norm(one.position - position) < (one.line == own ? kSameCore * step_ : kSameCore * spacing_) &&
           (one.line != own || one.number + kLast < point_count_))
         return true;
   }
   return false;
 }
 
-void CoreTracer::record(const Vec3& place) {
-  const Vec3 at = place * (1 / spacing_);
+void CoreTracer::record(const Vec3& position) {
+  const Vec3 at = position * (1 / spacing_);
   recorded_[bucket(static_cast<std::int64_t>(std::floor(at.x)), static_cast<std::int64_t>(std::floor(at.y)),
                    static_cast<std::int64_t>(std::floor(at.z)))]
-      .push_back({place, line_, point_count_});
+      .push_back({position, line_, point_count_});
   ++point_count_;
 }
 
 /// Traces the line in one direction; returns true if it returns to its start (closed line).
 bool CoreTracer::follow(const CorrectedPoint& from, Vec3 along, CoreTrace& out, bool& leaves) {
-  Vec3 place = from.position;
-  std::optional<Vec3> before;
-  while (out.points.size() < kMostCoreSteps) {
+  Vec3 position = from.position;
+  std::optional<Vec3> last_direction;
+  while (out.points.size() < kMaxCoreSteps) {
     // predictor: extrapolates the turn of the last step
     CorrectedPoint next;
     double size = 1;
     for (; size >= 0.25 && !next.ok; size *= 0.5) {
-      next = correct(place + along * (size * step_), along);
-      if (next.ok && (dot(direction(next.position - place), along) < kCoreTurn || norm(next.position - place) > 2 * step_)) next.ok = false;
+      next = correct(position + along * (size * step_), along);
+      if (next.ok && (dot(direction(next.position - position), along) < kCoreTurn || norm(next.position - position) > 2 * step_))
+        next.ok = false;
       if (next.ok) break;
     }
     if (!next.ok) {
@@ -123,7 +124,7 @@ bool CoreTracer::follow(const CorrectedPoint& from, Vec3 along, CoreTrace& out, 
       leaves = next.exits_domain;
       for (int i = 0; i < kCoreEndHalvings; ++i) {
         const double middle = 0.5 * (lo + hi);
-        CorrectedPoint at = correct(place + along * (middle * step_), along);
+        CorrectedPoint at = correct(position + along * (middle * step_), along);
         leaves = at.ok ? leaves : at.exits_domain;
         if (!at.ok) {
           hi = middle;
@@ -134,7 +135,7 @@ bool CoreTracer::follow(const CorrectedPoint& from, Vec3 along, CoreTrace& out, 
       }
       if (end.ok) {
         // a very short last step would bend the spline
-        if (norm(end.position - place) < kLastStep * step_ && out.points.size() > 1) {
+        if (norm(end.position - position) < kLastStep * step_ && out.points.size() > 1) {
           out.points.pop_back();
           out.swirls.pop_back();
         }
@@ -144,16 +145,16 @@ bool CoreTracer::follow(const CorrectedPoint& from, Vec3 along, CoreTrace& out, 
       }
       return false;
     }
-    const Vec3 way = direction(next.position - place);
-    along = before ? direction(way * 2.0 - *before) : way;
-    if (dot(along, way) < kCoreTurn) along = way;
-    before = way;
-    place = next.position;
-    if (out.points.size() > 3 && norm(place - from.position) < 0.75 * step_) return true;
-    out.points.push_back(place);
+    const Vec3 step_direction = direction(next.position - position);
+    along = last_direction ? direction(step_direction * 2.0 - *last_direction) : step_direction;
+    if (dot(along, step_direction) < kCoreTurn) along = step_direction;
+    last_direction = step_direction;
+    position = next.position;
+    if (out.points.size() > 3 && norm(position - from.position) < 0.75 * step_) return true;
+    out.points.push_back(position);
     out.swirls.push_back(next.sample.swirl);
-    record(place);
-    if (is_traced(place, line_)) return false;
+    record(position);
+    if (is_traced(position, line_)) return false;
   }
   return false;
 }
@@ -182,10 +183,10 @@ bool CoreTracer::trace(const CoreSeed& seed, CoreTrace& out) {
   return out.points.size() >= 2;
 }
 
-void join_traces(std::vector<CoreTrace>& traces, double reach) {
-  constexpr double kLeads = 0.7;             // minimum cosine
-  constexpr std::size_t kMostJoined = 3000;  // lines: all pairs are compared
-  if (traces.size() > kMostJoined) return;
+void join_traces(std::vector<CoreTrace>& traces, double max_gap) {
+  constexpr double kLeads = 0.7;            // minimum cosine
+  constexpr std::size_t kMaxJoined = 3000;  // lines: all pairs are compared
+  if (traces.size() > kMaxJoined) return;
   const auto reversed = [](CoreTrace& line) {
     std::reverse(line.points.begin(), line.points.end());
     std::reverse(line.swirls.begin(), line.swirls.end());
@@ -196,11 +197,11 @@ void join_traces(std::vector<CoreTrace>& traces, double reach) {
     return direction(line.points[n - 1] - line.points[n - std::min<std::size_t>(n, 4)]);
   };
   /// Returns true if `line` can continue from its last point to the first point of `other`.
-  const auto leads = [&](const CoreTrace& line, const CoreTrace& other) {
-    const Vec3 way = other.points.front() - line.points.back();
-    if (line.last_exits_domain || other.first_exits_domain || norm(way) > reach) return false;
+  const auto continues = [&](const CoreTrace& line, const CoreTrace& other) {
+    const Vec3 gap = other.points.front() - line.points.back();
+    if (line.last_exits_domain || other.first_exits_domain || norm(gap) > max_gap) return false;
     const Vec3 on = direction(other.points[std::min<std::size_t>(3, other.points.size() - 1)] - other.points.front());
-    return dot(leaving(line), on) > kLeads && dot(way, leaving(line)) > -0.3 * reach;
+    return dot(leaving(line), on) > kLeads && dot(gap, leaving(line)) > -0.3 * max_gap;
   };
   for (std::size_t i = 0; i < traces.size(); ++i) {
     bool joined = !traces[i].points.empty();
@@ -210,26 +211,26 @@ void join_traces(std::vector<CoreTrace>& traces, double reach) {
         for (std::size_t k = i + 1; k < traces.size() && !traces[i].closed; ++k) {
           CoreTrace& other = traces[k];
           if (other.points.empty() || other.closed) continue;
-          bool on = leads(traces[i], other);
+          bool on = continues(traces[i], other);
           if (!on) {
             reversed(other);
-            on = leads(traces[i], other);
+            on = continues(traces[i], other);
             if (!on) continue;
           }
           // points of `other` that overlap `line` are omitted
-          const Vec3 ahead = leaving(traces[i]);
+          const Vec3 end_direction = leaving(traces[i]);
           std::size_t from = 0;
-          while (from + 1 < other.points.size() && dot(other.points[from] - traces[i].points.back(), ahead) < 0.1 * reach) ++from;
-          const auto skip = static_cast<std::ptrdiff_t>(from);
-          traces[i].points.insert(traces[i].points.end(), other.points.begin() + skip, other.points.end());
-          traces[i].swirls.insert(traces[i].swirls.end(), other.swirls.begin() + skip, other.swirls.end());
+          while (from + 1 < other.points.size() && dot(other.points[from] - traces[i].points.back(), end_direction) < 0.1 * max_gap) ++from;
+          const auto skipped = static_cast<std::ptrdiff_t>(from);
+          traces[i].points.insert(traces[i].points.end(), other.points.begin() + skipped, other.points.end());
+          traces[i].swirls.insert(traces[i].swirls.end(), other.swirls.begin() + skipped, other.swirls.end());
           traces[i].last_exits_domain = other.last_exits_domain;
           other.points.clear();
           joined = true;
         }
       }
     }
-    if (traces[i].points.size() > 8 && !traces[i].closed && leads(traces[i], traces[i])) traces[i].closed = true;
+    if (traces[i].points.size() > 8 && !traces[i].closed && continues(traces[i], traces[i])) traces[i].closed = true;
   }
   std::erase_if(traces, [](const CoreTrace& line) { return line.points.size() < 2; });
 }

@@ -23,7 +23,7 @@ struct CoreTrace {
   bool first_exits_domain = false, last_exits_domain = false;  ///< Its ends lie where the line exits the domain or the mask.
 };
 
-/// Traces core lines one after the other; remembers their points, so that no line is traced twice.
+/// Traces core lines one after the other; records their points, so that no line is traced twice.
 class CoreTracer {
  public:
   /// `scale`: scale of the velocity; `step`: step size along a line; `spacing`: edge of the cells in which seeds were searched, both world
@@ -40,9 +40,9 @@ class CoreTracer {
     CoreSample sample;
     bool ok = false, exits_domain = false;
   };
-  CorrectedPoint correct(Vec3 place, const Vec3& along);
-  bool is_traced(const Vec3& place, std::uint32_t own) const;
-  void record(const Vec3& place);
+  CorrectedPoint correct(Vec3 position, const Vec3& along);
+  bool is_traced(const Vec3& position, std::uint32_t own) const;
+  void record(const Vec3& position);
   bool follow(const CorrectedPoint& from, Vec3 along, CoreTrace& out, bool& leaves);
   std::uint64_t bucket(std::int64_t x, std::int64_t y, std::int64_t z) const;
 
@@ -58,7 +58,7 @@ class CoreTracer {
   std::size_t point_count_ = 0;
 };
 
-/// Joins lines whose ends are within `reach` (world units) and continue each other.
-void join_traces(std::vector<CoreTrace>& traces, double reach);
+/// Joins lines whose ends are within `max_gap` (world units) and continue each other.
+void join_traces(std::vector<CoreTrace>& traces, double max_gap);
 
 }  // namespace catena::flow

@@ -20,11 +20,11 @@ constexpr int kFormulaCells = 48;      // cells per axis of a formula's domain
 constexpr double kFormulaStep = 5e-4;  // step of the differences for formulas, as a fraction of L
 constexpr double kNear = 1.5;          // cells: maximum Newton step to a core
 constexpr double kOnCore = 0.25;       // cells: a point this close is on a core
-constexpr std::size_t kSeedsABlock = 256, kLeastPlaces = 64;
+constexpr std::size_t kSeedsABlock = 256, kMinPlaces = 64;
 constexpr double kVoxelsOfLine = 6, kPartOfLength = 0.02;  // default minimum length of a line, in voxels and as a fraction of L
 constexpr double kJoined = 2.5;                            // cells: maximum gap that is closed within a line
 constexpr int kFaired = 6;                                 // knots on each side in the least-squares smoothing of a grid's core lines
-constexpr std::size_t kMostPlaces = 4'000'000;
+constexpr std::size_t kMaxPlaces = 4'000'000;
 
 /// Results of the search in a block of cells.
 struct BlockSeeds {
@@ -80,12 +80,12 @@ class Scan {
     return field_.mapping().world_from_index(field_.index_box().lo + Vec3(cell_.x * (i + 0.5), cell_.y * (j + 0.5), cell_.z * (k + 0.5)));
   }
 
-  void offer(const Vec3& place, const CoreSample& sample, BlockSeeds& out) const {
+  void offer(const Vec3& position, const CoreSample& sample, BlockSeeds& out) const {
     if (!sample.is_vortex) return;
     ++out.turning;
-    const double far = norm(sample.step);
-    out.on_core += far < kOnCore * spacing_;
-    if (far < kNear * spacing_ && out.seeds.size() < kSeedsABlock) out.seeds.push_back({place + sample.step, sample.axis});
+    const double distance = norm(sample.step);
+    out.on_core += distance < kOnCore * spacing_;
+    if (distance < kNear * spacing_ && out.seeds.size() < kSeedsABlock) out.seeds.push_back({position + sample.step, sample.axis});
   }
 
   void look_at_places(const int* first, const int* count, BlockSeeds& out) const {
@@ -93,8 +93,8 @@ class Scan {
     for (int k = first[2]; k < first[2] + count[2]; ++k)
       for (int j = first[1]; j < first[1] + count[1]; ++j)
         for (int i = first[0]; i < first[0] + count[0]; ++i) {
-          const Vec3 place = middle(i, j, k);
-          offer(place, flow.sample_at(place), out);
+          const Vec3 position = middle(i, j, k);
+          offer(position, flow.sample_at(position), out);
         }
   }
 
@@ -119,19 +119,19 @@ class Scan {
       for (int j = 0; j < count[1]; ++j)
         for (int i = 0; i < count[0]; ++i) {
           if (!nodes.has_cell(i + 1, j + 1, k + 1)) continue;
-          CoreFlow here;
+          CoreFlow cell_flow;
           bool all = true;
           for (int c = 0; c < 8 && all; ++c) {
             const int x = i + c % 2, y = j + c / 2 % 2, z = k + c / 4;
             all = known[at(x, y, z)];
-            here.gradient += gradients[at(x, y, z)];
-            here.v += nodes.value(x + 1, y + 1, z + 1);
+            cell_flow.gradient += gradients[at(x, y, z)];
+            cell_flow.v += nodes.value(x + 1, y + 1, z + 1);
           }
           if (!all) continue;
-          here.gradient = here.gradient * linear;
-          here.v *= 0.125 / scale_;
-          const Vec3 place = middle(first[0] + i, first[1] + j, first[2] + k);
-          offer(place, flow.evaluate(place, here), out);
+          cell_flow.gradient = cell_flow.gradient * linear;
+          cell_flow.v *= 0.125 / scale_;
+          const Vec3 position = middle(first[0] + i, first[1] + j, first[2] + k);
+          offer(position, flow.evaluate(position, cell_flow), out);
         }
   }
 
@@ -143,11 +143,11 @@ class Scan {
   std::size_t blocks_[3] = {0, 0, 0};
 };
 
-LineEnd end_at(const field::VectorField& field, const Vec3& place, const Vec3& before, bool leaves) {
+LineEnd end_at(const field::VectorField& field, const Vec3& position, const Vec3& previous, bool leaves) {
   if (!leaves) return {};
   field::Cursor cursor;
-  const Vec3 beyond = place + direction(place - before) * (1e-3 * field.domain_length());
-  const SampleStatus reason = field.is_grid() ? field.status_outside(beyond, cursor) : SampleStatus::outside_box;
+  const Vec3 outside_position = position + direction(position - previous) * (1e-3 * field.domain_length());
+  const SampleStatus reason = field.is_grid() ? field.status_outside(outside_position, cursor) : SampleStatus::outside_box;
   return {Termination::boundary, reason == SampleStatus::ok ? SampleStatus::masked : reason};
 }
 
@@ -165,10 +165,10 @@ double mean_swirl(const CoreTrace& line) {
 
 Result<VortexCoresPtr> trace_cores(const field::VectorField& field, const CoreOptions& options) {
   const Scan scan(field, options.criterion);
-  auto made = std::make_shared<VortexCores>();
+  auto result = std::make_shared<VortexCores>();
   const bool grid = field.is_grid();
-  made->spacing = grid ? 0.5 * scan.spacing() : kFormulaStep * field.domain_length();
-  if (!(scan.scale() > 0) || !std::isfinite(scan.scale()) || scan.blocks() == 0) return VortexCoresPtr(made);
+  result->spacing = grid ? 0.5 * scan.spacing() : kFormulaStep * field.domain_length();
+  if (!(scan.scale() > 0) || !std::isfinite(scan.scale()) || scan.blocks() == 0) return VortexCoresPtr(result);
   CATENA_CHECK(check_memory_available("tracing vortex cores", static_cast<double>(scan.blocks()) * (kSeedsABlock * sizeof(CoreSeed)) / 4));
 
   std::vector<BlockSeeds> found(scan.blocks());
@@ -180,26 +180,25 @@ Result<VortexCoresPtr> trace_cores(const field::VectorField& field, const CoreOp
     turning += block.turning;
     on_core += block.on_core;
   }
-  made->holds_everywhere = turning >= kLeastPlaces && 2 * on_core > turning;
-  if (made->holds_everywhere) return VortexCoresPtr(made);
+  result->holds_everywhere = turning >= kMinPlaces && 2 * on_core > turning;
+  if (result->holds_everywhere) return VortexCoresPtr(result);
 
-  CoreTracer tracer(field, options.criterion, scan.scale(), made->spacing, scan.spacing(), grid);
+  CoreTracer tracer(field, options.criterion, scan.scale(), result->spacing, scan.spacing(), grid);
   std::vector<CoreTrace> traces;
   for (const BlockSeeds& block : found)
     for (const CoreSeed& seed : block.seeds) {
       CoreTrace line;
       if (tracer.trace(seed, line)) traces.push_back(std::move(line));
-      if (tracer.point_count() > kMostPlaces)
-        return Error{
-            fmt::format("has more vortex cores than can be kept (more than {} places); a smoother field was expected", kMostPlaces)};
+      if (tracer.point_count() > kMaxPlaces)
+        return Error{fmt::format("has more than {} candidate points of vortex cores; a smoother field was expected", kMaxPlaces)};
     }
   join_traces(traces, kJoined * scan.spacing());
 
   // lines that are too short or too weak are noise
-  const double least = options.min_length > 0 ? options.min_length
-                       : grid                 ? kVoxelsOfLine * scan.spacing()
-                                              : kPartOfLength * field.domain_length();
-  std::erase_if(traces, [&](const CoreTrace& line) { return length_of(line) < least; });
+  const double min_length = options.min_length > 0 ? options.min_length
+                            : grid                 ? kVoxelsOfLine * scan.spacing()
+                                                   : kPartOfLength * field.domain_length();
+  std::erase_if(traces, [&](const CoreTrace& line) { return length_of(line) < min_length; });
   double strongest = 0, fastest = 0;
   for (const CoreTrace& line : traces) {
     strongest = std::max(strongest, mean_swirl(line));
@@ -209,13 +208,13 @@ Result<VortexCoresPtr> trace_cores(const field::VectorField& field, const CoreOp
   std::stable_sort(traces.begin(), traces.end(), [](const CoreTrace& a, const CoreTrace& b) { return length_of(a) > length_of(b); });
   for (const CoreTrace& line : traces) {
     const std::vector<Vec3> p = grid ? fair_points(line.points, line.closed, kFaired) : line.points;
-    made->lines.push_back(spline_through(p, line.closed, end_at(field, p[0], p[1], line.first_exits_domain),
-                                         end_at(field, p[p.size() - 1], p[p.size() - 2], line.last_exits_domain), field.domain_length()));
-    std::vector<float>& swirls = made->swirls.emplace_back();
+    result->lines.push_back(spline_through(p, line.closed, end_at(field, p[0], p[1], line.first_exits_domain),
+                                           end_at(field, p[p.size() - 1], p[p.size() - 2], line.last_exits_domain), field.domain_length()));
+    std::vector<float>& swirls = result->swirls.emplace_back();
     for (const double swirl : line.swirls) swirls.push_back(static_cast<float>(swirl / fastest));
     if (line.closed) swirls.push_back(swirls.front());
   }
-  return VortexCoresPtr(made);
+  return VortexCoresPtr(result);
 }
 
 }  // namespace

@@ -52,11 +52,11 @@ using VortexCoresPtr = std::shared_ptr<const VortexCores>;
 /// too small or there are too many lines. Calls from several threads run one after the other.
 CATENA_EXPORT Result<VortexCoresPtr> find_vortex_cores(const field::VectorFieldPtr& field, const CoreOptions& options);
 
-/// Private to this module: fits a parabola to the `reach` points before and after each point and moves the point onto it.
-CATENA_EXPORT std::vector<Vec3> fair_points(const std::vector<Vec3>& places, bool closed, int reach);
+/// Private to this module: fits a parabola to the `half_window` points before and after each point and moves the point onto it.
+CATENA_EXPORT std::vector<Vec3> fair_points(const std::vector<Vec3>& points, bool closed, int half_window);
 /// Private to this module: returns a spline through these points (vortex_core_splines.cpp); `closed`: the last point is joined to the
 /// first.
-CATENA_EXPORT CurvePtr spline_through(const std::vector<Vec3>& places, bool closed, const LineEnd& first, const LineEnd& last,
+CATENA_EXPORT CurvePtr spline_through(const std::vector<Vec3>& points, bool closed, const LineEnd& first, const LineEnd& last,
                                       double domain_length);
 
 }  // namespace catena::flow

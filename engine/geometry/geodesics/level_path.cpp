@@ -13,19 +13,19 @@ constexpr int kMaxCells = 64;      // per axis
 constexpr int kSteps = 32;         // maximum number of Newton steps to the level
 constexpr double kOnLevel = 1e-7;  // tolerance, as a fraction of L
 
-/// Moves p to the level by Newton's method along the gradient, with steps of at most `longest`; returns false if it does not converge.
-bool reach_level(const field::ScalarField& field, double level, double longest, field::Cursor& cursor, Vec3& p) {
+/// Moves p to the level by Newton's method along the gradient, with steps of at most `max_step`; returns false if it does not converge.
+bool reach_level(const field::ScalarField& field, double level, double max_step, field::Cursor& cursor, Vec3& p) {
   Vec3 x = p;
   for (int i = 0; i < kSteps; ++i) {
     const field::ScalarSample s = field.sample(x, cursor);
-    const double slope2 = dot(s.gradient, s.gradient), off = s.value - level;
-    if (!s.inside || !(slope2 > 0) || !std::isfinite(off) || !std::isfinite(slope2)) return false;
-    if (std::fabs(off) <= kOnLevel * field.domain_length() * std::sqrt(slope2)) {
+    const double slope2 = dot(s.gradient, s.gradient), deviation = s.value - level;
+    if (!s.inside || !(slope2 > 0) || !std::isfinite(deviation) || !std::isfinite(slope2)) return false;
+    if (std::fabs(deviation) <= kOnLevel * field.domain_length() * std::sqrt(slope2)) {
       p = x;
       return true;
     }
-    Vec3 step = s.gradient * (-off / slope2);
-    if (const double length = norm(step); length > longest) step *= longest / length;
+    Vec3 step = s.gradient * (-deviation / slope2);
+    if (const double length = norm(step); length > max_step) step *= max_step / length;
     x += step;
   }
   return false;
@@ -120,7 +120,7 @@ void each_around(const Lattice& lattice, const Cell& c, Visit&& visit) {
 }
 
 /// Dijkstra's algorithm on the cells that the surface crosses, with one surface point each; returns the path without its ends.
-std::vector<Vec3> coarse_way(const field::ScalarField& field, double level, const Vec3& from, const Vec3& to, bool& joined) {
+std::vector<Vec3> coarse_path(const field::ScalarField& field, double level, const Vec3& from, const Vec3& to, bool& connected) {
   Lattice lattice(field, level);
   const double longest = field.domain_length() / kMaxCells;
   struct Visited {
@@ -131,7 +131,7 @@ std::vector<Vec3> coarse_way(const field::ScalarField& field, double level, cons
   };
   std::vector<Visited> all(lattice.count());
   field::Cursor cursor;
-  const auto look = [&](const Cell& c) -> Visited& {
+  const auto visit_cell = [&](const Cell& c) -> Visited& {
     Visited& v = all[lattice.index_of(c)];
     if (v.known) return v;
     v.known = true;
@@ -146,7 +146,7 @@ std::vector<Vec3> coarse_way(const field::ScalarField& field, double level, cons
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   each_around(lattice, lattice.cell_at(from), [&](const Cell& c) {
-    Visited& v = look(c);
+    Visited& v = visit_cell(c);
     if (!v.crossed) return;
     v.distance = norm(v.place - from);
     v.before = none;
@@ -159,27 +159,27 @@ std::vector<Vec3> coarse_way(const field::ScalarField& field, double level, cons
   while (!queue.empty() && queue.top().first < best) {
     const auto [distance, index] = queue.top();
     queue.pop();
-    Visited& here = all[index];
-    if (here.done) continue;
-    here.done = true;
-    if (is_goal[index] && distance + norm(to - here.place) < best) {
-      best = distance + norm(to - here.place);
+    Visited& current = all[index];
+    if (current.done) continue;
+    current.done = true;
+    if (is_goal[index] && distance + norm(to - current.place) < best) {
+      best = distance + norm(to - current.place);
       last = index;
     }
     each_around(lattice, lattice.cell_of(index), [&](const Cell& c) {
-      Visited& next = look(c);
+      Visited& next = visit_cell(c);
       if (!next.crossed || next.done) return;
-      const double longer = distance + norm(next.place - here.place);
-      if (!(longer < next.distance)) return;
-      next.distance = longer;
+      const double new_distance = distance + norm(next.place - current.place);
+      if (!(new_distance < next.distance)) return;
+      next.distance = new_distance;
       next.before = index;
-      queue.push({longer, lattice.index_of(c)});
+      queue.push({new_distance, lattice.index_of(c)});
     });
   }
-  joined = last != none;
-  std::vector<Vec3> way;
-  for (std::size_t i = last; i != none; i = all[i].before) way.push_back(all[i].place);
-  return {way.rbegin(), way.rend()};
+  connected = last != none;
+  std::vector<Vec3> path;
+  for (std::size_t i = last; i != none; i = all[i].before) path.push_back(all[i].place);
+  return {path.rbegin(), path.rend()};
 }
 
 }  // namespace
@@ -190,9 +190,9 @@ std::vector<Vec3> path_on_level(const field::ScalarField& field, double level, c
   const double longest = field.domain_length() / kMaxCells;
   Vec3 first = from, last = to;
   if (!reach_level(field, level, longest, cursor, first) || !reach_level(field, level, longest, cursor, last)) return {};
-  bool joined = false;
-  std::vector<Vec3> path = coarse_way(field, level, first, last, joined);
-  if (!joined) return {};
+  bool connected = false;
+  std::vector<Vec3> path = coarse_path(field, level, first, last, connected);
+  if (!connected) return {};
   path.insert(path.begin(), first);
   path.push_back(last);
   return shorten_path(std::move(path), [&](Vec3& p) { return reach_level(field, level, longest, cursor, p); });

@@ -14,18 +14,18 @@ constexpr double kLonger = 1.01;  ///< growth of the length at which a sweep cou
 
 /// Returns the path resampled into `segments` segments of equal length.
 std::vector<Vec3> resampled(const std::vector<Vec3>& path, int segments) {
-  const double whole = path_length(path);
+  const double total_length = path_length(path);
   std::vector<Vec3> out{path.front()};
   std::size_t k = 1;
-  double before = 0;  // length up to path[k - 1]
+  double length_before = 0;  // length up to path[k - 1]
   for (int i = 1; i < segments; ++i) {
-    const double at = whole * i / segments;
-    while (k + 1 < path.size() && before + norm(path[k] - path[k - 1]) < at) {
-      before += norm(path[k] - path[k - 1]);
+    const double at = total_length * i / segments;
+    while (k + 1 < path.size() && length_before + norm(path[k] - path[k - 1]) < at) {
+      length_before += norm(path[k] - path[k - 1]);
       ++k;
     }
-    const double piece = norm(path[k] - path[k - 1]), share = piece > 0 ? std::clamp((at - before) / piece, 0.0, 1.0) : 0.0;
-    out.push_back(path[k - 1] + share * (path[k] - path[k - 1]));
+    const double piece = norm(path[k] - path[k - 1]), fraction = piece > 0 ? std::clamp((at - length_before) / piece, 0.0, 1.0) : 0.0;
+    out.push_back(path[k - 1] + fraction * (path[k] - path[k - 1]));
   }
   out.push_back(path.back());
   return out;
@@ -33,14 +33,14 @@ std::vector<Vec3> resampled(const std::vector<Vec3>& path, int segments) {
 
 /// Relaxes all inner points; returns the largest distance that a point moved.
 double sweep(std::vector<Vec3>& path, double factor, const ProjectToSurface& put_on_surface) {
-  double farthest = 0;
+  double max_motion = 0;
   for (std::size_t i = 1; i + 1 < path.size(); ++i) {
     Vec3 p = path[i] + factor * (0.5 * (path[i - 1] + path[i + 1]) - path[i]);
     if (!put_on_surface(p)) continue;
-    farthest = std::max(farthest, norm(p - path[i]));
+    max_motion = std::max(max_motion, norm(p - path[i]));
     path[i] = p;
   }
-  return farthest;
+  return max_motion;
 }
 
 void relax(std::vector<Vec3>& path, const ProjectToSurface& put_on_surface) {
@@ -50,7 +50,7 @@ void relax(std::vector<Vec3>& path, const ProjectToSurface& put_on_surface) {
   std::vector<Vec3> best = path;
   double shortest = length;
   for (int i = 0; i < kMaxSweeps; ++i) {
-    const double farthest = sweep(path, factor, put_on_surface);
+    const double max_motion = sweep(path, factor, put_on_surface);
     length = path_length(path);
     if (length < shortest) {
       shortest = length;
@@ -59,7 +59,7 @@ void relax(std::vector<Vec3>& path, const ProjectToSurface& put_on_surface) {
       path = best;
       factor = 1 + 0.5 * (factor - 1);
     }
-    if (!(farthest > kStill * length / segments)) break;
+    if (!(max_motion > kStill * length / segments)) break;
   }
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kLeaf = 4, kBins = 16;
 constexpr int kSahDepth = 32;  // deeper nodes are split in halves: at most 25 more levels for 2^32 faces / 4
 
-FaceBox nothing() {
+FaceBox empty_box() {
   const double inf = std::numeric_limits<double>::infinity();
   return {Vec3(inf), Vec3(-inf)};
 }
@@ -43,14 +43,14 @@ struct Bvh::Builder {
   std::vector<Vec3> centres;
 
   FaceBox bounds(std::size_t begin, std::size_t end) const {
-    FaceBox box = nothing();
+    FaceBox box = empty_box();
     for (std::size_t i = begin; i < end; ++i) add(box, boxes[order[i]]);
     return box;
   }
 
   /// Partitions the faces and returns the index of the first face of the right part.
   std::size_t split(std::size_t begin, std::size_t end, int depth) {
-    FaceBox box = nothing();
+    FaceBox box = empty_box();
     for (std::size_t i = begin; i < end; ++i) add(box, {centres[order[i]], centres[order[i]]});
     const Vec3 extent = box.hi - box.lo;
     const std::size_t middle = begin + (end - begin) / 2;
@@ -66,27 +66,27 @@ struct Bvh::Builder {
     for (int axis = 0; axis < 3 && depth < kSahDepth; ++axis) {
       if (!(extent[axis] > 0)) continue;
       std::array<FaceBox, kBins> bins;
-      bins.fill(nothing());
+      bins.fill(empty_box());
       std::array<std::size_t, kBins> counts{};
       for (std::size_t i = begin; i < end; ++i) {
         const std::size_t b = bin_of(order[i], axis);
         add(bins[b], boxes[order[i]]);
         ++counts[b];
       }
-      std::array<double, kBins> right{};
-      FaceBox part = nothing();
+      std::array<double, kBins> right_cost{};
+      FaceBox part = empty_box();
       std::size_t count = 0;
       for (std::size_t b = kBins - 1; b > 0; --b) {
         add(part, bins[b]);
         count += counts[b];
-        right[b] = half_area(part) * static_cast<double>(count);
+        right_cost[b] = half_area(part) * static_cast<double>(count);
       }
-      part = nothing();
+      part = empty_box();
       count = 0;
       for (std::size_t b = 1; b < kBins; ++b) {
         add(part, bins[b - 1]);
         count += counts[b - 1];
-        const double cost = half_area(part) * static_cast<double>(count) + right[b];
+        const double cost = half_area(part) * static_cast<double>(count) + right_cost[b];
         if (count > 0 && count < end - begin && cost < best) {
           best = cost;
           best_axis = axis;

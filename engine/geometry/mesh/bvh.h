@@ -64,7 +64,7 @@ bool Bvh::visit_segment(const Vec3& from, const Vec3& to, double margin, int& bu
     const BvhNode& node = nodes_[static_cast<std::size_t>(stack[--top])];
     const Vec3 middle = (from + to) * 0.5, half = (to - from) * 0.5;
     const Vec3 a(std::fabs(half.x), std::fabs(half.y), std::fabs(half.z));
-    bool meets[2];
+    bool overlaps[2];
     double along[2];
     for (int k = 0; k < 2; ++k) {
       const auto &lo = node.lo[k], &hi = node.hi[k];
@@ -73,15 +73,15 @@ bool Bvh::visit_segment(const Vec3& from, const Vec3& to, double margin, int& bu
       const Vec3 h(0.5 * (static_cast<double>(hi[0]) - lo[0]) + margin, 0.5 * (static_cast<double>(hi[1]) - lo[1]) + margin,
                    0.5 * (static_cast<double>(hi[2]) - lo[2]) + margin);
       along[k] = -dot(m, half);
-      meets[k] = std::fabs(m.x) <= h.x + a.x && std::fabs(m.y) <= h.y + a.y && std::fabs(m.z) <= h.z + a.z &&
-                 std::fabs(m.y * half.z - m.z * half.y) <= h.y * a.z + h.z * a.y + margin * 1e-3 &&
-                 std::fabs(m.z * half.x - m.x * half.z) <= h.z * a.x + h.x * a.z + margin * 1e-3 &&
-                 std::fabs(m.x * half.y - m.y * half.x) <= h.x * a.y + h.y * a.x + margin * 1e-3;
+      overlaps[k] = std::fabs(m.x) <= h.x + a.x && std::fabs(m.y) <= h.y + a.y && std::fabs(m.z) <= h.z + a.z &&
+                    std::fabs(m.y * half.z - m.z * half.y) <= h.y * a.z + h.z * a.y + margin * 1e-3 &&
+                    std::fabs(m.z * half.x - m.x * half.z) <= h.z * a.x + h.x * a.z + margin * 1e-3 &&
+                    std::fabs(m.x * half.y - m.y * half.x) <= h.x * a.y + h.y * a.x + margin * 1e-3;
     }
     const int first = along[1] < along[0] ? 1 : 0;
     int later[2], pending = 0;
     for (const int k : {first, 1 - first}) {
-      if (!meets[k]) continue;
+      if (!overlaps[k]) continue;
       if (node.child[k] >= 0) {
         later[pending++] = node.child[k];
       } else {

@@ -16,11 +16,11 @@ template <class T>
 Outcome reserve_checked(std::vector<T>& list, double beside, const std::string& name, const char* what) {
   if (list.size() < list.capacity()) return Done{};
   constexpr std::size_t kFirst = 1024;
-  const std::size_t wanted = list.empty() ? kFirst : 2 * list.size();
+  const std::size_t capacity = list.empty() ? kFirst : 2 * list.size();
   // the old buffer stays allocated until the new one is filled
   CATENA_CHECK(check_text_memory_available(fmt::format("{}: a mesh of more than {} {}", name, list.size(), what),
-                                           beside + static_cast<double>((list.size() + wanted) * sizeof(T))));
-  list.reserve(wanted);
+                                           beside + static_cast<double>((list.size() + capacity) * sizeof(T))));
+  list.reserve(capacity);
   return Done{};
 }
 

@@ -87,40 +87,41 @@ class Mesher {
     const Index3 first{lo_.x & ~(kBlock - 1), lo_.y & ~(kBlock - 1), lo_.z & ~(kBlock - 1)};
     const auto blocks = [](std::int32_t from, std::int32_t to) { return (static_cast<std::int64_t>(to) - from) / kBlock + 1; };
     const std::int64_t nx = blocks(first.x, hi_.x), ny = blocks(first.y, hi_.y), nz = blocks(first.z, hi_.z);
-    constexpr double kMostBlocks = 1 << 28;
+    constexpr double kMaxBlocks = 1 << 28;
     const double all = static_cast<double>(nx) * static_cast<double>(ny) * static_cast<double>(nz);
-    if (all > kMostBlocks)
-      return Error{fmt::format("{}: the grid's box has {:.0f} blocks of 8^3 voxels, expected at most {:.0f}", name_, all, kMostBlocks)};
+    if (all > kMaxBlocks)
+      return Error{fmt::format("{}: the box of the grid has {:.0f} blocks of 8^3 voxels, expected at most {:.0f}", name_, all, kMaxBlocks)};
     if (lo_.x == hi_.x || lo_.y == hi_.y || lo_.z == hi_.z)
-      return Error{name_ + ": the grid is one layer of voxels, and has no cells; a volume was expected"};
-    // two layers of blocks, marked by their side of the level: a block is searched unless it and its neighbors are on one side alone
+      return Error{name_ + ": the grid has a single layer of voxels and no cells; a volume was expected"};
+    // two layers of blocks, marked by their side of the level: a block is skipped if it and its neighbors are on one side of the level
     across_ = static_cast<std::size_t>(nx + 1);
     const std::size_t layer = across_ * static_cast<std::size_t>(ny + 1);
-    std::vector<char> here(layer), above(layer);
-    const auto look = [&](std::int64_t k, std::vector<char>& sides) {
+    std::vector<char> lower_sides(layer), upper_sides(layer);
+    const auto read_sides = [&](std::int64_t k, std::vector<char>& sides) {
       for (std::int64_t j = 0; j <= ny; ++j)
         for (std::int64_t i = 0; i <= nx; ++i)
           sides[static_cast<std::size_t>(j) * across_ + static_cast<std::size_t>(i)] = side_of(block_at(first, i, j, k));
     };
-    look(0, here);
+    read_sides(0, lower_sides);
     for (std::int64_t k = 0; k < nz; ++k) {
-      look(k + 1, above);
+      read_sides(k + 1, upper_sides);
       for (std::int64_t j = 0; j < ny; ++j)
         for (std::int64_t i = 0; i < nx; ++i) {
           const std::size_t at = static_cast<std::size_t>(j) * across_ + static_cast<std::size_t>(i);
-          bool alike = here[at] != kMixed;
-          for (const auto* sides : {&here, &above})
-            for (const std::size_t beside : {at, at + 1, at + across_, at + across_ + 1}) alike = alike && (*sides)[beside] == here[at];
-          if (alike) continue;
+          bool same_side = lower_sides[at] != kMixed;
+          for (const auto* sides : {&lower_sides, &upper_sides})
+            for (const std::size_t neighbor : {at, at + 1, at + across_, at + across_ + 1})
+              same_side = same_side && (*sides)[neighbor] == lower_sides[at];
+          if (same_side) continue;
           add_block(block_at(first, i, j, k));
           CATENA_CHECK(ask());
         }
-      std::swap(here, above);
+      std::swap(lower_sides, upper_sides);
       if (progress) progress(static_cast<double>(k + 1) / static_cast<double>(nz));
     }
     if (made_.triangles.empty())
-      return Error{fmt::format("{}: there is no surface at {}; a level that the field attains between its voxels was expected", name_,
-                               to_text(level_))};
+      return Error{
+          fmt::format("{}: there is no surface at {}; a level between the values of adjacent voxels was expected", name_, to_text(level_))};
     for (Vec3& normal : made_.normals) normal = sign_ * direction(normal);
     return std::move(made_);
   }
@@ -199,16 +200,16 @@ class Mesher {
     const auto ny = static_cast<std::uint64_t>(static_cast<std::int64_t>(hi_.y) - lo_.y + 1);
     const std::uint64_t voxel = (number(2, base.z, lo_.z) * ny + number(1, base.y, lo_.y)) * nx + number(0, base.x, lo_.x);
     const std::uint64_t key = voxel * 4 + (t == 0 || t == 1 ? 3u : static_cast<unsigned>(axis));
-    Vec3 place(from & 1, from >> 1 & 1, from >> 2);
-    place[axis] += t;
-    const auto [found, fresh] = vertices_.try_emplace(key, static_cast<std::uint32_t>(made_.vertices.size()));
-    if (fresh) {
-      made_.vertices.push_back(grid_.mapping().world_from_index(Vec3(base.x, base.y, base.z) + place));
+    Vec3 position(from & 1, from >> 1 & 1, from >> 2);
+    position[axis] += t;
+    const auto [found, inserted] = vertices_.try_emplace(key, static_cast<std::uint32_t>(made_.vertices.size()));
+    if (inserted) {
+      made_.vertices.push_back(grid_.mapping().world_from_index(Vec3(base.x, base.y, base.z) + position));
       made_.normals.emplace_back(0.0);
     }
     double value;
     Vec3 gradient;
-    field::trilinear(corner, place, value, gradient);
+    field::trilinear(corner, position, value, gradient);
     made_.normals[found->second] += grid_.mapping().world_from_index_gradient(gradient);
     return {edge, found->second};
   }
@@ -223,20 +224,20 @@ class Mesher {
   }
 
   /// Triangulates the loop with the minimum sum of chord costs: best[i][j] is the cost of the part from cut i to cut j, whose last
-  /// triangle has its third corner at by[i][j]. Returns false if every triangulation has an edge in a face.
+  /// triangle has its third corner at third[i][j]. Returns false if every triangulation has an edge in a face.
   bool fill(const std::array<Cut, 12>& loop, std::size_t n) {
     double best[12][12]{};
-    std::size_t by[12][12]{};
+    std::size_t third[12][12]{};
     for (std::size_t length = 2; length < n; ++length)
       for (std::size_t i = 0; i + length < n; ++i) {
         const std::size_t j = i + length;
         best[i][j] = std::numeric_limits<double>::infinity();
         for (std::size_t k = i + 1; k < j; ++k)
-          if (const double cost = best[i][k] + best[k][j]; cost < best[i][j]) best[i][j] = cost, by[i][j] = k;
+          if (const double cost = best[i][k] + best[k][j]; cost < best[i][j]) best[i][j] = cost, third[i][j] = k;
         if (length + 1 < n) best[i][j] += chord_cost(loop[i], loop[j]);
       }
     if (n >= 2 && best[0][n - 1] >= kInFace * grid_.max_voxel_edge() * grid_.max_voxel_edge()) return false;
-    add_part(loop, by, 0, n - 1);
+    add_part(loop, third, 0, n - 1);
     return true;
   }
 
@@ -262,13 +263,13 @@ class Mesher {
     }
   }
 
-  void add_part(const std::array<Cut, 12>& loop, const std::size_t (&by)[12][12], std::size_t i, std::size_t j) {
+  void add_part(const std::array<Cut, 12>& loop, const std::size_t (&third)[12][12], std::size_t i, std::size_t j) {
     if (j < i + 2) return;
-    const std::size_t k = by[i][j];
-    add_part(loop, by, i, k);
+    const std::size_t k = third[i][j];
+    add_part(loop, third, i, k);
     const std::uint32_t a = loop[i].vertex, b = loop[k].vertex, c = loop[j].vertex;
     if (a != b && b != c && c != a) made_.triangles.push_back(swap_ ? Triangle{a, c, b} : Triangle{a, b, c});
-    add_part(loop, by, k, j);
+    add_part(loop, third, k, j);
   }
 
   Outcome ask() const {

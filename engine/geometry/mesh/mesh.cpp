@@ -23,11 +23,11 @@ void weld(TriangleSoup& soup) {
   for (Vec3& v : soup.vertices) v = v + Vec3(0.0);
   std::vector<std::uint32_t> order(soup.vertices.size()), renamed(soup.vertices.size());
   std::iota(order.begin(), order.end(), 0u);
-  const auto before = [&](std::uint32_t a, std::uint32_t b) {
+  const auto is_less = [&](std::uint32_t a, std::uint32_t b) {
     const Vec3 &u = soup.vertices[a], &v = soup.vertices[b];
     return u.x != v.x ? u.x < v.x : u.y != v.y ? u.y < v.y : u.z != v.z ? u.z < v.z : a < b;
   };
-  std::sort(order.begin(), order.end(), before);
+  std::sort(order.begin(), order.end(), is_less);
   std::uint32_t first = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (i == 0 || soup.vertices[order[i]] != soup.vertices[first]) first = order[i];
@@ -65,14 +65,14 @@ double bytes_of_soup(const TriangleSoup& soup) {
   return static_cast<double>(soup.vertices.capacity() * sizeof(Vec3) + soup.triangles.capacity() * sizeof(Triangle));
 }
 
-/// Returns the bytes that welding needs beside the soup: two lists of vertices, then the remaining triangles.
+/// Returns the bytes that welding needs besides the soup: two lists of vertices, then the remaining triangles.
 double bytes_to_weld(const TriangleSoup& soup) {
   return static_cast<double>(2 * soup.vertices.size() * sizeof(std::uint32_t) + soup.triangles.size() * sizeof(Triangle));
 }
 
-/// Returns the bytes that the rest needs beside that: the vertices in the local frame, their normals, fans and borders; the faces with
-/// their neighbors; the hierarchy (a node for every two faces); and the larger of the temporary memory for building it (boxes, centers,
-/// orders) and for finding edges.
+/// Returns the bytes that a mesh needs besides the soup and the memory for welding: the vertices in the local frame, their normals, faces
+/// and boundary flags; the faces with their neighbors; the hierarchy (a node for every two faces); and the larger of the temporary memory
+/// for building it (boxes, centers, orders) and for finding edges.
 double bytes_to_build(std::size_t vertices, std::size_t triangles) {
   constexpr double kVertex = 2 * sizeof(Vec3) + 2 * sizeof(std::uint32_t) + 1;
   constexpr double kHierarchy = sizeof(BvhNode) / 2.0, kBoxes = sizeof(FaceBox) + sizeof(Vec3) + 2 * sizeof(std::uint32_t), kEdges = 3 * 20;
@@ -92,11 +92,11 @@ Result<MeshPtr> make_mesh(TriangleSoup soup, const std::string& name) {
   const auto failed = [&](const std::string& what) { return Error{one_line(name + ": " + what)}; };
   for (const Triangle& t : soup.triangles)
     for (const std::uint32_t v : t)
-      if (v >= soup.vertices.size()) return failed("a triangle names a vertex that is not there; a whole mesh was expected");
+      if (v >= soup.vertices.size()) return failed("a triangle refers to a vertex that does not exist; a complete mesh was expected");
   for (const Vec3& v : soup.vertices)
     if (!is_finite(v)) return failed("a vertex is not finite; finite numbers were expected");
-  const auto held = std::make_shared<HeldMesh>();
-  TriangleMesh* const self = &held->mesh;
+  const auto owner = std::make_shared<HeldMesh>();
+  TriangleMesh* const self = &owner->mesh;
   self->name_ = name;
   self->version_ = next_version.fetch_add(1);
 
@@ -108,12 +108,12 @@ Result<MeshPtr> make_mesh(TriangleSoup soup, const std::string& name) {
       lo = {std::min(lo.x, v.x), std::min(lo.y, v.y), std::min(lo.z, v.z)};
       hi = {std::max(hi.x, v.x), std::max(hi.y, v.y), std::max(hi.z, v.z)};
     }
-  if (soup.triangles.empty()) return failed("holds no triangle; at least one was expected");
+  if (soup.triangles.empty()) return failed("contains no triangles; at least one was expected");
   const double length = max_abs(hi * 0.5 - lo * 0.5) * 2;
   if (length <= kLargest && !(max_abs(hi) <= kLargest && max_abs(lo) <= kLargest))
-    return failed("reaches to " + to_text(std::max(max_abs(hi), max_abs(lo))) + "; coordinates up to 1e100 were expected");
+    return failed("has a coordinate of magnitude " + to_text(std::max(max_abs(hi), max_abs(lo))) + "; at most 1e100 was expected");
   if (!(length >= kSmallest && length <= kLargest))
-    return failed("is " + to_text(length) + " long; a size from 1e-100 to 1e100 was expected");
+    return failed("has the size " + to_text(length) + "; a size from 1e-100 to 1e100 was expected");
   int exponent = 0;
   const double part = std::frexp(length, &exponent);
   self->scale_ = std::ldexp(1.0, part == 0.5 ? exponent - 1 : exponent);
@@ -128,20 +128,21 @@ Result<MeshPtr> make_mesh(TriangleSoup soup, const std::string& name) {
   const std::string what = one_line(name + ": a mesh of " + std::to_string(soup.triangles.size()) + " triangles");
   CATENA_CHECK(check_text_memory_available(what, bytes_of_soup(soup) + bytes_to_weld(soup)));
   weld(soup);
-  std::vector<Triangle> kept;
-  kept.reserve(soup.triangles.size());
+  std::vector<Triangle> triangles;
+  triangles.reserve(soup.triangles.size());
   for (const Triangle& t : soup.triangles) {
     const bool distinct = t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
     const double height = height_of(self->local_from_world(soup.vertices[t[0]]), self->local_from_world(soup.vertices[t[1]]),
                                     self->local_from_world(soup.vertices[t[2]]));
-    if (distinct && height > kMinTriangleHeight) kept.push_back(t);
+    if (distinct && height > kMinTriangleHeight) triangles.push_back(t);
   }
-  self->dropped_triangles_ = soup.triangles.size() - kept.size();
-  if (kept.empty()) return failed("all " + std::to_string(self->dropped_triangles_) + " triangles have no area; a surface was expected");
-  compact(soup.vertices, kept);
+  self->dropped_triangles_ = soup.triangles.size() - triangles.size();
+  if (triangles.empty())
+    return failed("all " + std::to_string(self->dropped_triangles_) + " triangles have zero area; a surface was expected");
+  compact(soup.vertices, triangles);
   soup.triangles = {};
-  CATENA_CHECK(check_text_memory_available(what, bytes_of_soup(soup) + static_cast<double>(kept.capacity() * sizeof(Triangle)) +
-                                                     bytes_to_build(soup.vertices.size(), kept.size())));
+  CATENA_CHECK(check_text_memory_available(what, bytes_of_soup(soup) + static_cast<double>(triangles.capacity() * sizeof(Triangle)) +
+                                                     bytes_to_build(soup.vertices.size(), triangles.size())));
   self->vertices_ = std::move(soup.vertices);
   self->min_corner_ = Vec3(INFINITY);
   self->max_corner_ = Vec3(-INFINITY);
@@ -155,20 +156,20 @@ Result<MeshPtr> make_mesh(TriangleSoup soup, const std::string& name) {
 
   // build the hierarchy, which determines the order of the faces
   std::vector<FaceBox> boxes;
-  boxes.reserve(kept.size());
-  for (const Triangle& t : kept) {
+  boxes.reserve(triangles.size());
+  for (const Triangle& t : triangles) {
     const Vec3 &a = self->local_vertices_[t[0]], &b = self->local_vertices_[t[1]], &c = self->local_vertices_[t[2]];
     boxes.push_back({{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})},
                      {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})}});
   }
   std::vector<std::uint32_t> order;
   self->bvh_.build(boxes, order);
-  self->triangles_.reserve(kept.size());
-  for (const std::uint32_t f : order) self->triangles_.push_back(kept[f]);
+  self->triangles_.reserve(triangles.size());
+  for (const std::uint32_t f : order) self->triangles_.push_back(triangles[f]);
   self->compute_faces();
   self->build_adjacency();
-  held->memory = MemoryReservation(self->bytes());
-  return MeshPtr(held, self);
+  owner->memory = MemoryReservation(self->bytes());
+  return MeshPtr(owner, self);
 }
 
 void TriangleMesh::compute_faces() {
@@ -273,7 +274,7 @@ ClosestPoint closest_point_on_face(const TriangleMesh& mesh, std::uint32_t f, co
 NearestResult nearest_point(const TriangleMesh& mesh, const Vec3& p, double radius, int& budget, std::uint32_t hint) noexcept {
   NearestResult out;
   double bound2 = radius * radius;
-  const auto offer = [&](std::uint32_t f) {
+  const auto update_closest = [&](std::uint32_t f) {
     const ClosestPoint c = closest_point_on_face(mesh, f, p);
     if (c.distance2 < bound2 || (!out.found && c.distance2 <= bound2)) {
       bound2 = c.distance2;
@@ -281,8 +282,8 @@ NearestResult nearest_point(const TriangleMesh& mesh, const Vec3& p, double radi
       out.found = true;
     }
   };
-  offer(hint);
-  out.is_complete = mesh.bvh().visit_nearest(p, bound2, budget, offer);
+  update_closest(hint);
+  out.is_complete = mesh.bvh().visit_nearest(p, bound2, budget, update_closest);
   return out;
 }
 

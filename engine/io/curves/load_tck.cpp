@@ -17,7 +17,7 @@ namespace catena::curves {
 namespace {
 
 constexpr std::string_view kMagic = "mrtrix tracks";
-constexpr std::size_t kMostHeader = std::size_t{1} << 24;
+constexpr std::size_t kMaxHeader = std::size_t{1} << 24;
 
 struct Numbers {
   std::string_view word;
@@ -38,15 +38,15 @@ Result<TckHeader> read_tck_header(std::string_view bytes, const std::string& nam
   std::size_t at = 0;
   for (int line = 1;; ++line) {
     const std::size_t end = bytes.find('\n', at);
-    if (end == std::string_view::npos || end > kMostHeader) return failed(line, "the header does not end; a line END was expected");
+    if (end == std::string_view::npos || end > kMaxHeader) return failed(line, "the header has no end; a line END was expected");
     const std::string_view text = trim(bytes.substr(at, end - at));
     at = end + 1;
-    if (line == 1 && text != kMagic) return failed(1, in_quotes(text) + " begins the file; \"mrtrix tracks\" was expected");
+    if (line == 1 && text != kMagic) return failed(1, "the first line is " + in_quotes(text) + "; \"mrtrix tracks\" was expected");
     if (text == "END") {
-      if (header.numbers == nullptr) return failed(line, "the header says no datatype; \"datatype: Float32LE\" or the like was expected");
+      if (header.numbers == nullptr) return failed(line, "the header has no datatype; a line such as \"datatype: Float32LE\" was expected");
       header.data = offset.value_or(at);
       if (header.data < at || header.data > bytes.size())
-        return failed(line, fmt::format("the triples begin at byte {}; a place from {} to {} was expected", header.data, at, bytes.size()));
+        return failed(line, fmt::format("the data begin at byte {}; an offset from {} to {} was expected", header.data, at, bytes.size()));
       return header;
     }
     const std::size_t colon = text.find(':');
@@ -61,7 +61,7 @@ Result<TckHeader> read_tck_header(std::string_view bytes, const std::string& nam
       const std::size_t blank = value.find(' ');
       const long long number = blank == std::string_view::npos ? -1 : parse_integer(trim(value.substr(blank))).value_or(-1);
       if (!value.starts_with(". ") || number < 0)
-        return failed(line, "the triples are in " + in_quotes(value) + "; \". OFFSET\", this very file, was expected");
+        return failed(line, "the data are in " + in_quotes(value) + "; \". OFFSET\", an offset in this file, was expected");
       offset = static_cast<std::size_t>(number);
     }
   }
@@ -88,13 +88,12 @@ Result<CurveSet> parse_tck(std::string_view bytes, const std::string& name) {
       set.is_patient_space = true;
       return set;
     } else if (!builder.add(p)) {
-      return Error{
-          one_line(fmt::format("{}: byte {}: the point ({}, {}, {}) of line {} is no place; three numbers up to 1e15 in size were "
-                               "expected",
-                               name, at, p.x, p.y, p.z, builder.line_count()))};
+      return Error{one_line(
+          fmt::format("{}: byte {}: the point ({}, {}, {}) of line {} is not finite or too far away; numbers up to 1e15 were expected",
+                      name, at, p.x, p.y, p.z, builder.line_count()))};
     }
   }
-  return Error{one_line(name + ": the file ends within its lines; a last triple of infinities was expected")};
+  return Error{one_line(name + ": the file ends before the end of the lines; a triple of infinities was expected at the end")};
 }
 
 }  // namespace catena::curves

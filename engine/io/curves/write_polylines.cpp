@@ -61,7 +61,7 @@ void write_polylines_vtp(OutputFile& out, const std::vector<flow::CurvePtr>& cur
       by_knot("tangent", 3, 0.0, [](std::size_t, const flow::Knot& k) { return k.t; }),
       by_knot("velocity", 3, 0.0, [&](std::size_t, const flow::Knot& k) { return field.sample(k.p, cursor).value; }),
       by_knot("line", 1, Int(0), [](std::size_t line, const flow::Knot&) { return static_cast<Int>(line); })};
-  const std::vector<AppendedArray> places{by_knot("Points", 3, 0.0, [](std::size_t, const flow::Knot& k) { return k.p; })};
+  const std::vector<AppendedArray> positions{by_knot("Points", 3, 0.0, [](std::size_t, const flow::Knot& k) { return k.p; })};
   const std::vector<AppendedArray> cell_data{
       by_line("line", Int(0), [](std::size_t line, const flow::Curve&) { return static_cast<Int>(line); }),
       by_line("length", 0.0, [](std::size_t, const flow::Curve& c) { return c.period(); }),
@@ -79,7 +79,7 @@ void write_polylines_vtp(OutputFile& out, const std::vector<flow::CurvePtr>& cur
                                 points, curves.size()));
   file.add_section("PointData", "Scalars=\"s\" Vectors=\"velocity\"", point_data);
   file.add_section("CellData", "Scalars=\"line\"", cell_data);
-  file.add_section("Points", "", places);
+  file.add_section("Points", "", positions);
   file.add_section("Lines", "", cells);
   file.finish();
 }

@@ -9,7 +9,7 @@ namespace catena::mesh {
 Result<MeshPtr> load_mesh(const std::string& path, const MeshTransform& placement, int step) {
   const auto failed = [&](const std::string& what) { return Error{one_line(path + ": " + what)}; };
   const io::Format* format = io::find_reader(path, io::DataKind::mesh);
-  if (format == nullptr) return failed("has an unknown kind; " + io::describe_expected(io::DataKind::mesh) + " was expected");
+  if (format == nullptr) return failed("has an unknown file type; " + io::describe_expected(io::DataKind::mesh) + " was expected");
   CATENA_TRY(TriangleSoup soup, format->read_mesh(path, step));
   for (Vec3& v : soup.vertices) {
     v = v * placement.scale + placement.offset;

@@ -61,23 +61,23 @@ struct ObjReader {
     }
   }
 
-  static std::string_view next_word(std::string_view& rest) {
+  static std::string_view next_word(std::string_view& remaining) {
     std::size_t begin = 0;
-    while (begin < rest.size() && (rest[begin] == ' ' || rest[begin] == '\t' || rest[begin] == '\r')) ++begin;
+    while (begin < remaining.size() && (remaining[begin] == ' ' || remaining[begin] == '\t' || remaining[begin] == '\r')) ++begin;
     std::size_t end = begin;
-    while (end < rest.size() && rest[end] != ' ' && rest[end] != '\t' && rest[end] != '\r') ++end;
-    const std::string_view word = rest.substr(begin, end - begin);
-    rest.remove_prefix(end);
+    while (end < remaining.size() && remaining[end] != ' ' && remaining[end] != '\t' && remaining[end] != '\r') ++end;
+    const std::string_view word = remaining.substr(begin, end - begin);
+    remaining.remove_prefix(end);
     return word;
   }
 
-  Outcome read_vertex(std::string_view rest) {
+  Outcome read_vertex(std::string_view remaining) {
     Vec3 v(0.0);
     for (int i = 0; i < 3; ++i) {
-      const std::string_view word = next_word(rest);
+      const std::string_view word = next_word(remaining);
       const auto number = word.empty() ? std::nullopt : parse_double(word);
       if (!number || !std::isfinite(*number))
-        return failed((word.empty() ? std::string("a vertex ends too early") : in_quotes(word) + " is no coordinate") +
+        return failed((word.empty() ? std::string("a vertex has too few coordinates") : in_quotes(word) + " is not a valid coordinate") +
                       "; three finite numbers were expected");
       v[i] = *number;
     }
@@ -93,18 +93,18 @@ struct ObjReader {
     const auto index = parse_integer(digits);
     const auto count = static_cast<long long>(soup.vertices.size());
     if (!index || *index == 0)
-      return failed(in_quotes(word) + " is no corner; the number of a vertex (v, v/vt, v//vn or v/vt/vn) was expected");
+      return failed(in_quotes(word) + " is not a valid corner; a vertex number (v, v/vt, v//vn or v/vt/vn) was expected");
     const long long found = *index > 0 ? *index - 1 : count + *index;
     if (*index > count || *index < -count)
-      return failed(in_quotes(word) + " names a vertex that is not there; " +
-                    (count > 0 ? "1 to " + std::to_string(count) : "a vertex before") + " was expected");
+      return failed(in_quotes(word) + " refers to a vertex that does not exist; " +
+                    (count > 0 ? "1 to " + std::to_string(count) : "a vertex before the face") + " was expected");
     return static_cast<std::uint32_t>(found);
   }
 
-  Outcome read_face(std::string_view rest) {
+  Outcome read_face(std::string_view remaining) {
     std::uint32_t first = 0, last = 0;
     int corners = 0;
-    for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
+    for (std::string_view word = next_word(remaining); !word.empty(); word = next_word(remaining)) {
       CATENA_TRY(const std::uint32_t v, read_corner(word));
       ++corners;
       if (corners == 1) first = v;
@@ -121,16 +121,16 @@ struct ObjReader {
   }
 
   Result<TriangleSoup> read() {
-    std::string_view rest;
-    while (next_line(rest)) {
-      const std::string_view word = next_word(rest);
+    std::string_view remaining;
+    while (next_line(remaining)) {
+      const std::string_view word = next_word(remaining);
       if (word.empty()) continue;
       if (word == "v") {
-        CATENA_CHECK(read_vertex(rest));
+        CATENA_CHECK(read_vertex(remaining));
       } else if (word == "f" || word == "fo") {
-        CATENA_CHECK(read_face(rest));
+        CATENA_CHECK(read_face(remaining));
       } else if (std::find(kPassedOver.begin(), kPassedOver.end(), word) == kPassedOver.end()) {
-        return failed(in_quotes(word) + " is no statement of an OBJ file; v, f, vt, vn, g, o, s, usemtl or mtllib was expected");
+        return failed(in_quotes(word) + " is not a statement of an OBJ file; v, f, vt, vn, g, o, s, usemtl or mtllib was expected");
       }
     }
     return std::move(soup);

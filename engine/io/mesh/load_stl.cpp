@@ -16,7 +16,7 @@
 namespace catena::mesh {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "binary STL is read as it lies");
+static_assert(std::endian::native == std::endian::little, "binary STL is copied without swapping bytes");
 
 constexpr std::size_t kHeader = 84, kRecord = 50;
 
@@ -58,7 +58,7 @@ struct TextReader {
   Words words;
 
   Error failed(std::string_view found, std::string_view expected) const {
-    const std::string what = found.empty() ? "the file ends too early" : in_quotes(found) + " stands here";
+    const std::string what = found.empty() ? "the file ends too early" : "found " + in_quotes(found);
     return Error{one_line(name + ":" + std::to_string(words.line()) + ": " + what + "; " + std::string(expected) + " was expected")};
   }
   Outcome expect(std::string_view lower_case) {
@@ -81,9 +81,9 @@ struct TextReader {
   Result<TriangleSoup> read() {
     TriangleSoup soup;
     std::string_view word = words.next();
-    if (!is_word(word, "solid")) return failed(word, "\"solid\", or a binary STL,");
+    if (!is_word(word, "solid")) return failed(word, "\"solid\" or a binary STL");
     while (!word.empty()) {
-      if (!is_word(word, "solid")) return failed(word, "\"solid\" or the end");
+      if (!is_word(word, "solid")) return failed(word, "\"solid\" or the end of the file");
       words.skip_line();
       for (word = words.next(); !is_word(word, "endsolid"); word = words.next()) {
         if (!is_word(word, "facet")) return failed(word, "\"facet\" or \"endsolid\"");
@@ -148,22 +148,23 @@ bool looks_like_text(std::string_view bytes) {
 Result<TriangleSoup> parse_stl(std::string_view bytes, const std::string& name) {
   std::uint32_t count = 0;
   if (bytes.size() >= kHeader) std::memcpy(&count, bytes.data() + 80, sizeof count);
-  const std::uint64_t wanted = kHeader + std::uint64_t{kRecord} * count;
-  const bool fits = bytes.size() >= kHeader && wanted == bytes.size();
+  const std::uint64_t expected_size = kHeader + std::uint64_t{kRecord} * count;
+  const bool fits = bytes.size() >= kHeader && expected_size == bytes.size();
   if (!fits && looks_like_text(bytes)) return TextReader{name, static_cast<double>(bytes.size()), Words(strip_bom(bytes))}.read();
   if (bytes.size() < kHeader)
     return Error{one_line(name + ": has " + std::to_string(bytes.size()) +
-                          " bytes and does not begin with \"solid\"; a binary STL of at least 84 bytes, or a text, was expected")};
+                          " bytes and does not begin with \"solid\"; a binary STL of at least 84 bytes, or an ASCII STL, was expected")};
   const std::uint32_t other_order = count >> 24 | (count >> 8 & 0xff00) | (count << 8 & 0xff0000) | count << 24;
   if (!fits && kHeader + std::uint64_t{kRecord} * other_order == bytes.size())
     return Error{one_line(
-        name + ": byte 80: the number of triangles fits the file in big-endian order; a binary STL in little-endian order was expected")};
+        name + ": byte 80: the number of triangles matches the file size in big-endian order only; a little-endian STL was expected")};
   if (!fits)
-    return Error{one_line(name + ": byte 80: says " + std::to_string(count) + " triangles, which take " + std::to_string(wanted) +
-                          " bytes, but the file has " + std::to_string(bytes.size()) + "; a whole STL file was expected")};
+    return Error{one_line(name + ": byte 80: the number of triangles is " + std::to_string(count) + ", which takes " +
+                          std::to_string(expected_size) + " bytes, but the file has " + std::to_string(bytes.size()) +
+                          "; a complete STL file was expected")};
   if (count > kMaxTriangles)
-    return Error{one_line(name + ": byte 80: has " + std::to_string(count) + " triangles; at most " + std::to_string(kMaxTriangles) +
-                          " were expected")};
+    return Error{one_line(name + ": byte 80: the number of triangles is " + std::to_string(count) + "; at most " +
+                          std::to_string(kMaxTriangles) + " were expected")};
   return read_binary(bytes, count, name);
 }
 

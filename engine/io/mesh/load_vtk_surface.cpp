@@ -12,7 +12,7 @@ Result<TriangleSoup> read_surface(const std::string& path, int step) {
   CATENA_TRY(const field::MappedResponse answer, field::run_reader(field::ReadMode::geometry, request));
   const auto xyz = answer.numbers<double>(answer.response.geometry.points);
   const auto corners = answer.numbers<std::uint32_t>(answer.response.geometry.triangles);
-  if (corners.empty()) return Error{path + ": holds no polygons, expected a surface"};
+  if (corners.empty()) return Error{path + ": contains no polygons; a surface was expected"};
   TriangleSoup soup;
   soup.vertices.reserve(xyz.size() / 3);
   for (std::size_t i = 0; i + 2 < xyz.size(); i += 3) {
@@ -26,7 +26,7 @@ Result<TriangleSoup> read_surface(const std::string& path, int step) {
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
     const Triangle triangle{corners[i], corners[i + 1], corners[i + 2]};
     for (const std::uint32_t corner : triangle)
-      if (corner >= soup.vertices.size()) return field::damaged_response_error(path, "a triangle names a point that is not there");
+      if (corner >= soup.vertices.size()) return field::damaged_response_error(path, "a triangle refers to a point that does not exist");
     soup.triangles.push_back(triangle);
   }
   return soup;

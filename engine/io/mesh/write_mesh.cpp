@@ -98,7 +98,7 @@ void write_obj(OutputFile& out, const MeshExport& s) {
 }
 
 std::string describe_precision_loss(const std::string& path, const MeshExport& surface) {
-  constexpr double kTold = 0.01;  // fraction of degenerate triangles that is reported: isosurfaces always have some slivers
+  constexpr double kMinReportedShare = 0.01;  // fraction of degenerate triangles that is reported: isosurfaces always have some slivers
   const io::Format* format = io::find_writer(path, io::DataKind::mesh);
   if (format == nullptr || !format->has_float_positions) return {};
   const auto rounded = [&](std::uint32_t n) { return glm::vec3(surface.points[n]); };
@@ -106,10 +106,10 @@ std::string describe_precision_loss(const std::string& path, const MeshExport& s
     const auto same = [&](int a, int b) { return surface.points[t[a]] != surface.points[t[b]] && rounded(t[a]) == rounded(t[b]); };
     return same(0, 1) || same(1, 2) || same(2, 0);
   });
-  if (!(static_cast<double>(flat) > kTold * static_cast<double>(surface.triangles.size()))) return {};
+  if (!(static_cast<double>(flat) > kMinReportedShare * static_cast<double>(surface.triangles.size()))) return {};
   return fmt::format(
-      "{} of {} triangles have two corners at one place in it: so far from the origin its 32-bit numbers are too coarse (.ply and .vtp "
-      "hold 64 bits)",
+      "{} of {} triangles have two coincident corners in this format, because 32-bit coordinates are too coarse so far from the origin "
+      "(.ply and .vtp store 64 bits)",
       flat, surface.triangles.size());
 }
 

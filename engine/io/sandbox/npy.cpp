@@ -22,9 +22,9 @@
 namespace catena::sandbox {
 namespace {
 
-constexpr std::size_t kMostHead = 1 << 16;
+constexpr std::size_t kMaxHead = 1 << 16;
 
-/// The text after 'KEY': in the header, which is a Python dictionary.
+/// Returns the text after 'KEY': in the header, which is a Python dictionary.
 std::optional<std::string_view> value_of(std::string_view head, std::string_view key) {
   const std::size_t at = head.find(key);
   if (at == std::string_view::npos) return std::nullopt;
@@ -57,7 +57,9 @@ std::optional<std::vector<std::int64_t>> shape_of(std::string_view text) {
 }
 
 Outcome read_type(std::string_view word, NpyHeader& head) {
-  const auto unknown = [&] { return Error{fmt::format("holds {}, expected integers, floats or bools", in_quotes(word))}; };
+  const auto unknown = [&] {
+    return Error{fmt::format("contains numbers of type {}, expected integers, floats or bools", in_quotes(word))};
+  };
   if (word.size() < 3) return unknown();
   head.is_byte_swapped = word[0] == '>';
   if (word[0] != '<' && word[0] != '>' && word[0] != '|' && word[0] != '=') return unknown();
@@ -102,29 +104,29 @@ void decode_row(const NpyHeader& head, const std::byte* data, std::uint64_t firs
 Result<NpyHeader> read_npy_header(std::span<const std::byte> bytes, bool axes_xyz) {
   const auto* text = reinterpret_cast<const unsigned char*>(bytes.data());
   constexpr std::string_view kMagic = "\x93NUMPY";
-  if (bytes.size() < 12 || std::memcmp(text, kMagic.data(), kMagic.size()) != 0) return Error{"is not an array that NumPy wrote (.npy)"};
+  if (bytes.size() < 12 || std::memcmp(text, kMagic.data(), kMagic.size()) != 0) return Error{"is not a NumPy array (.npy)"};
   const bool long_head = text[6] >= 2;
   NpyHeader head;
   const std::size_t begin = long_head ? 12 : 10;
   std::size_t length = static_cast<std::size_t>(text[8]) | static_cast<std::size_t>(text[9]) << 8;
   if (long_head) length |= static_cast<std::size_t>(text[10]) << 16 | static_cast<std::size_t>(text[11]) << 24;
-  if (length > kMostHead || begin + length > bytes.size()) return Error{"has a head that is cut short or too long"};
+  if (length > kMaxHead || begin + length > bytes.size()) return Error{"has a truncated or oversized header"};
   head.data_offset = begin + length;
   const std::string_view words(reinterpret_cast<const char*>(text) + begin, length);
   const auto descr = value_of(words, "'descr'"), order = value_of(words, "'fortran_order'"), dimensions = value_of(words, "'shape'");
   const auto shape = dimensions ? shape_of(*dimensions) : std::nullopt;
-  if (!descr || !order || !shape) return Error{"has a head without descr, fortran_order and shape"};
-  if (descr->empty() || descr->front() != '\'') return Error{"holds records, expected an array of numbers"};
+  if (!descr || !order || !shape) return Error{"has a header without descr, fortran_order or shape"};
+  if (descr->empty() || descr->front() != '\'') return Error{"contains records, expected an array of numbers"};
   CATENA_CHECK(read_type(descr->substr(1, descr->find('\'', 1) - 1), head));
   // strides of the array's own indices
   std::vector<std::int64_t> n = *shape;
   const bool fortran = order->starts_with("True");
   double all = 1;
   for (const std::int64_t v : n) all *= static_cast<double>(v);
-  constexpr double kMost = 1e15;
-  if (all > kMost) return Error{fmt::format("has the shape ({}), which is more than {:.0e} values", fmt::join(n, ", "), kMost)};
+  constexpr double kMaxValues = 1e15;
+  if (all > kMaxValues) return Error{fmt::format("has the shape ({}) with more than {:.0e} values", fmt::join(n, ", "), kMaxValues)};
   if (n.empty() || n.size() > 4 || !(all >= 1))
-    return Error{fmt::format("has the shape ({}), expected one to four sizes of 1 or more", fmt::join(n, ", "))};
+    return Error{fmt::format("has the shape ({}), expected one to four dimensions of size 1 or more", fmt::join(n, ", "))};
   std::vector<std::uint64_t> stride(n.size());
   std::uint64_t next = 1;
   for (std::size_t i = 0; i < n.size(); ++i) {
@@ -132,12 +134,13 @@ Result<NpyHeader> read_npy_header(std::span<const std::byte> bytes, bool axes_xy
     stride[a] = next;
     next *= static_cast<std::uint64_t>(n[a]);
   }
-  // vectors: the components are the last or the first dimension
+  // the components of vectors are the last or the first dimension
   if (n.size() == 4) {
     const bool last = n.back() == 3 || n.back() == 2;
     const std::size_t a = last ? n.size() - 1 : 0;
     if (n[a] != 3 && n[a] != 2)
-      return Error{fmt::format("has the shape ({}), expected 2 or 3 numbers a voxel as its first or last size", fmt::join(n, ", "))};
+      return Error{fmt::format("has the shape ({}), expected 2 or 3 components as the first or last dimension of a four-dimensional array",
+                               fmt::join(n, ", "))};
     head.components = static_cast<int>(n[a]);
     head.stride[3] = stride[a];
     n.erase(n.begin() + static_cast<std::ptrdiff_t>(a));
@@ -171,7 +174,7 @@ field::RoundingLoss decode_npy(const NpyHeader& head, std::span<const std::byte>
   const std::size_t components = head.components == 1 ? 1 : 3;
   const field::Size3 n = npy_grid_size(head);
   const auto row = static_cast<std::size_t>(head.size.x);
-  // a flat array is read with its single voxel twice
+  // an axis of one voxel is read with this voxel twice
   const auto voxel = [](std::int64_t i, std::int64_t size) { return static_cast<std::uint64_t>(std::min(i, size - 1)); };
   float* to = out.data();
   for (std::int64_t k = 0; k < n.z; ++k)
@@ -193,17 +196,19 @@ field::ReadResponse handle_npy_request(const field::ReadRequest& request, std::s
     return reply;
   };
   if (!request.load_request.grid.empty() && request.load_request.grid != reply.name)
-    return failed(fmt::format("there is no grid \"{}\", a .npy file holds one, \"{}\"", request.load_request.grid, reply.name));
-  if (request.load_request.mask_required) return failed("a .npy file holds no mask");
+    return failed(fmt::format("there is no grid \"{}\"; the only grid of the .npy file is \"{}\"", request.load_request.grid, reply.name));
+  if (request.load_request.mask_required) return failed("a .npy file has no mask");
   const auto head = read_npy_header(file, request.load_request.axes_xyz);
   if (!head) return failed(head.error().message);
   const std::span<const std::byte> numbers = file.subspan(head->data_offset);
-  const double has = static_cast<double>(numbers.size());
-  const double wanted = double(head->size.x) * double(head->size.y) * double(head->size.z) * head->components * double(head->number_bytes);
-  if (has != wanted) return failed(fmt::format("the file has {:.0f} bytes of numbers, expected {:.0f}", has, wanted));
+  const double actual_bytes = static_cast<double>(numbers.size());
+  const double expected_bytes =
+      double(head->size.x) * double(head->size.y) * double(head->size.z) * head->components * double(head->number_bytes);
+  if (actual_bytes != expected_bytes)
+    return failed(fmt::format("the file has {:.0f} bytes of array data, expected {:.0f}", actual_bytes, expected_bytes));
   const double bytes = static_cast<double>(npy_float_count(*head)) * sizeof(float);
-  if (const auto asked = check_memory_available(path + ": the array", bytes, request.memory_bytes); !asked) {
-    reply.error = asked.error().message;
+  if (const auto allowed = check_memory_available(path + ": the array", bytes, request.memory_bytes); !allowed) {
+    reply.error = allowed.error().message;
     return reply;
   }
   reply.is_vector = head->components > 1;
@@ -222,8 +227,8 @@ field::ReadResponse handle_npy_request(const field::ReadRequest& request, std::s
                      first = request.load_request.axes_xyz ? n.x : std::max(n.y, n.z);
   if (!reply.is_vector && (last == 2 || last == 3) && first > 3)
     reply.notes.push_back(
-        fmt::format("the last size, {}, was read as voxels of scalars; vectors of {} components have four sizes, as "
-                    "(1, {}, {}, {})",
+        fmt::format("the last dimension of size {} was read as voxels of scalars; an array of vectors with {} components has four "
+                    "dimensions, such as (1, {}, {}, {})",
                     last, last, request.load_request.axes_xyz ? n.x : std::max<std::int64_t>(n.z, 1),
                     request.load_request.axes_xyz ? std::max<std::int64_t>(n.y, 1) : n.y, last));
   return reply;

@@ -22,14 +22,14 @@ constexpr std::uint64_t kSlower = 1;
 struct Counted {
   std::mutex mutex;
   OpenedFiles opened;
-  std::uint64_t bytes = 0, most_s = 0;
+  std::uint64_t bytes = 0, max_cpu_s = 0;
   double more_s = 0;
   bool dicom_only = false;
 };
 Counted counted;
 std::atomic<bool> counting{false};
 
-/// Whether the file is DICOM, with or without a preamble: group 2 or 8 comes first.
+/// Returns whether the file is DICOM, with or without a preamble: group 2 or 8 comes first.
 bool is_dicom(int descriptor) {
   char head[132] = {};
   const ssize_t got = ::pread(descriptor, head, sizeof head, 0);
@@ -40,20 +40,20 @@ bool is_dicom(int descriptor) {
 void set_time() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_CPU, &limit) != 0) return;
-  const std::uint64_t wanted = cpu_limit_s(counted.bytes) + static_cast<std::uint64_t>(counted.more_s * double{kSlower});
-  limit.rlim_cur = std::min<std::uint64_t>(std::max<std::uint64_t>(std::min(wanted, counted.most_s), limit.rlim_cur), limit.rlim_max);
+  const std::uint64_t limit_s = cpu_limit_s(counted.bytes) + static_cast<std::uint64_t>(counted.more_s * double{kSlower});
+  limit.rlim_cur = std::min<std::uint64_t>(std::max<std::uint64_t>(std::min(limit_s, counted.max_cpu_s), limit.rlim_cur), limit.rlim_max);
   ::setrlimit(RLIMIT_CPU, &limit);
 }
 
 }  // namespace
 
 std::uint64_t cpu_limit_s(std::uint64_t bytes) {
-  constexpr std::uint64_t kLeast = 5, kBytesPerSecond = 1'000'000 / 60;
-  return kSlower * (kLeast + bytes / kBytesPerSecond);
+  constexpr std::uint64_t kMinCpuS = 5, kBytesPerSecond = 1'000'000 / 60;
+  return kSlower * (kMinCpuS + bytes / kBytesPerSecond);
 }
 
-void track_opened_files(std::uint64_t most_s, bool dicom_only) {
-  counted.most_s = most_s;
+void track_opened_files(std::uint64_t max_cpu_s, bool dicom_only) {
+  counted.max_cpu_s = max_cpu_s;
   counted.dicom_only = dicom_only;
   counting = true;
 }
@@ -67,7 +67,7 @@ void record_opened(int descriptor, const struct stat& about) {
   if (counted.dicom_only && !is_dicom(descriptor)) return;
   counted.opened.files.push_back(id);
   counted.opened.newest_mtime_ns = std::max(counted.opened.newest_mtime_ns, modified_ns(about));
-  // size on the disk: holes in sparse files do not count
+  // the size on disk excludes the holes of sparse files
   counted.bytes += std::min(static_cast<std::uint64_t>(about.st_size), 512 * static_cast<std::uint64_t>(about.st_blocks));
   set_time();
 }

@@ -15,10 +15,10 @@ namespace catena::sandbox {
 /// CPU time limit for reading this many bytes: 5 s, and 60 s per MB, since a byte can expand to a thousand. Seconds.
 std::uint64_t cpu_limit_s(std::uint64_t bytes);
 
-/// Starts tracking of opened files. `most_s`: upper bound of the CPU time limit, seconds. `dicom_only`: a folder is searched for DICOM
+/// Starts tracking of opened files. `max_cpu_s`: upper bound of the CPU time limit, seconds. `dicom_only`: a folder is searched for DICOM
 /// images; other files in it may be opened, but are not counted as data.
-void track_opened_files(std::uint64_t most_s, bool dicom_only);
-/// Whether files are tracked: then only regular files and folders can be opened.
+void track_opened_files(std::uint64_t max_cpu_s, bool dicom_only);
+/// Returns whether files are tracked: then only regular files and folders can be opened.
 bool is_tracking_opened_files();
 /// Records an opened regular file and raises the CPU time limit.
 void record_opened(int descriptor, const struct stat& about);

@@ -19,7 +19,7 @@
 namespace catena::sandbox {
 namespace {
 
-constexpr std::uint64_t kLongestRequest = 1 << 20;
+constexpr std::uint64_t kMaxRequest = 1 << 20;
 
 std::uint64_t aligned(std::uint64_t n) { return (n + field::kBufferAlignment - 1) / field::kBufferAlignment * field::kBufferAlignment; }
 
@@ -78,11 +78,11 @@ void report_early_failures() noexcept {
 Result<field::ReadRequest> ResponseFile::read_request() {
   field::MessageHeader head;
   if (::pread(fd_, &head, sizeof head, 0) != static_cast<ssize_t>(sizeof head) || head.magic != field::kProtocolMagic ||
-      head.version != field::kProtocolVersion || head.from_reader != 0 || head.bytes > kLongestRequest)
-    return Error{"there is no request"};
+      head.version != field::kProtocolVersion || head.from_reader != 0 || head.bytes > kMaxRequest)
+    return Error{"the request is missing"};
   std::vector<std::byte> text(head.bytes);
   if (::pread(fd_, text.data(), text.size(), static_cast<off_t>(head.offset)) != static_cast<ssize_t>(text.size()))
-    return Error{"there is no request"};
+    return Error{"the request is missing"};
   noted_file = fd_;
   report(field::ReaderState::reading);
   ::signal(SIGXFSZ, SIG_IGN);  // a file that cannot grow then fails as a response that cannot be written
@@ -97,7 +97,7 @@ field::NanoMemory ResponseFile::allocate(std::size_t bytes, field::BufferRange& 
   piece = {end_, bytes};
   end_ = aligned(end_ + bytes);
   if (::ftruncate(fd_, static_cast<off_t>(end_)) != 0) {
-    report(field::ReaderState::no_room);
+    report(field::ReaderState::out_of_space);
     throw std::bad_alloc();
   }
   void* start = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd_, static_cast<off_t>(piece.offset));
@@ -111,11 +111,11 @@ bool ResponseFile::finish(const field::ReadResponse& reply) {
   head.from_reader = 1;
   head.offset = end_;
   head.bytes = text.size();
-  field::MessageHeader before;
-  if (::pread(fd_, &before, sizeof before, 0) == static_cast<ssize_t>(sizeof before)) head.state = before.state;
+  field::MessageHeader old_head;
+  if (::pread(fd_, &old_head, sizeof old_head, 0) == static_cast<ssize_t>(sizeof old_head)) head.state = old_head.state;
   if (head.state == field::ReaderState::reading && memory_refusal_count() > 0) head.state = field::ReaderState::refused_memory;
   const bool written = write_at(fd_, head.offset, text.data(), text.size()) && write_at(fd_, 0, &head, sizeof head);
-  if (!written) report(field::ReaderState::no_room);
+  if (!written) report(field::ReaderState::out_of_space);
   return written;
 }
 

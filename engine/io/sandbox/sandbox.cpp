@@ -37,7 +37,7 @@ void set_limit(__rlimit_resource what, std::uint64_t soft, std::uint64_t hard) {
   ::setrlimit(what, &limit);
 }
 
-/// Size of the address space that this process has mapped; without /proc the size of the largest reader.
+/// Returns the size of the address space that this process has mapped; without /proc the size of the largest reader.
 std::uint64_t mapped_bytes() {
   constexpr std::uint64_t kLargest = std::uint64_t{2} << 30;
   std::uint64_t pages = 0;
@@ -87,7 +87,7 @@ bool drop_capabilities() {
   return ::syscall(SYS_capset, &head, none) == 0;
 }
 
-/// Prevents opening, creating or removing files and folders, except for reading in `readable_folder`. Returns the Landlock version; 0 if it
+/// Forbids opening, creating or removing files and folders, except for reading in `readable_folder`. Returns the Landlock version; 0 if it
 /// is not available.
 std::uint32_t landlock(const std::string& readable_folder) {
   const long version = ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
@@ -150,22 +150,23 @@ bool seccomp(bool opens_files, bool raises_time) {
     for (const int call : {SCMP_SYS(pipe), SCMP_SYS(pipe2)})
       if (seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, call, 0) != 0) return false;
   // threads, but no processes; clone3 hides its flags from the filter, and the C library works without it
-  bool good =
+  bool success =
       seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(clone), 1, SCMP_A0(SCMP_CMP_MASKED_EQ, CLONE_THREAD, CLONE_THREAD)) == 0;
-  good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0) == 0;
+  success = success && seccomp_rule_add(filter.get(), SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0) == 0;
   // memory, but none that is executable
-  good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(mmap), 1, SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0)) == 0;
-  good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(mprotect), 1, SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0)) == 0;
+  success = success && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(mmap), 1, SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0)) == 0;
+  success =
+      success && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(mprotect), 1, SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0)) == 0;
   // query how a descriptor is open, and the process's own limits
-  good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(fcntl), 1, SCMP_A1(SCMP_CMP_EQ, F_GETFL)) == 0;
-  good =
-      good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(prlimit64), 2, SCMP_A0(SCMP_CMP_EQ, 0), SCMP_A2(SCMP_CMP_EQ, 0)) == 0;
-  good = good && (!raises_time || seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(prlimit64), 2, SCMP_A0(SCMP_CMP_EQ, 0),
-                                                   SCMP_A1(SCMP_CMP_EQ, RLIMIT_CPU)) == 0);
+  success = success && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(fcntl), 1, SCMP_A1(SCMP_CMP_EQ, F_GETFL)) == 0;
+  success = success &&
+            seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(prlimit64), 2, SCMP_A0(SCMP_CMP_EQ, 0), SCMP_A2(SCMP_CMP_EQ, 0)) == 0;
+  success = success && (!raises_time || seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(prlimit64), 2, SCMP_A0(SCMP_CMP_EQ, 0),
+                                                         SCMP_A1(SCMP_CMP_EQ, RLIMIT_CPU)) == 0);
   // abort by a failed assertion, in this process only
-  good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(tgkill), 1,
-                                  SCMP_A0(SCMP_CMP_EQ, static_cast<scmp_datum_t>(::getpid()))) == 0;
-  return good && seccomp_load(filter.get()) == 0;
+  success = success && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(tgkill), 1,
+                                        SCMP_A0(SCMP_CMP_EQ, static_cast<scmp_datum_t>(::getpid()))) == 0;
+  return success && seccomp_load(filter.get()) == 0;
 }
 
 }  // namespace
@@ -175,16 +176,16 @@ Result<field::SandboxStatus> enter_sandbox(const ProcessLimits& limits, bool* ro
   ::prctl(PR_SET_DUMPABLE, 0);
   set_limits(limits);
   field::SandboxStatus confinement;
-  if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return Error{std::string("privileges cannot be given up: ") + std::strerror(errno)};
+  if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return Error{std::string("privileges cannot be dropped: ") + std::strerror(errno)};
   const std::string& folder = limits.readable_folder;
   confinement.landlock_version = limits.use_landlock ? landlock(folder) : 0;
   const bool moved = !folder.empty() && confinement.landlock_version == 0 && change_root(folder);
   if (!folder.empty() && confinement.landlock_version == 0 && !moved)
-    return Error{"this kernel keeps a process neither in a folder (Landlock) nor in a root of its own, expected one that does"};
+    return Error{"this kernel cannot restrict a process to a folder, expected Landlock or user namespaces"};
   if (root_changed != nullptr) *root_changed = moved;
-  if (!drop_capabilities()) return Error{std::string("privileges cannot be given up: ") + std::strerror(errno)};
+  if (!drop_capabilities()) return Error{std::string("privileges cannot be dropped: ") + std::strerror(errno)};
   confinement.seccomp = seccomp(!folder.empty(), limits.max_cpu_s > 0);
-  if (!confinement.seccomp) return Error{"this kernel does not filter system calls (seccomp), expected one that does"};
+  if (!confinement.seccomp) return Error{"this kernel cannot filter system calls, expected seccomp"};
   return confinement;
 }
 

@@ -30,7 +30,7 @@ using ValueMaskGrid = nanovdb::NanoGrid<ValueMask>;
 Result<Mapping> mapping_of(const openvdb::GridBase& grid) {
   const auto map = grid.transform().baseMap();
   if (!map->isLinear()) return Error{"has a perspective (frustum) transform, expected a linear one"};
-  const openvdb::Mat4d m = map->getAffineMap()->getMat4();  // rows are the images of the axes
+  const openvdb::Mat4d m = map->getAffineMap()->getMat4();  // the rows are the transformed axes
   Mat3 j;
   for (int a = 0; a < 3; ++a) j[a] = Vec3(m(a, 0), m(a, 1), m(a, 2));
   const Mapping mapping = Mapping::from_linear(j, Vec3(m(3, 0), m(3, 1), m(3, 2)));
@@ -46,7 +46,7 @@ bool same_mapping(const Mapping& a, const Mapping& b) {
   return norm(a.origin - b.origin) <= 1e-3 * edge;
 }
 
-/// Calls use(tree) for the first matching grid type in `Grids`; false if none matches.
+/// Calls use(tree) for the first matching grid type in `Grids`; returns false if none matches.
 template <class... Grids, class Use>
 bool with_tree(const openvdb::GridBase::Ptr& grid, const Use& use) {
   const auto one = [&]<class Grid>(const Grid*) {
@@ -67,13 +67,14 @@ bool with_vectors(const openvdb::GridBase::Ptr& grid, const Use& use) {
   return with_tree<openvdb::Vec3SGrid, openvdb::Vec3DGrid, openvdb::Vec3IGrid>(grid, use);
 }
 
-/// Calls use(tree) for a bool grid, whose true voxels are valid, or a mask grid, whose active voxels are valid; false for other grids.
+/// Calls use(tree) for a bool grid, whose true voxels are valid, or a mask grid, whose active voxels are valid; returns false for other
+/// grids.
 template <class Use>
 bool with_mask(const openvdb::GridBase::Ptr& grid, const Use& use) {
   return with_tree<openvdb::BoolGrid, openvdb::MaskGrid>(grid, use);
 }
 
-/// The requested entry, or the only usable one.
+/// Returns the requested entry, or the only usable one.
 Result<const VdbEntry*> choose(const VdbFile& f, const LoadRequest& request) {
   const auto& entries = f.entries();
   const auto usable = [](const VdbEntry& e) { return is_scalar_type(type_name(e)) || is_vector_type(type_name(e)); };
@@ -91,8 +92,8 @@ Result<const VdbEntry*> choose(const VdbFile& f, const LoadRequest& request) {
     if (usable(e)) only = &e, ++count;
   if (count == 1) return only;
   if (count == 0)
-    return Error{fmt::format("{}: there is no scalar or 3-vector grid in the file, it has: {}", request.path, format_entries(entries))};
-  return Error{fmt::format("{}: the file has several grids, name one of: {}", request.path, format_entries(entries))};
+    return Error{fmt::format("{}: there is no scalar or 3-vector grid; the file has: {}", request.path, format_entries(entries))};
+  return Error{fmt::format("{}: the file has several grids, expected the name of one of: {}", request.path, format_entries(entries))};
 }
 
 /// Handles one request.
@@ -122,7 +123,7 @@ class Answer {
     grid.reset();
     const ActiveBox box = scalar ? field::compute_active_box(field::as_nano_grid<float>(*values))
                                  : field::compute_active_box(field::as_nano_grid<nanovdb::Vec3f>(*values));
-    if (box.empty() && what_.crop) return about(Error{"has no active voxels in \"crop\"; a box that meets the data was expected"});
+    if (box.empty() && what_.crop) return about(Error{"has no active voxels inside \"crop\"; a box that overlaps the data was expected"});
     if (box.empty()) return about(Error{"has no active voxels, expected a grid with data"});
     if (!is_within_index_limits(box)) return about(field::index_range_error(box));
     return load_mask(response, box);
@@ -138,7 +139,7 @@ class Answer {
 
  private:
   std::uint64_t left() const { return request_.memory_bytes; }
-  /// The region that "crop" leaves of a grid; the whole grid if its transform is going to be refused.
+  /// Returns the region that "crop" leaves of a grid; the whole grid if its transform is going to be refused.
   VdbFile::RegionSelector part() const {
     if (!what_.crop) return {};
     return [crop = *what_.crop](const openvdb::GridBase& grid) {
@@ -152,7 +153,8 @@ class Answer {
     return [this, &piece](std::size_t bytes) { return out_.allocate(bytes, piece); };
   }
   Error not_a_field(const VdbEntry& entry) const {
-    return Error{fmt::format("{}: grid \"{}\" is of type {}, which is not a field", what_.path, entry.name, type_name(entry))};
+    return Error{
+        fmt::format("{}: grid \"{}\" is of type {}, expected a scalar or 3-vector grid", what_.path, entry.name, type_name(entry))};
   }
 
   Outcome load_mask(ReadResponse& response, const ActiveBox& box) {
@@ -167,10 +169,11 @@ class Answer {
     if (word != "bool" && word != "mask")
       return Error{fmt::format("{}: the mask \"{}\" is of type {}, expected bool", what_.path, entry->name, word)};
     const auto grid = file_.read(*entry, part());
-    CATENA_TRY(const Mapping own, mapping_of(*grid));
-    if (!same_mapping(response.mapping, own))
-      return Error{fmt::format("{}: the mask \"{}\" has another transform than the grid, expected the same (\"valid\": null ignores it)",
-                               what_.path, entry->name)};
+    CATENA_TRY(const Mapping mask_mapping, mapping_of(*grid));
+    if (!same_mapping(response.mapping, mask_mapping))
+      return Error{
+          fmt::format("{}: the transforms of the mask \"{}\" and the grid differ, expected equal ones (\"valid\": null ignores the mask)",
+                      what_.path, entry->name)};
     const std::string name = fmt::format("{}: the mask \"{}\"", what_.path, entry->name);
     Result<NanoMemory> voxels = Error{};
     response.has_mask =
@@ -179,21 +182,21 @@ class Answer {
     if (!voxels) return voxels.error();
     CATENA_TRY(const NanoMemory own_cells, cell_mask(response, *what_.mask_grid));
     const ValueMaskGrid* by_cells = response.has_cell_mask ? &field::as_nano_grid<ValueMask>(own_cells) : nullptr;
-    const auto ask = [&](double bytes) { return check_memory_available(name, bytes, left()); };
+    const auto check_memory = [&](double bytes) { return check_memory_available(name, bytes, left()); };
     CATENA_TRY(const NanoMemory cells,
-               field::erode_mask(field::as_nano_grid<ValueMask>(*voxels), box, by_cells, into(response.valid_cells), ask));
+               field::erode_mask(field::as_nano_grid<ValueMask>(*voxels), box, by_cells, into(response.valid_cells), check_memory));
     return Done{};
   }
 
-  /// The cell mask that belongs to a voxel mask; empty if there is none.
+  /// Returns the cell mask that belongs to a voxel mask; empty if there is none.
   Result<NanoMemory> cell_mask(ReadResponse& response, const std::string& of) {
     const VdbEntry* entry = file_.find(of + "_cells");
     if (!entry || (type_name(*entry) != "bool" && type_name(*entry) != "mask")) return NanoMemory();
     const std::string name = fmt::format("{}: the mask \"{}\"", what_.path, entry->name);
     const auto grid = file_.read(*entry, part());
-    CATENA_TRY(const Mapping own, mapping_of(*grid));
-    if (!same_mapping(response.mapping, own))
-      return Error{name + " has another transform than the grid, expected the same (\"valid\": null ignores it)"};
+    CATENA_TRY(const Mapping mask_mapping, mapping_of(*grid));
+    if (!same_mapping(response.mapping, mask_mapping))
+      return Error{name + " and the grid have different transforms, expected equal ones (\"valid\": null ignores the mask)"};
     Result<NanoMemory> cells = NanoMemory();
     response.has_cell_mask =
         with_mask(grid, [&](const auto& tree) { cells = to_nano<ValueMask>(tree, name, left(), &NanoMemory::reserve); });
@@ -247,17 +250,17 @@ class Answer {
     return info;
   }
 
-  /// The mask that is loaded with a grid; null: the file has none, or it has another transform.
+  /// Returns the mask that is loaded with a grid; null: the file has none, or it has another transform.
   Result<const ValueMaskGrid*> mask_for(const Mapping& mapping) {
     const VdbEntry* entry = what_.mask_grid ? file_.find(*what_.mask_grid) : nullptr;
     if (entry != nullptr && !mask_read_ && (type_name(*entry) == "bool" || type_name(*entry) == "mask")) {
       const auto grid = file_.read(*entry);
-      const auto own = mapping_of(*grid);
+      const auto mask_mapping = mapping_of(*grid);
       const std::string name = fmt::format("{}: the mask \"{}\"", what_.path, entry->name);
       Result<NanoMemory> voxels = NanoMemory();
       with_mask(grid, [&](const auto& tree) { voxels = to_nano<ValueMask>(tree, name, left(), &NanoMemory::reserve); });
       CATENA_TRY(mask_, std::move(voxels));
-      if (own && mask_.size() > 0) mask_mapping_ = *own;
+      if (mask_mapping && mask_.size() > 0) mask_mapping_ = *mask_mapping;
     }
     mask_read_ = true;
     return mask_mapping_ && same_mapping(mapping, *mask_mapping_) ? &field::as_nano_grid<ValueMask>(mask_) : nullptr;
@@ -305,14 +308,14 @@ ReadResponse handle_request(const ReadRequest& request, std::span<const std::byt
   } catch (const std::bad_alloc&) {
     constexpr double kMegabyte = 1e6;
     done =
-        Error{fmt::format("{}: reading it needs more than the {:.0f} MB of memory that are allowed, or the file is damaged (--memory MB "
+        Error{fmt::format("{}: reading the file needs more than the allowed {:.0f} MB of memory, or the file is damaged (--memory MB "
                           "allows more)",
                           path, static_cast<double>(request.memory_bytes) / kMegabyte)};
   } catch (const std::exception& e) {
     out.report(e);
-    done = Error{fmt::format("{}: the file is damaged or of an unknown kind ({})", path, one_line(e.what()))};
+    done = Error{fmt::format("{}: the file is damaged or its type is unknown ({})", path, one_line(e.what()))};
   } catch (...) {
-    done = Error{fmt::format("{}: the file is damaged or of an unknown kind", path)};
+    done = Error{fmt::format("{}: the file is damaged or its type is unknown", path)};
   }
   if (done) return response;
   ReadResponse refusal;

@@ -19,22 +19,22 @@ class MemoryBuffer : public std::streambuf {
   }
 
  protected:
-  int_type underflow() override { throw std::runtime_error("it ends too early"); }
+  int_type underflow() override { throw std::runtime_error("the file ends too early"); }
   std::streamsize xsgetn(char* to, std::streamsize count) override {
-    if (count < 0 || count > egptr() - gptr()) throw std::runtime_error("it ends too early");
+    if (count < 0 || count > egptr() - gptr()) throw std::runtime_error("the file ends too early");
     std::memcpy(to, gptr(), static_cast<std::size_t>(count));
     setg(eback(), gptr() + count, egptr());
     return count;
   }
   pos_type seekoff(off_type by, std::ios_base::seekdir from, std::ios_base::openmode) override {
     const off_type base = from == std::ios_base::beg ? 0 : from == std::ios_base::cur ? gptr() - eback() : egptr() - eback();
-    off_type place = 0;
-    if (__builtin_add_overflow(base, by, &place) || place < 0 || place > egptr() - eback())
-      throw std::runtime_error("it points beyond its end");
-    setg(eback(), eback() + place, egptr());
-    return place;
+    off_type offset = 0;
+    if (__builtin_add_overflow(base, by, &offset) || offset < 0 || offset > egptr() - eback())
+      throw std::runtime_error("an offset is beyond the end of the file");
+    setg(eback(), eback() + offset, egptr());
+    return offset;
   }
-  pos_type seekpos(pos_type place, std::ios_base::openmode mode) override { return seekoff(place, std::ios_base::beg, mode); }
+  pos_type seekpos(pos_type offset, std::ios_base::openmode mode) override { return seekoff(offset, std::ios_base::beg, mode); }
 };
 
 /// Input stream over `bytes`; every failure of the stream throws.

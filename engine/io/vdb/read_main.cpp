@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The program catena-read: reads one .vdb or .npy file for catena, sandboxed, into the shared memory file that is its descriptor 3
-// (engine/io/protocol.h).
+// The program catena-read: reads one .vdb or .npy file for catena in a sandbox and writes the response into the shared memory file with
+// descriptor 3 (engine/io/protocol.h).
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
@@ -40,7 +40,7 @@ int main() {
   catena::sandbox::ResponseFile out(catena::sandbox::kResponseFd);
   const auto request = out.read_request();
   if (!request) {
-    static constexpr char kWho[] = "catena-read: a part of catena, which starts it\n";
+    static constexpr char kWho[] = "catena-read: reads files for catena, which starts this program\n";
     return ::write(STDERR_FILENO, kWho, sizeof kWho - 1) < 0 ? 1 : 2;
   }
   catena::field::ReadResponse reply;

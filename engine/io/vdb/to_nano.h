@@ -74,7 +74,7 @@ Result<field::NanoMemory> to_nano(const Tree& tree, const std::string& what, std
   }
   const field::NanoCounts counts{leaves.size(), lowers.size(), uppers.size(), tree.root().getTableSize()};
   if (counts.entries > field::kMaxRootEntries)
-    return Error{what + " reaches over " + std::to_string(counts.entries) + " nodes of 4096^3 voxels, expected at most " +
+    return Error{what + " extends over " + std::to_string(counts.entries) + " nodes of 4096^3 voxels, expected at most " +
                  std::to_string(field::kMaxRootEntries)};
   const std::size_t bytes = field::NanoBuilder<T>::bytes(counts);
   CATENA_CHECK(check_memory_available(what, static_cast<double>(bytes), allowed));

@@ -14,7 +14,7 @@ namespace {
 constexpr std::int64_t magic = 0x56444220;
 constexpr std::uint32_t oldest_version = 222;  // OpenVDB 2.0 (2013)
 
-/// Little-endian reads that remember the first failure.
+/// Reader of little-endian numbers that records the first failure.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -31,9 +31,9 @@ class Reader {
   }
   void skip(std::uint64_t count) { take(count); }
   /// Seeks forward only, so that an offset table cannot cause an endless loop.
-  void seek(std::uint64_t place) {
-    ok_ = ok_ && place >= at_ && place <= bytes_.size();
-    if (ok_) at_ = place;
+  void seek(std::uint64_t offset) {
+    ok_ = ok_ && offset >= at_ && offset <= bytes_.size();
+    if (ok_) at_ = offset;
   }
   std::uint64_t at() const { return at_; }
   bool ok() const { return ok_; }
@@ -53,7 +53,7 @@ class Reader {
 
 VdbEntry entry_of(std::string unique_name, std::string type) {
   VdbEntry e;
-  // a repeated name has a number after the ASCII record separator
+  // repeated names are stored with a number after the ASCII record separator
   const auto separator = unique_name.find('\x1e');
   e.name = separator == std::string::npos ? unique_name
                                           : fmt::format("{}[{}]", unique_name.substr(0, separator), unique_name.substr(separator + 1));
@@ -69,22 +69,22 @@ VdbEntry entry_of(std::string unique_name, std::string type) {
 Result<VdbDirectory> read_vdb_directory(std::span<const std::byte> file, const std::string& path) {
   const std::uint64_t size = file.size();
   Reader reader(file);
-  const auto cut = [&](const std::string& where) {
-    return Error{fmt::format("{}: the file is cut short or damaged ({} bytes, it breaks off in {}), expected a complete .vdb file", path,
+  const auto truncated = [&](const std::string& where) {
+    return Error{fmt::format("{}: the file is truncated or damaged ({} bytes, the error is in {}), expected a complete .vdb file", path,
                              size, where)};
   };
 
   // the header
   const auto first = reader.number<std::int64_t>();
   if (size < sizeof magic || first != magic)
-    return Error{fmt::format("{}: this is not a .vdb file (its first bytes are not OpenVDB's)", path)};
+    return Error{fmt::format("{}: this is not a .vdb file (the first bytes are not those of OpenVDB)", path)};
   const auto version = reader.number<std::uint32_t>();
   reader.number<std::uint32_t>();
   reader.number<std::uint32_t>();
   const auto has_offsets = reader.number<std::uint8_t>();
-  if (!reader.ok()) return cut("its header");
+  if (!reader.ok()) return truncated("the header");
   if (version < oldest_version)
-    return Error{fmt::format("{}: .vdb format version {} is too old, expected {} or newer", path, version, oldest_version)};
+    return Error{fmt::format("{}: version {} of the .vdb format is too old, expected {} or newer", path, version, oldest_version)};
   constexpr std::uint64_t uuid_bytes = 36;
   reader.skip(uuid_bytes);
   const auto metadata = reader.number<std::uint32_t>();
@@ -94,7 +94,7 @@ Result<VdbDirectory> read_vdb_directory(std::span<const std::byte> file, const s
     reader.skip(reader.number<std::uint32_t>());
   }
   const auto count = reader.number<std::int32_t>();
-  if (!reader.ok() || count < 0) return cut("its header");
+  if (!reader.ok() || count < 0) return truncated("the header");
 
   // the grids
   VdbDirectory directory;
@@ -104,13 +104,13 @@ Result<VdbDirectory> read_vdb_directory(std::span<const std::byte> file, const s
     std::string name = reader.text(), type = reader.text();
     const bool shares_tree = !reader.text().empty();
     const auto begin = reader.number<std::int64_t>(), blocks = reader.number<std::int64_t>(), end = reader.number<std::int64_t>();
-    if (!reader.ok()) return cut(fmt::format("the entry of grid {}", i + 1));
+    if (!reader.ok()) return truncated(fmt::format("the entry of grid {}", i + 1));
     VdbEntry entry = entry_of(std::move(name), std::move(type));
     const bool in_order = shares_tree ? begin <= end : begin <= blocks && blocks <= end;  // a shared tree has no blocks
-    if (begin <= 0 || !in_order || static_cast<std::uint64_t>(end) > size) return cut(fmt::format("grid \"{}\"", entry.name));
+    if (begin <= 0 || !in_order || static_cast<std::uint64_t>(end) > size) return truncated(fmt::format("grid \"{}\"", entry.name));
     entry.offset = at;
     reader.seek(static_cast<std::uint64_t>(end));
-    if (!reader.ok()) return cut(fmt::format("grid \"{}\"", entry.name));
+    if (!reader.ok()) return truncated(fmt::format("grid \"{}\"", entry.name));
     directory.entries.push_back(std::move(entry));
   }
   return directory;

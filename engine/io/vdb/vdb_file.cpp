@@ -32,7 +32,7 @@ struct VdbFile::Archive : openvdb::io::Archive {
 
 namespace {
 
-/// The first text of the metadata that can be a unit.
+/// Returns the first text of the metadata that can be a unit.
 std::string unit_of(const openvdb::MetaMap& map, std::initializer_list<const char*> keys) {
   for (const char* key : keys)
     if (const auto text = map.getMetadata<openvdb::StringMetadata>(key); text && field::is_unit_name(text->value())) return text->value();
@@ -62,8 +62,8 @@ Result<std::unique_ptr<VdbFile>> VdbFile::open(std::span<const std::byte> bytes,
   file->archive_->begin(in);
   file->metadata_.readMeta(in);
   if (!file->directory_.is_streamed) return file;
-  // without offsets: read one grid after the other
-  for (std::int32_t left = Archive::count(in); left > 0; --left) {
+  // a file without offsets is read grid by grid
+  for (std::int32_t remaining = Archive::count(in); remaining > 0; --remaining) {
     openvdb::io::GridDescriptor descriptor;
     const openvdb::GridBase::Ptr grid = descriptor.read(in);
     Archive::grid(grid, descriptor, in);
@@ -71,7 +71,7 @@ Result<std::unique_ptr<VdbFile>> VdbFile::open(std::span<const std::byte> bytes,
       const auto parent = file->streamed_.find(descriptor.instanceParentName());
       if (parent == file->streamed_.end())
         return Error{path + ": grid \"" + descriptor.gridName() +
-                     "\" shares the tree of a grid that is not there, expected a complete .vdb file"};
+                     "\" shares the tree of a grid that does not exist, expected a complete .vdb file"};
       grid->setTree(parent->second->baseTreePtr());
     }
     if (!file->streamed_.emplace(descriptor.uniqueName(), grid).second) continue;
@@ -116,10 +116,10 @@ openvdb::GridBase::Ptr VdbFile::read_at(const VdbEntry& entry, const openvdb::Co
   if (!descriptor.isInstance()) return grid;
   // the tree belongs to another grid, which must have its own tree
   const VdbEntry* parent = find_parent(descriptor.instanceParentName());
-  if (parent == nullptr || parent == &entry) throw std::runtime_error("it shares the tree of a grid that is not there");
+  if (parent == nullptr || parent == &entry) throw std::runtime_error("a grid shares the tree of a grid that does not exist");
   openvdb::io::GridDescriptor owner;
   const openvdb::GridBase::Ptr owning = create_grid(*parent, owner);
-  if (owner.isInstance()) throw std::runtime_error("it shares a tree that is itself shared");
+  if (owner.isInstance()) throw std::runtime_error("a grid shares a tree that is itself shared");
   Archive::grid(owning, owner, stream_, box);
   grid->setTree(owning->baseTreePtr());
   return grid;
@@ -133,16 +133,16 @@ openvdb::GridBase::Ptr VdbFile::read(const VdbEntry& entry, const RegionSelector
   }
   if (!part) return read_at(entry, nullptr);
   const openvdb::CoordBBox none;
-  const openvdb::GridBase::Ptr bare = read_at(entry, &none);
-  if (!bare) return bare;
-  const openvdb::CoordBBox box = part(*bare);
+  const openvdb::GridBase::Ptr empty_grid = read_at(entry, &none);
+  if (!empty_grid) return empty_grid;
+  const openvdb::CoordBBox box = part(*empty_grid);
   return read_at(entry, &box);
 }
 
 void VdbFile::read_units(field::ReadResponse& reply) {
   try {
-    constexpr std::size_t kLongest = 256;
-    if (const auto text = metadata_.getMetadata<openvdb::StringMetadata>("units")) reply.units = text->value().substr(0, kLongest);
+    constexpr std::size_t kMaxUnitsBytes = 256;
+    if (const auto text = metadata_.getMetadata<openvdb::StringMetadata>("units")) reply.units = text->value().substr(0, kMaxUnitsBytes);
     reply.unit_length = unit_of(metadata_, {"unit_length"});
     for (const VdbEntry& entry : entries()) {
       const openvdb::GridBase::Ptr grid = directory_.is_streamed ? streamed_.at(entry.unique_name) : read_metadata(entry);

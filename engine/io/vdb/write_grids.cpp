@@ -20,24 +20,24 @@ using field::StreamHeader;
 using field::StreamKind;
 using field::StreamRecord;
 
-/// OpenVDB's own file class does not check its stream; this one writes to ours, which throws on errors.
+/// Archive that writes to a stream that throws on errors; OpenVDB's own file class does not check its stream.
 struct Writer : openvdb::io::Archive {
   void put(std::ostream& out, const openvdb::GridCPtrVec& grids) const { write(out, grids, /*seekable=*/true); }
 };
 
 openvdb::math::Transform::Ptr transform_of(const StreamHeader& head) {
-  openvdb::Mat4d matrix = openvdb::Mat4d::identity();  // rows are the images of the axes
+  openvdb::Mat4d matrix = openvdb::Mat4d::identity();  // the rows are the transformed axes
   for (int a = 0; a < 4; ++a)
     for (int c = 0; c < 3; ++c) matrix(a, c) = head.world_from_index[a][c];
   return openvdb::math::Transform::createLinearTransform(matrix);
 }
 
 struct Broken : std::runtime_error {
-  Broken() : std::runtime_error("the stream of blocks broke off") {}
+  Broken() : std::runtime_error("the stream of blocks ended too early") {}
 };
 
-void take_or_throw(const ReadBytes& take, void* to, std::size_t bytes) {
-  if (!take(to, bytes)) throw Broken();
+void take_or_throw(const ReadBytes& read_bytes, void* to, std::size_t bytes) {
+  if (!read_bytes(to, bytes)) throw Broken();
 }
 
 template <class Value>
@@ -51,16 +51,16 @@ Value value_of(const float* numbers) {
 }
 
 template <class Leaf>
-void take_leaf(const ReadBytes& take, Leaf& leaf) {
+void take_leaf(const ReadBytes& read_bytes, Leaf& leaf) {
   std::uint64_t words[8];
-  take_or_throw(take, words, sizeof words);
+  take_or_throw(read_bytes, words, sizeof words);
   typename Leaf::NodeMaskType active;
   for (openvdb::Index w = 0; w < 8; ++w) active.template getWord<std::uint64_t>(w) = words[w];
   leaf.setValueMask(active);
   if constexpr (std::is_same_v<typename Leaf::ValueType, bool>) {
     for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) leaf.setValueOnly(n, active.isOn(n));
   } else {
-    take_or_throw(take, leaf.buffer().data(), Leaf::SIZE * sizeof(typename Leaf::ValueType));
+    take_or_throw(read_bytes, leaf.buffer().data(), Leaf::SIZE * sizeof(typename Leaf::ValueType));
   }
 }
 
@@ -79,7 +79,7 @@ void merge_nodes(Tree& tree, openvdb::Index level) {
 }
 
 template <class Grid>
-openvdb::GridBase::Ptr take_grid(const ReadBytes& take, const StreamHeader& head) {
+openvdb::GridBase::Ptr take_grid(const ReadBytes& read_bytes, const StreamHeader& head) {
   using Tree = typename Grid::TreeType;
   using Value = typename Tree::ValueType;
   Value background = openvdb::zeroVal<Value>();
@@ -88,11 +88,11 @@ openvdb::GridBase::Ptr take_grid(const ReadBytes& take, const StreamHeader& head
   Tree& tree = grid->tree();
   for (;;) {
     StreamRecord record;
-    take_or_throw(take, &record, sizeof record);
+    take_or_throw(read_bytes, &record, sizeof record);
     if (record.type == StreamRecord::end_of_grid) break;
     const openvdb::Coord origin(record.origin[0], record.origin[1], record.origin[2]);
     if (record.type == StreamRecord::leaf)
-      take_leaf(take, *tree.touchLeaf(origin));
+      take_leaf(read_bytes, *tree.touchLeaf(origin));
     else
       tree.addTile(record.type - StreamRecord::tile_8 + 1, origin, value_of<Value>(record.value), record.active != 0);
   }
@@ -104,27 +104,27 @@ openvdb::GridBase::Ptr take_grid(const ReadBytes& take, const StreamHeader& head
   return grid;
 }
 
-openvdb::GridCPtrVec take_grids(const ReadBytes& take) {
+openvdb::GridCPtrVec take_grids(const ReadBytes& read_bytes) {
   openvdb::GridCPtrVec grids;
-  for (StreamHeader head; take(&head, sizeof head);) {
+  for (StreamHeader head; read_bytes(&head, sizeof head);) {
     if (head.magic != field::kStreamMagic) throw Broken();
     std::string name(head.name_bytes, '\0');
-    if (!name.empty()) take_or_throw(take, name.data(), name.size());
+    if (!name.empty()) take_or_throw(read_bytes, name.data(), name.size());
     openvdb::GridBase::Ptr grid;
     switch (head.kind) {
       case StreamKind::scalar:
-        grid = take_grid<openvdb::FloatGrid>(take, head);
+        grid = take_grid<openvdb::FloatGrid>(read_bytes, head);
         grid->setGridClass(openvdb::GRID_FOG_VOLUME);
         break;
       case StreamKind::vector: {
-        const auto vectors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(take_grid<openvdb::Vec3SGrid>(take, head));
+        const auto vectors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(take_grid<openvdb::Vec3SGrid>(read_bytes, head));
         vectors->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);
         vectors->setGridClass(openvdb::GRID_UNKNOWN);
         grid = vectors;
         break;
       }
       case StreamKind::mask:
-        grid = take_grid<openvdb::BoolGrid>(take, head);
+        grid = take_grid<openvdb::BoolGrid>(read_bytes, head);
         break;
     }
     grid->setName(name);
@@ -141,20 +141,20 @@ void put_all(const openvdb::GridCPtrVec& grids, int fd, bool seekable) {
   if (seekable) {
     Writer().put(out, grids);
   } else {
-    // written to memory first: offsets are filled in later, and the output may not be seekable
-    std::ostringstream whole;
-    Writer().put(whole, grids);
-    out << whole.str();
+    // the file is written to memory first, because offsets are filled in later and the output may not be seekable
+    std::ostringstream file_stream;
+    Writer().put(file_stream, grids);
+    out << file_stream.str();
   }
   out.flush();
 }
 
 }  // namespace
 
-Outcome write_grids(const ReadBytes& take, int fd, bool seekable) {
+Outcome write_grids(const ReadBytes& read_bytes, int fd, bool seekable) {
   openvdb::initialize();
   try {
-    const openvdb::GridCPtrVec grids = take_grids(take);
+    const openvdb::GridCPtrVec grids = take_grids(read_bytes);
     errno = 0;
     put_all(grids, fd, seekable);
     return Done{};

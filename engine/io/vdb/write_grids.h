@@ -12,6 +12,6 @@ namespace catena::vdb {
 using ReadBytes = std::function<bool(void* to, std::size_t bytes)>;
 
 /// Writes the grids to the descriptor; `seekable`: it is a regular file. Returns an Error with a message fragment.
-Outcome write_grids(const ReadBytes& take, int fd, bool seekable);
+Outcome write_grids(const ReadBytes& read_bytes, int fd, bool seekable);
 
 }  // namespace catena::vdb

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The program catena-write: receives grids block by block on its descriptor 3 and writes them as a .vdb file to its descriptor 4.
+// The program catena-write: receives grids block by block on descriptor 3 and writes them as a .vdb file to descriptor 4.
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -55,15 +55,15 @@ class Line {
   std::size_t begin_ = 0, end_ = 0;
 };
 
-void answer_machine(const std::string& why) {
-  const std::string failure = "1" + why;
+void send_system_failure(const std::string& reason) {
+  const std::string failure = "1" + reason;
   [[maybe_unused]] const auto sent = ::send(kLine, failure.data(), failure.size(), MSG_NOSIGNAL);
 }
 
 [[noreturn]] void on_no_memory() {
-  char why[256];
-  std::snprintf(why, sizeof why, "1%s", catena::out_of_memory_message());
-  [[maybe_unused]] const auto sent = ::send(kLine, why, std::strlen(why), MSG_NOSIGNAL);
+  char reason[256];
+  std::snprintf(reason, sizeof reason, "1%s", catena::out_of_memory_message());
+  [[maybe_unused]] const auto sent = ::send(kLine, reason, std::strlen(reason), MSG_NOSIGNAL);
   ::_exit(0);
 }
 
@@ -72,9 +72,9 @@ void answer_machine(const std::string& why) {
   try {
     if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
   } catch (const std::exception& error) {
-    answer_machine(catena::is_thread_start_failure(error)
-                       ? "no other thread can be started: " + catena::describe_errno(catena::thread_start_errno())
-                       : std::string(error.what()));
+    send_system_failure(catena::is_thread_start_failure(error)
+                            ? "no other thread can be started: " + catena::describe_errno(catena::thread_start_errno())
+                            : std::string(error.what()));
     ::_exit(0);
   } catch (...) {
   }
@@ -93,7 +93,7 @@ int main() {
   int type = 0;
   socklen_t size = sizeof type;
   if (::getsockopt(kLine, SOL_SOCKET, SO_TYPE, &type, &size) != 0) {
-    static constexpr char kWho[] = "catena-write: a part of catena, which starts it\n";
+    static constexpr char kWho[] = "catena-write: writes .vdb files for catena, which starts this program\n";
     return ::write(STDERR_FILENO, kWho, sizeof kWho - 1) < 0 ? 1 : 2;
   }
   hear_failures();
@@ -107,7 +107,7 @@ int main() {
   const catena::Outcome done =
       confined ? catena::vdb::write_grids([&](void* to, std::size_t bytes) { return line.take(to, bytes); }, kFile, seekable)
                : catena::Outcome(confined.error());
-  // the response: '1' for a system failure or '0' for bad data, then the message
+  // the response is '1' for a system failure or '0' for bad data, followed by the message
   const std::string failure = done ? std::string() : (done.error().system_failure ? "1" : "0") + done.error().message;
   if (!failure.empty() && ::send(kLine, failure.data(), failure.size(), MSG_NOSIGNAL) < 0) return 1;
   ::_exit(0);

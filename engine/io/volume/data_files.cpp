@@ -13,7 +13,7 @@
 namespace catena::field {
 namespace {
 
-/// Whether a name matches a pattern in which each run of '*' stands for digits.
+/// Returns whether a name matches a pattern in which each run of '*' stands for digits.
 bool is_like(std::string_view name, std::string_view pattern) {
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
   std::size_t i = 0, j = 0;
@@ -30,13 +30,13 @@ bool is_like(std::string_view name, std::string_view pattern) {
   return i == name.size();
 }
 
-/// Whether a file is a text that names other files.
+/// Returns whether a file is a text that names other files.
 bool names_files(const std::string& path) {
   const io::Format* format = io::find_format(path);
   return format != nullptr && format->layout == io::FileLayout::index;
 }
 
-/// All words and quoted strings of a text, each of which may be a file name.
+/// Returns all words and quoted strings of a text, each of which may be a file name.
 std::set<std::string> names_in(const std::string& text) {
   std::set<std::string> names;
   std::string word;
@@ -59,16 +59,16 @@ std::set<std::string> names_in(const std::string& text) {
 /// Adds the files that a text file in several parts names, for every time step, and those that these name.
 void add_named(const std::string& path, std::set<FileId>& files, int depth = 0) {
   namespace fs = std::filesystem;
-  constexpr std::uint64_t kMostBytes = 4 << 20;
-  constexpr int kMostDepth = 3;
-  const auto text = read_text_file(path, "a text", kMostBytes);
+  constexpr std::uint64_t kMaxBytes = 4 << 20;
+  constexpr int kMaxDepth = 3;
+  const auto text = read_text_file(path, "a text", kMaxBytes);
   if (!text) return;
   const fs::path folder = fs::path(path).parent_path();
   for (const std::string& name : names_in(*text)) {
     const fs::path at = folder / name;
     if (name.find('*') == std::string::npos) {
       const auto id = find_file_id(at.string());
-      if (id && files.insert(*id).second && depth < kMostDepth && names_files(at.string())) add_named(at.string(), files, depth + 1);
+      if (id && files.insert(*id).second && depth < kMaxDepth && names_files(at.string())) add_named(at.string(), files, depth + 1);
       continue;
     }
     std::error_code code;

@@ -8,11 +8,11 @@
 
 namespace catena::field {
 
-/// Whether reading a file, or a folder, can open other files than the one named.
+/// Returns whether reading a file, or a folder, can open other files than the one named.
 bool has_companion_files(const std::string& path);
-/// Whether a folder contains an OpenFOAM mesh: constant/polyMesh, or those of regions, constant/REGION/polyMesh.
+/// Returns whether a folder contains an OpenFOAM mesh: constant/polyMesh, or those of regions, constant/REGION/polyMesh.
 bool has_openfoam_mesh(const std::string& folder);
-/// Whether a folder is an OpenFOAM case: it has system/controlDict, a mesh, or pieces in processor0.
+/// Returns whether a folder is an OpenFOAM case: it has system/controlDict, a mesh, or pieces in processor0.
 bool is_openfoam_case(const std::string& path);
 /// Folder of the OpenFOAM case: the given folder, or that of a .foam file; empty: the path is neither.
 std::string openfoam_case_folder(const std::string& path);

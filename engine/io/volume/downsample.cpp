@@ -45,11 +45,11 @@ GridDifference difference_of(const Grid& fine, const Grid& coarse) {
   return d;
 }
 
-constexpr int kFlat = 2;  // nodes along an axis that is not downsampled: an image is stored as two slices
+constexpr int kFlat = 2;  // maximum number of nodes along an axis that is not downsampled: an image is stored as two slices
 
 int step_of(int n, int factor) { return n <= kFlat ? 1 : factor; }
-/// Number of nodes that remain of `n` along an axis.
-int left_of(int n, int factor) { return (n - 1) / step_of(n, factor) + 1; }
+/// Returns the number of nodes that remain of `n` along an axis.
+int remaining_nodes(int n, int factor) { return (n - 1) / step_of(n, factor) + 1; }
 
 /// The slices of the full grid that are in use, lowest z first; they must be requested with rising z.
 class SliceWindow {
@@ -87,11 +87,11 @@ class SliceWindow {
   int first_ = 0;
 };
 
-/// Half-width of the tent filter at a node.
-int reach(int node, int n, int factor) { return n <= kFlat ? 0 : std::min({factor - 1, node, n - 1 - node}); }
+/// Returns the half-width of the tent filter at a node.
+int half_width(int node, int n, int factor) { return n <= kFlat ? 0 : std::min({factor - 1, node, n - 1 - node}); }
 
 float tent(const SliceWindow& layers, const Index3& size, const Index3& at, int factor) {
-  const int rx = reach(at.x, size.x, factor), ry = reach(at.y, size.y, factor), rz = reach(at.z, size.z, factor);
+  const int rx = half_width(at.x, size.x, factor), ry = half_width(at.y, size.y, factor), rz = half_width(at.z, size.z, factor);
   const auto has = [&](int i, int j, int k) {
     return layers.valid(at.x + i, at.y + j, at.z + k) && std::isfinite(layers.value(at.x + i, at.y + j, at.z + k));
   };
@@ -108,20 +108,20 @@ float tent(const SliceWindow& layers, const Index3& size, const Index3& at, int 
   return static_cast<float>(sum / weights);
 }
 
-/// One slice of a cell mask: a coarse cell is invalid if at least half of its fine cells are.
+/// Reads one slice of the coarse cell mask: a coarse cell is invalid if at least half of its fine cells are.
 void coarse_cells(const VoxelBox& box, int factor, int z, std::span<std::uint8_t> out) {
   const int n[3] = {box.size.x, box.size.y, box.size.z};
-  int step[3], left[3];
-  for (int a = 0; a < 3; ++a) step[a] = step_of(n[a], factor), left[a] = left_of(n[a], factor);
+  int step[3], remaining[3];
+  for (int a = 0; a < 3; ++a) step[a] = step_of(n[a], factor), remaining[a] = remaining_nodes(n[a], factor);
   std::vector<int> invalid(out.size(), 0);
   std::vector<std::uint8_t> layer(box.layer_voxels());
   for (int k = z * step[2]; k < (z + 1) * step[2] && k < n[2]; ++k) {
     box.read_cells(k, layer);
-    for (int y = 0; y < std::max(1, left[1] - 1); ++y)
-      for (int x = 0; x < std::max(1, left[0] - 1); ++x)
+    for (int y = 0; y < std::max(1, remaining[1] - 1); ++y)
+      for (int x = 0; x < std::max(1, remaining[0] - 1); ++x)
         for (int j = 0; j < step[1]; ++j)
           for (int i = 0; i < step[0]; ++i)
-            invalid[static_cast<std::size_t>(y) * static_cast<std::size_t>(left[0]) + static_cast<std::size_t>(x)] +=
+            invalid[static_cast<std::size_t>(y) * static_cast<std::size_t>(remaining[0]) + static_cast<std::size_t>(x)] +=
                 layer[static_cast<std::size_t>(y * step[1] + j) * static_cast<std::size_t>(n[0]) +
                       static_cast<std::size_t>(x * step[0] + i)] == 0;
   }
@@ -133,7 +133,7 @@ Result<std::shared_ptr<const Grid>> at_level_of(const std::string& path, const A
   const VoxelBox box(field, field.get()->name(), {});
   const Index3 n = box.size;
   DenseSource source;
-  source.size = {left_of(n.x, factor), left_of(n.y, factor), left_of(n.z, factor)};
+  source.size = {remaining_nodes(n.x, factor), remaining_nodes(n.y, factor), remaining_nodes(n.z, factor)};
   source.has_mask = box.has_mask;
   CATENA_CHECK(check_dense_memory(path, source.size, box.components, box.has_mask));
   SliceWindow layers(box);
@@ -141,7 +141,7 @@ Result<std::shared_ptr<const Grid>> at_level_of(const std::string& path, const A
   source.read = [&](int first, int count, std::span<float> values, std::span<std::uint8_t> valid) -> Outcome {
     std::size_t i = 0, v = 0;
     for (int z = first; z < first + count; ++z) {
-      const int fine_z = z * step(n.z), rz = averaged ? reach(fine_z, n.z, factor) : 0;
+      const int fine_z = z * step(n.z), rz = averaged ? half_width(fine_z, n.z, factor) : 0;
       layers.want(fine_z - rz, fine_z + rz);
       for (int y = 0; y < source.size.y; ++y)
         for (int x = 0; x < source.size.x; ++x) {
@@ -178,9 +178,9 @@ GridDifference compute_difference(const VectorGrid& fine, const VectorGrid& coar
 Result<AnyField> downsample_to_level(const std::string& path, AnyField field, int level, bool cubic) {
   CATENA_ASSERT(field.get()->is_grid() && level >= 1 && level <= kMaxLevels);
   const int factor = 1 << level;
-  const Box& whole = field.get()->index_box();
+  const Box& full_box = field.get()->index_box();
   for (int axis = 0; axis < 3; ++axis) {
-    const double nodes = whole.hi[axis] - whole.lo[axis] + 1;
+    const double nodes = full_box.hi[axis] - full_box.lo[axis] + 1;
     if (nodes > kFlat && nodes <= factor)
       return Error{fmt::format("{}: {:.0f} voxels along {} are too few for level of detail {}; more than {} were expected", path, nodes,
                                "xyz"[axis], level, factor)};
@@ -207,9 +207,9 @@ Result<AnyField> downsample_to_level(const std::string& path, AnyField field, in
     return fmt::format("{:.0f} x {:.0f} x {:.0f}", n.x, n.y, n.z);
   };
   std::string note =
-      fmt::format("level of detail {}: {} of {} voxels; it differs from the data by {:.2g} (root mean square; {:.2g} at most", level,
-                  size(now), size(whole), off.rms, off.max);
-  if (scale > 0) note += fmt::format("; their values span {:.2g}", scale);
+      fmt::format("level of detail {}: {} of {} voxels; the values differ from the data by {:.2g} (root mean square; maximum {:.2g}", level,
+                  size(now), size(full_box), off.rms, off.max);
+  if (scale > 0) note += fmt::format("; the data range is {:.2g} wide", scale);
   coarse.notes.push_back(note + ")");
   return coarse;
 }

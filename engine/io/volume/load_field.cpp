@@ -33,57 +33,57 @@ Result<T> guarded(const std::string& path, const Body& body) {
   try {
     return body();
   } catch (const std::bad_alloc&) {
-    if (resource_limit(RLIMIT_AS)) return Error{path + ": there is not enough memory to read it: " + describe_errno(ENOMEM), true};
-    return Error{fmt::format("{}: not enough memory to read it (or the file is damaged)", path)};
+    if (resource_limit(RLIMIT_AS)) return Error{path + ": there is not enough memory to read the file: " + describe_errno(ENOMEM), true};
+    return Error{fmt::format("{}: there is not enough memory to read the file, or the file is damaged", path)};
   } catch (const std::exception& e) {
     if (is_thread_start_failure(e)) return Error{path + ": no other thread can be started: " + describe_errno(thread_start_errno()), true};
-    return Error{fmt::format("{}: the file is damaged or of an unknown kind ({})", path, one_line(e.what()))};
+    return Error{fmt::format("{}: the file is damaged or its type is unknown ({})", path, one_line(e.what()))};
   } catch (...) {
-    return Error{fmt::format("{}: the file is damaged or of an unknown kind", path)};
+    return Error{fmt::format("{}: the file is damaged or its type is unknown", path)};
   }
 }
 
-/// Whether all corners of the grid are finite; they may be infinite even if each number of the transform is finite.
+/// Returns whether all corners of the grid are finite; they may be infinite even if each number of the transform is finite.
 bool has_finite_box(const Field& field) {
   bool finite = std::isfinite(field.domain_length());
   for (int i = 0; i < 8; ++i) finite = finite && is_finite(field.corner(i));
   return finite;
 }
 
-/// Message fragment on the probable cause if the largest magnitude is outside of 1e-30 .. 1e30.
-std::string absurd_sizes(const AnyField& field) {
+/// Returns a message fragment on the probable cause if the largest magnitude is outside of 1e-30 .. 1e30.
+std::string magnitude_hint(const AnyField& field) {
   const GridStats* stats = field.scalar && field.scalar->grid()   ? &field.scalar->grid()->stats()
                            : field.vector && field.vector->grid() ? &field.vector->grid()->stats()
                                                                   : nullptr;
   if (stats == nullptr) return {};
-  const double most = std::max(std::fabs(stats->min), std::fabs(stats->max));
+  const double max_magnitude = std::max(std::fabs(stats->min), std::fabs(stats->max));
   constexpr double kSmallest = 1e-30, kLargest = 1e30;
-  if (most == 0 || (most >= kSmallest && most <= kLargest)) return {};
+  if (max_magnitude == 0 || (max_magnitude >= kSmallest && max_magnitude <= kLargest)) return {};
   return fmt::format(
-      "the values go from {:.3g} to {:.3g}: if that is not meant, the type or the order of the bytes is another one, or a number stands "
-      "for \"no data\"",
+      "the values range from {:.3g} to {:.3g}: unless this is intended, the number type or the byte order is wrong, or a special value "
+      "marks missing data",
       stats->min, stats->max);
 }
 
 Error unknown_kind(const std::string& path) {
   if (const std::string conversion = conversion_hint(path); !conversion.empty())
     return Error{fmt::format("{}: this is {}", path, conversion)};
-  return Error{fmt::format("{}: unknown kind of file, expected {}", path, io::describe_expected(io::DataKind::volume))};
+  return Error{fmt::format("{}: unknown file type, expected {}", path, io::describe_expected(io::DataKind::volume))};
 }
 
 }  // namespace
 
 Result<AnyField> with_cubic_interpolation(AnyField field, const std::string& path) {
-  const auto told = [&](const Error& e) { return Error{fmt::format("{}: {}", path, e.message)}; };
+  const auto with_path = [&](const Error& e) { return Error{fmt::format("{}: {}", path, e.message)}; };
   if (field.scalar && field.scalar->grid()) {
-    auto made = field.scalar->grid()->as_cubic();
-    if (!made) return told(made.error());
-    field.scalar = *made;
+    auto cubic = field.scalar->grid()->as_cubic();
+    if (!cubic) return with_path(cubic.error());
+    field.scalar = *cubic;
   }
   if (field.vector && field.vector->grid()) {
-    auto made = field.vector->grid()->as_cubic();
-    if (!made) return told(made.error());
-    field.vector = *made;
+    auto cubic = field.vector->grid()->as_cubic();
+    if (!cubic) return with_path(cubic.error());
+    field.vector = *cubic;
   }
   return field;
 }
@@ -153,8 +153,8 @@ Result<std::uint64_t> readable_file_size(const std::string& path) {
   const std::uint64_t size = std::filesystem::file_size(path, error);
   errno = 0;
   if (error || !std::ifstream(path, std::ios::binary)) {
-    const int why = errno;
-    return Error{fmt::format("{}: cannot be opened ({})", path, describe_errno(why)), is_system_failure(why)};
+    const int code = errno;
+    return Error{fmt::format("{}: cannot be opened ({})", path, describe_errno(code)), is_system_failure(code)};
   }
   if (size == 0) return Error{fmt::format("{}: the file is empty", path)};
   return size;
@@ -175,7 +175,7 @@ static const VolumeReader* reader_of(const std::string& path) {
 Result<AnyField> load(const LoadRequest& request) {
   const VolumeReader* reader = reader_of(request.path);
   if (request.raw && (reader == nullptr || !reader->needs_layout))
-    return Error{fmt::format("{}: shape, spacing, origin and type belong to .raw files only", request.path)};
+    return Error{fmt::format("{}: shape, spacing, origin and type apply to .raw files only", request.path)};
   return guarded<AnyField>(request.path, [&]() -> Result<AnyField> {
     if (reader == nullptr) {
       if (!std::filesystem::is_directory(request.path)) CATENA_CHECK(readable_file_size(request.path));
@@ -189,17 +189,17 @@ Result<AnyField> load(const LoadRequest& request) {
       field = load_dense(file);
     }
     if (field && !has_finite_box(*field->get()))
-      return Error{fmt::format("{}: the transform puts a corner of the data beyond all numbers, expected a finite box", request.path)};
+      return Error{fmt::format("{}: the transform places a corner of the data at infinity, expected a finite box", request.path)};
     if (!field) return field;
     const auto is_hinted = [](const std::string& note) { return note.find("bytes") != std::string::npos; };
-    if (const std::string absurd = absurd_sizes(*field); !absurd.empty() && std::ranges::none_of(field->notes, is_hinted))
-      field->notes.push_back(absurd);
-    if (request.crop && !has_extension(request.path, ".vdb")) {  // of a .vdb only the region was read
+    if (const std::string hint = magnitude_hint(*field); !hint.empty() && std::ranges::none_of(field->notes, is_hinted))
+      field->notes.push_back(hint);
+    if (request.crop && !has_extension(request.path, ".vdb")) {  // a .vdb was cropped by the reader
       CATENA_TRY(field, crop_field(request.path, *field, *request.crop));
     }
     const bool nearest = request.interpolation == Interpolation::nearest;
     if (nearest && field->vector)
-      return Error{fmt::format("{}: the grid \"{}\" holds vectors, expected numbers for the interpolation \"nearest\"", request.path,
+      return Error{fmt::format("{}: the grid \"{}\" contains vectors, expected scalars for the interpolation \"nearest\"", request.path,
                                field->get()->name())};
     if (const ScalarGrid* grid = nearest ? field->scalar->grid() : nullptr) field->scalar = grid->with_interpolation(request.interpolation);
     if (request.level > 0)

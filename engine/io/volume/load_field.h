@@ -28,7 +28,7 @@ struct RawLayout {
   bool operator==(const RawLayout&) const = default;
 };
 
-/// Which grid of which file to load, and how.
+/// Request to load a grid of a file, with the parameters of loading.
 struct LoadRequest {
   std::string path;                                ///< File, or a folder of DICOM images.
   std::string grid;                                ///< Empty: the only usable grid of the file; if there are several, an Error lists them.
@@ -58,7 +58,7 @@ struct Size3 {
   bool operator==(const Size3&) const = default;
 };
 
-/// What the values of a grid belong to: its voxels, or the points or cells of a mesh from which it is resampled.
+/// Kind of the elements to which the values of a grid belong: its voxels, or the points or cells of a mesh from which it is resampled.
 enum class ElementKind : std::uint8_t { voxels, points, cells };
 /// Returns "voxels", "points" or "cells".
 CATENA_EXPORT std::string_view to_string(ElementKind counted);
@@ -70,8 +70,8 @@ struct GridInfo {
   Index3 first_index{0, 0, 0};                     ///< Index of the first voxel.
   Mapping mapping;                                 ///< World from index.
   GridStats stats;                                 ///< Value statistics; active_voxels counts elements of `element_kind`.
-  DisplayRange display_range;                      ///< Of a usable grid (display_range.h).
-  ElementKind element_kind = ElementKind::voxels;  ///< What `size` and `active_voxels` count.
+  DisplayRange display_range;                      ///< Display range of a usable grid (display_range.h).
+  ElementKind element_kind = ElementKind::voxels;  ///< Elements that `size` and `active_voxels` count.
   std::size_t bytes = 0;                           ///< Size in memory as NanoVDB, bytes.
   bool is_usable = false;                          ///< Can be loaded as a field.
   bool is_vector = false;                          ///< Vectors with three components.
@@ -83,12 +83,12 @@ CATENA_EXPORT Result<std::vector<GridInfo>> describe_grids(const std::string& pa
 
 /// Kinds of geometry, besides points, in a file read by catena-read-vtk.
 struct PrimitiveKinds {
-  bool triangles = false, lines = false;  ///< Whether the file has triangles, and lines.
+  bool triangles = false, lines = false;  ///< True: the file has triangles, or lines.
 };
 /// Returns nullopt when the file cannot be read.
 CATENA_EXPORT std::optional<PrimitiveKinds> read_primitive_kinds(const std::string& path);
 
-/// Times of the steps in a file read by catena-read-vtk; empty: none, or a file of another format.
+/// Times of the steps in a file read by catena-read-vtk; empty: none, a file of another format, or one that cannot be read.
 CATENA_EXPORT std::vector<double> read_times(const std::string& path);
 
 /// A grid to be written to a .vdb.
@@ -107,9 +107,9 @@ CATENA_EXPORT Result<std::string> import_as_vdb(const LoadRequest& request, cons
 /// Called about once a second while a reader process reads a file, with the seconds elapsed, and a last time with `ended`. Any thread.
 using ReadProgress = std::function<void(const std::string& path, double seconds, bool ended)>;
 /// Sets the callback. Call it once, before anything is read.
-CATENA_EXPORT void set_read_progress(ReadProgress called);
+CATENA_EXPORT void set_read_progress(ReadProgress callback);
 
-/// Counts what has been loaded, so that tests can show that nothing is loaded but what the scene names.
+/// Counts of loaded objects, with which tests show that only the objects that the scene names are loaded.
 struct LoadCounters {
   std::uint64_t files = 0, grids = 0;  ///< Files and fields loaded.
   std::uint64_t masks = 0;             ///< `valid` grids loaded with them.

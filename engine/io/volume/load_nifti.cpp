@@ -63,26 +63,26 @@ bool is_usable(const Mapping& mapping) {
   return is_finite(mapping.origin) && is_finite(mapping.index_from_world(Vec3(1.0))) && mapping.min_voxel_edge() > 0;
 }
 
-/// The mapping by the sform, else the qform, else the voxel sizes. Adds a note if the sform cannot be used, or if the two differ.
+/// Returns the mapping by the sform, else the qform, else the voxel sizes. Adds a note if the sform cannot be used, or if the two differ.
 Result<Mapping> placement_of(const nifti_image& image, const std::string& path, std::vector<std::string>& notes) {
   const bool has_sform = image.sform_code > 0, has_qform = image.qform_code > 0;
   const Mapping sform = mapping_of(image.sto_xyz), qform = mapping_of(image.qto_xyz);
   if (has_sform && is_usable(sform)) {
     if (!has_qform || !is_usable(qform)) return sform;
-    double apart = 0;
+    double max_difference = 0;
     for (int corner = 0; corner < 8; ++corner) {
       const Vec3 index((corner & 1) * (image.nx - 1.0), (corner >> 1 & 1) * (image.ny - 1.0), (corner >> 2) * (image.nz - 1.0));
-      apart = std::max(apart, norm(sform.world_from_index(index) - qform.world_from_index(index)));
+      max_difference = std::max(max_difference, norm(sform.world_from_index(index) - qform.world_from_index(index)));
     }
     constexpr double kOfVoxel = 0.01;
-    if (apart > kOfVoxel * sform.min_voxel_edge())
-      notes.push_back(fmt::format("sform ({}) and qform ({}) differ, by up to {:.3g} at the corners: the sform is used",
-                                  nifti_xform_string(image.sform_code), nifti_xform_string(image.qform_code), apart));
+    if (max_difference > kOfVoxel * sform.min_voxel_edge())
+      notes.push_back(fmt::format("the sform ({}) and the qform ({}) differ by up to {:.3g} at the corners: the sform is used",
+                                  nifti_xform_string(image.sform_code), nifti_xform_string(image.qform_code), max_difference));
     return sform;
   }
   if (has_sform && !has_qform)
-    return Error{fmt::format("{}: the transform of the header (sform) cannot be inverted, and there is no qform", path)};
-  if (!is_usable(qform)) return Error{fmt::format("{}: the transform of the header cannot be inverted", path)};
+    return Error{fmt::format("{}: the transform in the header (sform) cannot be inverted, and there is no qform", path)};
+  if (!is_usable(qform)) return Error{fmt::format("{}: the transform in the header cannot be inverted", path)};
   if (has_sform) notes.push_back("the sform cannot be inverted: the qform is used");
   return qform;
 }
@@ -107,8 +107,8 @@ class NiftiLayers {
   /// Opens the stream. Returns an Error before anything is read if the header specifies more data than the file can contain.
   Outcome open(const char* name) {
     constexpr std::uint64_t best_ratio = 1032;  // maximum compression ratio of deflate
-    const std::uint64_t most = compressed_ ? file_size_ * best_ratio : file_size_;
-    if (offset_ > most || bytes_ > most - offset_) return cut(most > offset_ ? (compressed_ ? 0 : most - offset_) : 0);
+    const std::uint64_t max_size = compressed_ ? file_size_ * best_ratio : file_size_;
+    if (offset_ > max_size || bytes_ > max_size - offset_) return cut(max_size > offset_ ? (compressed_ ? 0 : max_size - offset_) : 0);
     file_.reset(znzopen(name, "rb", compressed_));
     if (!file_) return Error{fmt::format("{}: cannot be opened", path_)};
     if (znzseek(file_.get(), static_cast<znz_off_t>(offset_), SEEK_SET) < 0) return cut(0);
@@ -119,20 +119,20 @@ class NiftiLayers {
     constexpr std::size_t kPiece = 1 << 18;  // numbers
     raw_.resize(kPiece * type_.bytes);
     for (std::size_t at = 0; at < values.size(); at += kPiece) {
-      const std::size_t count = std::min(kPiece, values.size() - at), wanted = count * type_.bytes;
-      const std::size_t got = znzread(raw_.data(), 1, wanted, file_.get());
-      done_ += got <= wanted ? got : 0;
-      if (got != wanted) return cut(done_);
+      const std::size_t count = std::min(kPiece, values.size() - at), requested = count * type_.bytes;
+      const std::size_t received = znzread(raw_.data(), 1, requested, file_.get());
+      done_ += received <= requested ? received : 0;
+      if (received != requested) return cut(done_);
       if (swapped_ && type_.bytes > 1) nifti_swap_Nbytes(count, static_cast<int>(type_.bytes), raw_.data());
       type_.decode(raw_.data(), count, slope_, inter_, values.data() + at, *rounding);
     }
     if (done_ < bytes_) return Done{};
     // reading one more byte lets the decompressor check its trailer if the volume is the whole file
-    std::byte beyond{};
-    bool sound = !whole_ || znzread(&beyond, 1, 1, file_.get()) <= 1;
+    std::byte next_byte{};
+    bool complete = !whole_ || znzread(&next_byte, 1, 1, file_.get()) <= 1;
     znzFile last = file_.release();
-    sound = znzclose(last) == 0 && sound;
-    if (!sound) return Error{fmt::format("{}: the compressed file is cut short or damaged", path_)};
+    complete = znzclose(last) == 0 && complete;
+    if (!complete) return Error{fmt::format("{}: the compressed file is truncated or damaged", path_)};
     return Done{};
   }
 
@@ -143,7 +143,7 @@ class NiftiLayers {
     void operator()(znzFile file) const { znzclose(file); }
   };
   Error cut(std::uint64_t has) const {
-    return Error{fmt::format("{}: the file is cut short, expected {} bytes of voxels after its header, it has {}", path_, bytes_, has)};
+    return Error{fmt::format("{}: the file is truncated, expected {} bytes of voxels after the header, found {}", path_, bytes_, has)};
   }
 
   std::string path_;
@@ -159,27 +159,27 @@ class NiftiLayers {
 struct Steps {
   std::vector<double> times;  ///< seconds; empty if the axis is not time
   std::string interval;       ///< message fragment for the type
-  std::string note;           ///< why there are no times
+  std::string note;           ///< message on missing times; empty: none
 };
 Steps steps_of(const nifti_image& image, double dt, int volume) {
   Steps steps;
   if (image.nt <= 1) return steps;
-  const std::string which = fmt::format("volume {} of {}, counted from 0: ", volume, image.nt);
-  const std::string other = "; \"step\" of the field chooses another";
+  const std::string volume_text = fmt::format("volume {} of {}, counted from 0: ", volume, image.nt);
+  const std::string other = "; \"step\" of the field selects the volume";
   const double unit = image.time_units == NIFTI_UNITS_SEC    ? 1
                       : image.time_units == NIFTI_UNITS_MSEC ? 1e-3
                       : image.time_units == NIFTI_UNITS_USEC ? 1e-6
                                                              : 0;
   if (unit == 0) {
-    const std::string stated = image.time_units > 0 ? std::string(", but in ") + nifti_units_string(image.time_units)
-                               : dt != 0            ? fmt::format(" (pixdim[4] is {:g}, without a unit)", dt)
-                                                    : "";
-    steps.note = which + "the header does not say that they are steps in time" + stated + other;
+    const std::string unit_text = image.time_units > 0 ? std::string(", but in ") + nifti_units_string(image.time_units)
+                                  : dt != 0            ? fmt::format(" (pixdim[4] is {:g}, without a unit)", dt)
+                                                       : "";
+    steps.note = volume_text + "the header does not declare the volumes as time steps" + unit_text + other;
   } else if (!(dt > 0) || !std::isfinite(dt) || !std::isfinite(image.toffset)) {
-    steps.note = which + fmt::format("pixdim[4], the time between them, is {:g}, so that they have no times", dt) + other;
+    steps.note = volume_text + fmt::format("the time between volumes, pixdim[4], is {:g}, so that the volumes have no times", dt) + other;
   } else {
     for (int i = 0; i < image.nt; ++i) steps.times.push_back(unit * (static_cast<double>(image.toffset) + i * dt));
-    steps.interval = fmt::format(", {:g} s apart from {:g} s on", unit * dt, steps.times.front());
+    steps.interval = fmt::format(", {:g} s apart, the first at {:g} s", unit * dt, steps.times.front());
   }
   return steps;
 }
@@ -197,10 +197,10 @@ Result<Header> read_header(const std::string& path) {
   const auto unknown = [&] {
     std::array<unsigned char, 4> first{};
     std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(first.data()), first.size());
-    const bool second = (first[0] == 28 && first[1] == 2) || (first[2] == 2 && first[3] == 28);  // 540, the size of its header
+    const bool second = (first[0] == 28 && first[1] == 2) || (first[2] == 2 && first[3] == 28);  // 540, the size of the NIfTI-2 header
     if (second) return Error{fmt::format("{}: this is a NIfTI-2 file, expected NIfTI-1", path)};
     if (first[0] == 0x1f && first[1] == 0x8b && !has_extension(path, ".gz"))
-      return Error{fmt::format("{}: the file is compressed, expected a name that ends in .nii.gz", path)};
+      return Error{fmt::format("{}: the file is compressed, expected a file name that ends in .nii.gz", path)};
     return Error{fmt::format("{}: this is not a NIfTI-1 file, or its header is damaged", path)};
   };
   int swapped = 0;
@@ -212,7 +212,7 @@ Result<Header> read_header(const std::string& path) {
     if (header->dim[d] < 1) return unknown();
   constexpr std::int32_t kMaxOffset = 1 << 28;
   if (!(header->vox_offset >= 0 && header->vox_offset <= static_cast<float>(kMaxOffset)))
-    return Error{fmt::format("{}: vox_offset is {}, expected 0 to {} bytes before the voxels", path, header->vox_offset, kMaxOffset)};
+    return Error{fmt::format("{}: vox_offset is {}, expected 0 to {} bytes", path, header->vox_offset, kMaxOffset)};
   Header read{Image(nifti_convert_nhdr2nim(*header, path.c_str())), swapped != 0, {}};
   if (!read.image) return unknown();
   std::copy_n(header->pixdim, read.pixdim.size(), read.pixdim.begin());
@@ -224,8 +224,8 @@ Result<Header> read_header(const std::string& path) {
 static Result<DenseFile> open_nifti(const LoadRequest& request) {
   const std::string &path = request.path, name = io::file_stem(request.path);
   if (!request.grid.empty() && request.grid != name)
-    return Error{fmt::format("{}: there is no grid \"{}\", a NIfTI file holds one, \"{}\"", path, request.grid, name)};
-  if (request.mask_required) return Error{fmt::format("{}: a NIfTI file holds no mask", path)};
+    return Error{fmt::format("{}: there is no grid \"{}\"; the only grid of the NIfTI file is \"{}\"", path, request.grid, name)};
+  if (request.mask_required) return Error{fmt::format("{}: a NIfTI file has no mask", path)};
   // the header
   CATENA_TRY(const std::uint64_t file_size, readable_file_size(path));
   CATENA_TRY(const Header header, read_header(path));
@@ -236,25 +236,27 @@ static Result<DenseFile> open_nifti(const LoadRequest& request) {
     return Error{fmt::format("{}: voxels of type {} are not supported, expected integers or floats (uint8 to int64, float32, float64)",
                              path, nifti_datatype_string(image.datatype))};
   if (image.nu > 1 || image.nv > 1 || image.nw > 1)
-    return Error{
-        fmt::format("{}: the image has {} dimensions (vectors or more), expected a scalar volume of 3, or 4 with time", path, image.ndim)};
+    return Error{fmt::format(
+        "{}: the image has {} dimensions (vectors or more), expected a scalar volume with 3 dimensions, or 4 with time", path, image.ndim)};
   if (image.nx < 1 || image.ny < 1 || image.nz < 1 || image.iname_offset < 0 || !image.iname)
     return Error{fmt::format("{}: the header is damaged", path)};
   std::vector<std::string> notes;
   CATENA_TRY(const Mapping mapping, placement_of(image, path, notes));
   for (std::size_t a = 1; a <= 3 && image.sform_code <= 0; ++a)
     if (static_cast<int>(a) <= image.ndim && (header.pixdim[a] == 0 || !std::isfinite(header.pixdim[a])))
-      notes.push_back(fmt::format("pixdim[{}], the size of a voxel, is {:g}: 1 is taken for it", a, header.pixdim[a]));
+      notes.push_back(fmt::format(
+          "the voxel size pixdim[{}] is {:g}, expected a finite number other than 0: 1 of the file's unit of length is used instead", a,
+          header.pixdim[a]));
   if (image.scl_slope != 0 && !(std::isfinite(image.scl_slope) && std::isfinite(image.scl_inter)))
-    notes.push_back("scl_slope or scl_inter is not finite: the values are as stored");
-  // the voxels of the first volume: dimensions are 16-bit numbers
+    notes.push_back("scl_slope or scl_inter is not finite: the stored values are used unscaled");
+  // the requested volume; dimensions are 16-bit numbers
   const int volumes = std::max(image.nt, 1), volume = std::min(request.step, volumes - 1);
   const auto layers = std::make_shared<NiftiLayers>(path, image, *type, header.swapped, file_size, volume);
-  if (const auto voxels = find_file_id(image.iname)) register_inputs({*voxels});  // another file (.img) if the header says so
+  if (const auto voxels = find_file_id(image.iname)) register_inputs({*voxels});  // a second file (.img) if the header names one
   CATENA_CHECK(layers->open(image.iname));
   Steps steps = steps_of(image, static_cast<double>(header.pixdim[4]), volume);
   DenseFile file{name,
-                 volumes > 1 ? fmt::format("{}, first of {} volumes{}", word, volumes, steps.interval) : std::string(word),
+                 volumes > 1 ? fmt::format("{}, one of {} volumes{}", word, volumes, steps.interval) : std::string(word),
                  path + ": the volume ",
                  mapping,
                  1,

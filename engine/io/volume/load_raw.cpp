@@ -11,7 +11,7 @@
 
 namespace catena::field {
 
-static_assert(std::endian::native == std::endian::little, "raw files are read as they lie");
+static_assert(std::endian::native == std::endian::little, "raw files are read without swapping bytes");
 
 namespace {
 
@@ -40,7 +40,7 @@ class RawLayers {
 
  private:
   Outcome whole() const {
-    if (!in_) return Error{fmt::format("{}: cannot be read to its end", path_)};
+    if (!in_) return Error{fmt::format("{}: cannot be read to the end", path_)};
     return Done{};
   }
 
@@ -55,8 +55,7 @@ class RawLayers {
 static Result<DenseFile> open_raw(const LoadRequest& request) {
   const std::string& path = request.path;
   CATENA_TRY(const std::uint64_t size, readable_file_size(path));
-  if (!request.raw)
-    return Error{fmt::format("{}: a .raw file needs its shape, spacing, origin and type (in the scene's \"fields\")", path)};
+  if (!request.raw) return Error{fmt::format("{}: a .raw file needs shape, spacing, origin and type in the scene's \"fields\"", path)};
   const RawLayout& raw = *request.raw;
 
   // the layout
@@ -76,15 +75,15 @@ static Result<DenseFile> open_raw(const LoadRequest& request) {
       return Error{fmt::format("{}: spacing is {}, expected positive numbers", path, raw.spacing[a])};
   const std::string name = io::file_stem(path);
   if (!request.grid.empty() && request.grid != name)
-    return Error{fmt::format("{}: there is no grid \"{}\", a .raw file holds one, \"{}\"", path, request.grid, name)};
-  if (request.mask_required) return Error{fmt::format("{}: a .raw file holds no mask", path)};
+    return Error{fmt::format("{}: there is no grid \"{}\"; the only grid of the .raw file is \"{}\"", path, request.grid, name)};
+  if (request.mask_required) return Error{fmt::format("{}: a .raw file has no mask", path)};
 
   // the size, computed without overflow for any shape
   const std::size_t components = vector ? 3 : 1, voxel_bytes = components * type->bytes;
-  const long double wanted = static_cast<long double>(n.x) * n.y * n.z * static_cast<long double>(voxel_bytes);
-  if (wanted != static_cast<long double>(size))
+  const long double expected_size = static_cast<long double>(n.x) * n.y * n.z * static_cast<long double>(voxel_bytes);
+  if (expected_size != static_cast<long double>(size))
     return Error{fmt::format("{}: the file has {} bytes, expected {:.0f} ({} x {} x {} voxels of {} bytes)", path, size,
-                             static_cast<double>(wanted), n.x, n.y, n.z, voxel_bytes)};
+                             static_cast<double>(expected_size), n.x, n.y, n.z, voxel_bytes)};
   CATENA_CHECK(check_dense_memory(fmt::format("{}: the grid of {} x {} x {} voxels", path, n.x, n.y, n.z), n, static_cast<int>(components),
                                   /*masked=*/false));
 
@@ -103,7 +102,7 @@ static Result<std::vector<GridInfo>> describe_raw(const std::string& path, int) 
   CATENA_CHECK(readable_file_size(path));
   return Error{
       path +
-      ": a .raw file says nothing about itself; name it in a scene with shape, spacing, origin and type, or give import its --shape"};
+      ": a .raw file does not describe its layout; expected shape, spacing, origin and type in a scene, or --shape for catena import"};
 }
 
 }  // namespace catena::field

@@ -24,12 +24,12 @@ namespace {
 Result<AnyField> load_answered(const LoadRequest& request) {
   const std::string& path = request.path;
   CATENA_TRY(MappedResponse answer, run_reader(ReadMode::load, request));
-  const auto kept = std::make_shared<const MappedResponse>(std::move(answer));
-  const ReadResponse& reply = kept->response;
+  const auto mapped = std::make_shared<const MappedResponse>(std::move(answer));
+  const ReadResponse& reply = mapped->response;
   const DenseResponse& dense = reply.dense;
-  constexpr std::int64_t kMostAxis = 1 << 24;
+  constexpr std::int64_t kMaxAxis = 1 << 24;
   for (const std::int64_t n : {dense.size.x, dense.size.y, dense.size.z})
-    if (n < 1 || n > kMostAxis) return damaged_response_error(path, fmt::format("an axis has {} voxels", n));
+    if (n < 1 || n > kMaxAxis) return damaged_response_error(path, fmt::format("an axis has {} voxels", n));
   const Index3 n{static_cast<int>(dense.size.x), static_cast<int>(dense.size.y), static_cast<int>(dense.size.z)};
   const int components = reply.is_vector ? 3 : 1;
   Mapping mapping = reply.mapping;
@@ -39,13 +39,13 @@ Result<AnyField> load_answered(const LoadRequest& request) {
     mapping = Mapping::from_linear(linear, request.origin);
   }
   if (!mapping.is_invertible()) return damaged_response_error(path, "the transform cannot be inverted");
-  const std::span<const float> values = kept->numbers<float>(dense.values);
-  const std::span<const std::uint8_t> valid = kept->numbers<std::uint8_t>(dense.valid);
-  const std::span<const std::uint8_t> cells = kept->numbers<std::uint8_t>(dense.cells);
+  const std::span<const float> values = mapped->numbers<float>(dense.values);
+  const std::span<const std::uint8_t> valid = mapped->numbers<std::uint8_t>(dense.valid);
+  const std::span<const std::uint8_t> cells = mapped->numbers<std::uint8_t>(dense.cells);
   const double voxels = static_cast<double>(n.x) * n.y * n.z;
   if (static_cast<double>(values.size()) != voxels * components || (!valid.empty() && static_cast<double>(valid.size()) != voxels) ||
       (!cells.empty() && cells.size() != valid.size()))
-    return damaged_response_error(path, "there are not as many values as voxels");
+    return damaged_response_error(path, "the numbers of values and voxels differ");
   CATENA_CHECK(check_dense_memory(fmt::format("{}: the grid of {} x {} x {} voxels", path, n.x, n.y, n.z), n, components, !valid.empty()));
   DenseFile file{reply.name, dense.type, path + ": " + reply.name + " ", mapping, components, {}};
   file.times = reply.times;
@@ -54,25 +54,26 @@ Result<AnyField> load_answered(const LoadRequest& request) {
   file.notes = reply.notes;
   file.source.size = n;
   file.source.has_mask = !valid.empty();
-  file.source.read = [kept, values, valid, n, components](int z, int layers, std::span<float> to, std::span<std::uint8_t> good) -> Outcome {
+  file.source.read = [mapped, values, valid, n, components](int z, int layers, std::span<float> to,
+                                                            std::span<std::uint8_t> validity) -> Outcome {
     const std::size_t layer = static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y);
     const std::size_t first = layer * static_cast<std::size_t>(z), count = layer * static_cast<std::size_t>(layers);
     std::memcpy(to.data(), values.data() + first * static_cast<std::size_t>(components),
                 count * static_cast<std::size_t>(components) * sizeof(float));
-    for (std::size_t i = 0; i < good.size(); ++i) good[i] = valid[first + i] != 0 ? 1 : 0;
+    for (std::size_t i = 0; i < validity.size(); ++i) validity[i] = valid[first + i] != 0 ? 1 : 0;
     return Done{};
   };
   if (!cells.empty())
-    file.source.read_cells = [kept, cells, n](int z, int layers, std::span<std::uint8_t> good) -> Outcome {
+    file.source.read_cells = [mapped, cells, n](int z, int layers, std::span<std::uint8_t> validity) -> Outcome {
       const std::size_t layer = static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y);
       const std::size_t first = layer * static_cast<std::size_t>(z), count = layer * static_cast<std::size_t>(layers);
-      for (std::size_t i = 0; i < count; ++i) good[i] = cells[first + i] != 0 ? 1 : 0;
+      for (std::size_t i = 0; i < count; ++i) validity[i] = cells[first + i] != 0 ? 1 : 0;
       return Done{};
     };
   if (dense.has_range) {
     const DisplayRange& r = dense.range;
     if (!(std::isfinite(r.data_min) && std::isfinite(r.data_max) && r.data_min <= r.lo && r.lo <= r.hi && r.hi <= r.data_max))
-      return damaged_response_error(path, "the range is none");
+      return damaged_response_error(path, "the value range is invalid");
     file.source.range = r;
   }
   return load_dense(file);

@@ -11,11 +11,11 @@
 namespace catena::field {
 namespace {
 
-/// One buffer of the response, validated.
+/// Returns one buffer of the response, validated.
 template <class T>
 Result<NanoMemory> buffer_at(const NanoMemory& memory, const BufferRange& piece) {
   if (piece.offset % kBufferAlignment != 0 || piece.offset > memory.size() || piece.bytes > memory.size() - piece.offset)
-    return Error{"the place of a buffer is not what it must be"};
+    return Error{"the position of a buffer is invalid"};
   NanoMemory part = memory.slice(piece.offset, piece.bytes);
   CATENA_CHECK(validate_nano<T>({part.data(), part.size()}));
   return part;

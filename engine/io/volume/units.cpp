@@ -37,7 +37,7 @@ Units read_vdb_units(const std::string& path, const std::string& grid) {
   std::vector<const GridMetadata*> fields;
   for (const GridMetadata& words : file->grid_metadata)
     if (words.name != "valid") fields.push_back(&words);
-  // without a name: the first grid in alphabetical order
+  // an empty name means the first grid in alphabetical order
   const auto by_name = [](const GridMetadata* a, const GridMetadata* b) { return a->name < b->name; };
   const std::string name = grid.empty() && !fields.empty() ? (*std::ranges::min_element(fields, by_name))->name : grid;
   units = parse_units(file->units, fields.size() == 1);
@@ -90,8 +90,8 @@ Units read_units(const std::string& path, const std::string& grid) {
   const std::scoped_lock lock(mutex);
   const auto found = known.find({path, grid});
   if (found != known.end() && found->second.at == at) return found->second.units;
-  constexpr std::size_t kMost = 256;
-  if (known.size() >= kMost) known.clear();
+  constexpr std::size_t kMaxCachedFiles = 256;
+  if (known.size() >= kMaxCachedFiles) known.clear();
   const io::Format* format = io::find_reader(path, io::DataKind::volume);
   Units units = format != nullptr && format->volume.units != nullptr ? format->volume.units(path, grid) : Units{};
   known[{path, grid}] = {at, units};

@@ -19,7 +19,7 @@ struct Units {
   bool is_patient_space = false, is_level_set = false, is_label_map = false;
 };
 
-/// Whether a text can be a unit: at most 24 bytes without control characters; "none", "unknown" and the like are not units.
+/// Returns whether a text can be a unit: at most 24 bytes without control characters; "none", "unknown" and the like are not units.
 bool is_unit_name(const std::string& word);
 
 /// Parses the free text of a file. `one_field`: the file has only one field, to which a unit of values applies.

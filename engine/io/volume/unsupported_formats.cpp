@@ -23,24 +23,23 @@ constexpr std::string_view kBlender = "Blender imports it and exports .ply, .stl
 constexpr ForeignKind kKinds[] = {
     {" .ome.tif .ome.tiff .ome.tf2 .ome.btf ", "an OME-TIFF image", kFiji},
     {" .tif .tiff .tf8 .btf ", "a TIFF image", kFiji},
-    {" .czi .lsm .nd2 .lif .oib .oif .oir .ims .stk .dv .vsi .lei .zvi .flex ", "a microscope's image", kFiji},
-    {" .png .jpg .jpeg .bmp .gif .webp ", "a picture",
-     "of slices Fiji makes a volume (File > Import > Image Sequence) and saves it (File > Save As > Nrrd)"},
+    {" .czi .lsm .nd2 .lif .oib .oif .oir .ims .stk .dv .vsi .lei .zvi .flex ", "a microscope image", kFiji},
+    {" .png .jpg .jpeg .bmp .gif .webp ", "a 2D image",
+     "Fiji combines slices into a volume (File > Import > Image Sequence) and saves .nrrd (File > Save As > Nrrd)"},
     {" .ome.zarr .zarr .zarr.zip ", "a Zarr store",
      "python3 -c \"import zarr, numpy; numpy.save('OUT.npy', zarr.open('IN', mode='r')['0'][:])\", with the array's name in place of 0 "
      "(pip install zarr)"},
     {" .n5 ", "an N5 store", "Fiji opens it (File > Import > HDF5/N5/Zarr) and saves .nrrd (File > Save As > Nrrd)"},
     {" .cas .cas.h5 .dat.h5 ", "a Fluent case", kParaView},
     {" .h5 .hdf5 .hdf .he5 .h5ad .nxs ", "an HDF5 file",
-     "python3 -c \"import h5py, numpy; numpy.save('OUT.npy', h5py.File('IN')['NAME'][:])\" with an array's name that h5ls tells (pip "
-     "install h5py)"},
-    {" .vtkhdf .xdmf .xmf .xdmf2 .xdmf3 .silo .plt .szplt .d3plot ", "a simulation's file", kParaView},
+     "python3 -c \"import h5py, numpy; numpy.save('OUT.npy', h5py.File('IN')['NAME'][:])\" with the name of an array as listed by h5ls "
+     "(pip install h5py)"},
+    {" .vtkhdf .xdmf .xmf .xdmf2 .xdmf3 .silo .plt .szplt .d3plot ", "a simulation file", kParaView},
     {" .e .ex2 .exo .exii .g .gen ", "an Exodus file", kParaView},
-    {" .msh .inp .med .bdf .nas .unv .mesh .meshb ", "a mesh of finite elements", kMeshio},
+    {" .msh .inp .med .bdf .nas .unv .mesh .meshb ", "a finite element mesh", kMeshio},
     {" .grib .grb .grib2 .grb2 .gb2 ", "a GRIB file", "\"cdo -f nc copy IN OUT.nc\" (package cdo)"},
-    {" .nc4 .cdl ", "a NetCDF file under another name",
-     "a binary one opens once it is named .nc; \"ncgen -o OUT.nc IN\" makes one of text"},
-    {" .mrc .mrcs .rec .ccp4 .map ", "a map of electron microscopy",
+    {" .nc4 .cdl ", "a NetCDF file with another extension", "rename a binary file to .nc; \"ncgen -o OUT.nc IN\" converts a text file"},
+    {" .mrc .mrcs .rec .ccp4 .map ", "an electron microscopy map",
      "python3 -c \"import mrcfile, numpy; numpy.save('OUT.npy', mrcfile.read('IN'))\" (pip install mrcfile)"},
     {" .fits .fit .fts ", "a FITS image",
      "python3 -c \"import numpy; from astropy.io import fits; numpy.save('OUT.npy', fits.getdata('IN'))\" (pip install astropy)"},
@@ -48,9 +47,9 @@ constexpr ForeignKind kKinds[] = {
      "python3 -c \"import numpy; from scipy.io import loadmat; numpy.save('OUT.npy', loadmat('IN')['NAME'])\" (pip install scipy)"},
     {" .mgz .mgh .hdr .img .hdr.gz .img.gz .mnc .par ", "a medical image of another format", kNibabel},
     {" .mif .mif.gz .mih ", "an MRtrix image", "\"mrconvert IN OUT.nii.gz\" (MRtrix3)"},
-    {" .las .laz .e57 .pcd .copc ", "a cloud of points", "\"pdal translate IN OUT.csv\" (package pdal)"},
+    {" .las .laz .e57 .pcd .copc ", "a point cloud", "\"pdal translate IN OUT.csv\" (package pdal)"},
     {" .step .stp .iges .igs .brep ", "a CAD model", "\"gmsh IN -2 -o OUT.stl\" (package gmsh)"},
-    {" .gltf .glb .fbx .dae .3mf .off .3ds .x3d .wrl .vrml .blend .usd .usdz ", "a model of triangles", kBlender},
+    {" .gltf .glb .fbx .dae .3mf .off .3ds .x3d .wrl .vrml .blend .usd .usdz ", "a triangle model", kBlender},
     {" .trx .tt .tt.gz .trk.gz .fib .fib.gz ", "a tractogram of another format", "\"tckconvert\" (MRtrix3) or nibabel writes .tck or .trk"},
 };
 
@@ -59,9 +58,10 @@ constexpr ForeignKind kKinds[] = {
 std::string conversion_hint(std::string_view path) {
   while (path.size() > 1 && path.ends_with('/')) path.remove_suffix(1);
   for (const ForeignKind& kind : kKinds) {
-    std::string_view rest = kind.endings.substr(1);
-    for (std::size_t end = rest.find(' '); end != std::string_view::npos; rest.remove_prefix(end + 1), end = rest.find(' '))
-      if (has_extension(path, rest.substr(0, end))) return fmt::format("{}, which is not read; to convert it: {}", kind.what, kind.how);
+    std::string_view remaining = kind.endings.substr(1);
+    for (std::size_t end = remaining.find(' '); end != std::string_view::npos; remaining.remove_prefix(end + 1), end = remaining.find(' '))
+      if (has_extension(path, remaining.substr(0, end)))
+        return fmt::format("{}, which is not supported; to convert it: {}", kind.what, kind.how);
   }
   return {};
 }

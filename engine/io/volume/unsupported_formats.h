@@ -7,7 +7,7 @@
 
 namespace catena::field {
 
-/// Returns a message fragment "a TIFF image, which is not read; convert it: ..."; empty: unknown extension.
+/// Returns a message fragment "a TIFF image, which is not supported; to convert it: ..."; empty: unknown extension.
 std::string conversion_hint(std::string_view path);
 
 }  // namespace catena::field

@@ -24,8 +24,8 @@ namespace {
 
 constexpr std::size_t kBuffer = 1 << 20;
 
-Error cannot_write(const std::string& path, const std::string& why, bool machine = false) {
-  return Error{fmt::format("{}: cannot be written ({})", path, one_line(why)), machine};
+Error cannot_write(const std::string& path, const std::string& reason, bool machine = false) {
+  return Error{fmt::format("{}: cannot be written ({})", path, one_line(reason)), machine};
 }
 
 }  // namespace
@@ -45,11 +45,11 @@ Result<VdbStreamWriter> VdbStreamWriter::open(const std::string& path) {
   CATENA_TRY(OutputFile file, OutputFile::open(path));
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return cannot_write(path, describe_errno(errno), true);
-  FileDescriptor near(ends[0]), far(ends[1]);
-  const int given[] = {far.get(), ::fileno(file.stream())};
-  auto writer = HelperProcess::start(helper_path("catena-write"), given);
+  FileDescriptor own_end(ends[0]), writer_end(ends[1]);
+  const int descriptors[] = {writer_end.get(), ::fileno(file.stream())};
+  auto writer = HelperProcess::start(helper_path("catena-write"), descriptors);
   if (!writer) return cannot_write(path, writer.error().message, writer.error().system_failure);
-  return VdbStreamWriter(path, std::move(file), std::move(*writer), std::move(near));
+  return VdbStreamWriter(path, std::move(file), std::move(*writer), std::move(own_end));
 }
 
 void VdbStreamWriter::write(const void* data, std::size_t bytes) {
@@ -111,24 +111,24 @@ Outcome VdbStreamWriter::finish() {
   // the response
   std::string answer;
   char piece[512];
-  constexpr std::size_t kLongest = 2000;
+  constexpr std::size_t kMaxAnswerBytes = 2000;
   for (;;) {
     const ssize_t n = ::recv(socket_.get(), piece, sizeof piece, 0);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) break;
-    if (answer.size() < kLongest) answer.append(piece, static_cast<std::size_t>(n));
+    if (answer.size() < kMaxAnswerBytes) answer.append(piece, static_cast<std::size_t>(n));
   }
-  constexpr double kLongestWait_s = 60;  // it has closed its end of the socket
-  const ProcessExit end = writer_.wait(kLongestWait_s);
+  constexpr double kMaxWait_s = 60;  // the program has closed its end of the socket
+  const ProcessExit end = writer_.wait(kMaxWait_s);
   const std::string limits = describe_resource_limits();
   if (!answer.empty()) {
     const bool machine = answer.front() == '1';
     return cannot_write(path_, answer.substr(1), machine);
   }
-  // it writes data of this process, so that it can only break down if the system refuses it something
+  // the data come from this process, so that the program can only crash if the system refuses a resource
   if (end.cause != ProcessExit::Cause::exited || end.code != 0)
     return cannot_write(path_,
-                        fmt::format("the program catena-write broke down ({}){}",
+                        fmt::format("the program catena-write failed ({}){}",
                                     end.cause == ProcessExit::Cause::exited ? fmt::format("code {}", end.code) : ::strsignal(end.code),
                                     limits.empty() ? "" : ": " + limits),
                         true);

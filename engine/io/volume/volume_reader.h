@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// For implementers of volume formats: this module, and programs that register their own (engine/io/formats.h). Any thread.
+/// Interface for readers of volume formats, in this module and in programs that register their own (engine/io/formats.h). Any thread.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -45,7 +45,7 @@ struct VolumeReader {
 Result<AnyField> load_dense(const DenseFile& file);
 /// Returns the grid with cubic interpolation; other fields are returned unchanged. An Error begins with `path`.
 Result<AnyField> with_cubic_interpolation(AnyField field, const std::string& path);
-/// For a format that holds one grid: loads it and describes the result.
+/// Loads the only grid of a file and describes it; for formats that hold one grid.
 Result<std::vector<GridInfo>> describe_by_loading(const std::string& path, int step);
 
 /// DICOM files often have no extension: recognized by "DICM" after 128 bytes.

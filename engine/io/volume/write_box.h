@@ -41,7 +41,7 @@ class VoxelBox {
 };
 
 /// Writes the header and the slices of a volume as a VolumeWriter (engine/io/formats.h). Error: the box does not fit the memory budget,
-/// which whoever reads the file needs for it.
+/// which a reader of the file needs as well.
 Outcome write_box_with(Outcome (*write)(const std::string& path, const VoxelBox& box), const std::string& path, const AnyField& field,
                        const std::string& name, const Units& units);
 /// write_box_with() as a function of its own.

@@ -41,10 +41,10 @@ VoxelBox::VoxelBox(const AnyField& field, const std::string& box_name, const Uni
   const auto index = [](const Vec3& v) {
     return Index3{static_cast<std::int32_t>(v.x), static_cast<std::int32_t>(v.y), static_cast<std::int32_t>(v.z)};
   };
-  const Box& whole = field.get()->index_box();
-  first_index_ = index(whole.lo);
-  size = index(whole.hi - whole.lo + Vec3(1.0));
-  mapping.origin = mapping.world_from_index(whole.lo);
+  const Box& full_box = field.get()->index_box();
+  first_index_ = index(full_box.lo);
+  size = index(full_box.hi - full_box.lo + Vec3(1.0));
+  mapping.origin = mapping.world_from_index(full_box.lo);
 }
 
 void VoxelBox::read_values(std::int32_t z, std::span<float> out) const {
@@ -92,36 +92,37 @@ void VoxelBox::read_values_or_nan(std::int32_t z, std::span<float> out) const {
     if (valid[i] == 0) std::fill_n(out.begin() + static_cast<std::ptrdiff_t>(i * n), n, std::numeric_limits<float>::quiet_NaN());
 }
 
-/// Note if single precision of axes and origin displaces voxels far from the origin; empty if none moves by more than a hundredth of its
-/// edge.
+/// Returns a note if single precision of axes and origin displaces voxels far from the origin; empty if none moves by more than a hundredth
+/// of its edge.
 static std::string rounding_note(const VoxelBox& box) {
-  constexpr double kTold = 0.01;
+  constexpr double kMinReportedShift = 0.01;
   const Mapping& exact = box.mapping;
   const auto rounded = [&](const Vec3& index) {
     Vec3 at(glm::vec3(exact.origin));
     for (int a = 0; a < 3; ++a) at += index[a] * Vec3(glm::vec3(exact.world_from_index_linear[a]));
     return at;
   };
-  double most = 0;
+  double max_shift = 0;
   for (int c = 0; c < 8; ++c) {
     const Vec3 corner((c & 1) != 0 ? box.size.x - 1 : 0, (c & 2) != 0 ? box.size.y - 1 : 0, (c & 4) != 0 ? box.size.z - 1 : 0);
-    most = std::max(most, max_abs(exact.index_from_world(rounded(corner)) - corner));
+    max_shift = std::max(max_shift, max_abs(exact.index_from_world(rounded(corner)) - corner));
   }
-  if (!(most > kTold)) return {};
-  return fmt::format("its 32-bit places move voxels by up to {:.2g} of an edge, so far from the origin (.vdb, .vti and .nrrd hold 64 bits)",
-                     most);
+  if (!(max_shift > kMinReportedShift)) return {};
+  return fmt::format(
+      "the 32-bit positions displace voxels by up to {:.2g} of an edge so far from the origin (.vdb, .vti and .nrrd store 64 bits)",
+      max_shift);
 }
 
 std::string lost_mask_note(const std::string& path, const AnyField& field) {
   const io::Format* format = io::find_writer(path, io::DataKind::volume);
   if (format == nullptr) return {};
   const VoxelBox box(field, {}, {});
-  std::string moved = format->has_float_positions ? rounding_note(box) : "";
-  if (!box.has_cell_mask || format->has_cell_mask) return moved;
-  // invalid cells between valid voxels
+  std::string note = format->has_float_positions ? rounding_note(box) : "";
+  if (!box.has_cell_mask || format->has_cell_mask) return note;
+  // count the invalid cells between valid voxels
   std::vector<std::uint8_t> below(box.layer_voxels()), above(box.layer_voxels()), cells(box.layer_voxels());
   const int step[3] = {box.size.x > 1, box.size.y > 1, box.size.z > 1};
-  std::uint64_t lost = 0;
+  std::uint64_t lost_cells = 0;
   for (int z = 0; z < std::max(1, box.size.z - 1); ++z) {
     box.read_valid(z, below);
     box.read_valid(z + step[2], above);
@@ -134,15 +135,15 @@ std::string lost_mask_note(const std::string& path, const AnyField& field) {
           const std::size_t corner = at((c & 1) * step[0], (c >> 1) * step[1]);
           open = below[corner] != 0 && above[corner] != 0;
         }
-        lost += open ? 1 : 0;
+        lost_cells += open ? 1 : 0;
       }
   }
-  if (lost == 0) return moved;
-  if (!moved.empty()) moved += "; ";
-  return moved + fmt::format(
-                     "{} cells without a value have valid voxels at all their corners: {} masks voxels only, and they are filled in it "
-                     "(.vdb and .vti keep them)",
-                     lost, path.substr(path.find_last_of('/') + 1));
+  if (lost_cells == 0) return note;
+  if (!note.empty()) note += "; ";
+  return note + fmt::format(
+                    "{} invalid cells have valid voxels at all corners: {} masks voxels only, so that these cells get values (.vdb and "
+                    ".vti keep them invalid)",
+                    lost_cells, path.substr(path.find_last_of('/') + 1));
 }
 
 Outcome write_field(const std::string& path, const AnyField& field, const std::string& name, const Units& units) {
@@ -162,7 +163,7 @@ Outcome write_box_with(Outcome (*write)(const std::string& path, const VoxelBox&
 
 Result<std::string> convert_file(const LoadRequest& request, const std::string& path, const std::string& name,
                                  std::vector<std::string>* notes) {
-  // import writes a .vdb under any other extension, too
+  // import writes .vdb data if the extension is unknown
   const bool as_vdb = has_extension(path, ".vdb") || io::find_writer(path, io::DataKind::volume) == nullptr;
   if (as_vdb) {
     // slice by slice if the format supports it
@@ -171,15 +172,15 @@ Result<std::string> convert_file(const LoadRequest& request, const std::string& 
   }
   CATENA_TRY(const AnyField field, load(request));
   if (notes != nullptr) *notes = field.notes;
-  const std::string own = field.get()->name();
-  const std::string chosen = !name.empty() ? name : !own.empty() ? own : io::file_stem(request.path);
+  const std::string own_name = field.get()->name();
+  const std::string chosen_name = !name.empty() ? name : !own_name.empty() ? own_name : io::file_stem(request.path);
   if (as_vdb) {
-    CATENA_CHECK(write_vdb(path, {{field, chosen}}));
+    CATENA_CHECK(write_vdb(path, {{field, chosen_name}}));
   } else {
-    CATENA_CHECK(write_field(path, field, chosen, read_units(request.path, request.grid)));
-    if (const std::string lost = lost_mask_note(path, field); notes != nullptr && !lost.empty()) notes->push_back(lost);
+    CATENA_CHECK(write_field(path, field, chosen_name, read_units(request.path, request.grid)));
+    if (const std::string note = lost_mask_note(path, field); notes != nullptr && !note.empty()) notes->push_back(note);
   }
-  return chosen;
+  return chosen_name;
 }
 
 }  // namespace catena::field

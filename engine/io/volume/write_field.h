@@ -21,8 +21,8 @@ namespace catena::field {
 /// extension, too little memory or a failed write.
 Outcome write_field(const std::string& path, const AnyField& field, const std::string& name, const Units& units);
 
-/// Message, without a final period, on what the output at `path` cannot store: cells masked between valid voxels, and voxel positions far
-/// from the origin in single precision (NIfTI); empty: nothing is lost.
+/// Returns a message, without a final period, on data that the output at `path` cannot store: cells masked between valid voxels, and voxel
+/// positions far from the origin in single precision (NIfTI); empty: nothing is lost.
 std::string lost_mask_note(const std::string& path, const AnyField& field);
 
 /// Reads one grid of any file and writes it. Returns the name in the output: `name`, else its own, else the file's. `notes`: receives

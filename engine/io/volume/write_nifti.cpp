@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Writes NIfTI-1; the library creates the header and the stream. The sform holds the exact axes; if they are orthogonal the qform holds the
-// same, for programs that read only the qform.
+// Writes NIfTI-1; the library creates the header and the stream. The sform stores the exact axes; orthogonal axes are also stored in the
+// qform, for programs that read only the qform.
 #include <nifti1_io.h>
 
 #include <fmt/format.h>
@@ -60,16 +60,16 @@ nifti_1_header header_of(const VoxelBox& box) {
   image->pixdim[2] = image->dy = edge(1);
   image->pixdim[3] = image->dz = edge(2);
   nifti_1_header header = nifti_convert_nim2nhdr(image.get());
-  constexpr int kVoxels = 352;  // the header, and four bytes that mean: no extensions
+  constexpr int kVoxels = 352;  // the header, and four bytes that declare no extensions
   header.vox_offset = kVoxels;
   return header;
 }
 
-/// Writes to the file `place`; errors name `path`.
-Outcome write_into(const std::string& place, const std::string& path, const VoxelBox& box) {
+/// Writes to the file `target`; errors name `path`.
+Outcome write_into(const std::string& target, const std::string& path, const VoxelBox& box) {
   errno = 0;
   const auto failed = [&] { return system_error(path + ": cannot write", errno != 0 ? errno : EIO); };
-  std::unique_ptr<znzptr, CloseStream> file(znzopen(place.c_str(), "wb", has_extension(path, ".gz")));
+  std::unique_ptr<znzptr, CloseStream> file(znzopen(target.c_str(), "wb", has_extension(path, ".gz")));
   if (!file) return failed();
   const auto write = [&](const void* data, std::size_t bytes) { return znzwrite(data, 1, bytes, file.get()) == bytes; };
   const nifti_1_header header = header_of(box);
@@ -92,15 +92,16 @@ Outcome write_into(const std::string& place, const std::string& path, const Voxe
 }  // namespace
 
 Outcome write_nifti(const std::string& path, const VoxelBox& box) {
-  constexpr int kMost = 32767;
+  constexpr int kMaxAxisVoxels = 32767;
   for (const int n : {box.size.x, box.size.y, box.size.z})
-    if (n > kMost) return Error{fmt::format("{}: an axis has {} voxels, a NIfTI-1 file holds at most {}", path, n, kMost)};
+    if (n > kMaxAxisVoxels)
+      return Error{fmt::format("{}: an axis has {} voxels, expected at most {} for NIfTI-1", path, n, kMaxAxisVoxels)};
   if (is_written_directly(path)) {
     CATENA_TRY(OutputFile direct, OutputFile::open(path));
     CATENA_CHECK(write_into(fmt::format("/proc/self/fd/{}", ::fileno(direct.stream())), path, box));
     return direct.commit();
   }
-  // a symbolic link is resolved, so that the file that it names is replaced
+  // a symbolic link is resolved, so that its target is replaced
   std::error_code code;
   const bool link = std::filesystem::is_symlink(path, code);
   CATENA_TRY(TemporaryFile part, TemporaryFile::create(link ? std::filesystem::weakly_canonical(path, code).string() : path));

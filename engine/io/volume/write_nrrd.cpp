@@ -12,7 +12,7 @@
 
 namespace catena::field {
 
-static_assert(std::endian::native == std::endian::little, "the header says so");
+static_assert(std::endian::native == std::endian::little, "the header declares little-endian numbers");
 
 Outcome write_nrrd(const std::string& path, const VoxelBox& box) {
   CATENA_TRY(OutputFile out, OutputFile::open(path));

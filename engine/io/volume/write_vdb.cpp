@@ -19,7 +19,7 @@ Outcome check_volume(const std::string& path, const Mapping& mapping) {
   // OpenVDB treats smaller voxels as degenerate
   const double volume = std::fabs(glm::determinant(mapping.world_from_index_linear));
   if (!(volume > 3e-15) || !std::isfinite(volume))
-    return Error{fmt::format("{}: a .vdb cannot hold voxels of volume {:g}; more than 3e-15 was expected: choose a smaller unit of length",
+    return Error{fmt::format("{}: a .vdb cannot store voxels of volume {:g}; more than 3e-15 was expected: choose a smaller unit of length",
                              path, volume)};
   return Done{};
 }
@@ -27,18 +27,18 @@ Outcome check_volume(const std::string& path, const Mapping& mapping) {
 bool same_voxels(const NanoMask& a, const NanoMask& b) {
   if (&a == &b) return true;
   if (count_voxels(a) != count_voxels(b)) return false;
-  // equal counts, and all voxels of one are in the other
+  // the counts are equal, and each voxel of one mask is in the other
   const NanoNodes<nanovdb::ValueMask> nodes = view_nodes(a);
   const MaskView other(b);
   for (const auto& leaf : nodes.leaves)
     for (int x = 0; x < 8; ++x)
       if ((leaf.mValueMask.getWord<std::uint64_t>(x) & ~other.word(leaf.mBBoxMin, x)) != 0) return false;
   bool all = true;
-  const auto look = [&](const nanovdb::Coord& origin, std::int32_t edge, bool) { all = all && other.all(origin, edge); };
-  for (const auto& lower : nodes.lowers) for_active_tiles(lower, look);
-  for (const auto& upper : nodes.uppers) for_active_tiles(upper, look);
+  const auto check_tile = [&](const nanovdb::Coord& origin, std::int32_t edge, bool) { all = all && other.all(origin, edge); };
+  for (const auto& lower : nodes.lowers) for_active_tiles(lower, check_tile);
+  for (const auto& upper : nodes.uppers) for_active_tiles(upper, check_tile);
   for (const auto& entry : nodes.entries)
-    if (entry.isActive()) look(entry.origin(), kUpperEdge, true);
+    if (entry.isActive()) check_tile(entry.origin(), kUpperEdge, true);
   return all;
 }
 
@@ -116,14 +116,14 @@ Outcome write_vdb(const std::string& path, const std::vector<NamedGrid>& items) 
     const ScalarGrid* scalar = item.field.scalar ? item.field.scalar->grid() : nullptr;
     const VectorGrid* vector = item.field.vector ? item.field.vector->grid() : nullptr;
     CATENA_ASSERT(scalar || vector);
-    const NanoMask* own = scalar ? scalar->storage().valid_voxels : vector->storage().valid_voxels;
-    if (!own) continue;
-    const NanoMask* own_cells = scalar ? scalar->storage().valid_cells : vector->storage().valid_cells;
+    const NanoMask* grid_mask = scalar ? scalar->storage().valid_voxels : vector->storage().valid_voxels;
+    if (!grid_mask) continue;
+    const NanoMask* grid_cells = scalar ? scalar->storage().valid_cells : vector->storage().valid_cells;
     cells_masked = cells_masked || (scalar ? scalar->storage().has_cell_mask : vector->storage().has_cell_mask);
-    if (mask && (!same_voxels(*mask, *own) || (cells_masked && !same_voxels(*cells, *own_cells))))
-      return Error{fmt::format("{}: the grids have different masks, and a file has room for one", path)};
-    mask = own;
-    cells = own_cells;
+    if (mask && (!same_voxels(*mask, *grid_mask) || (cells_masked && !same_voxels(*cells, *grid_cells))))
+      return Error{fmt::format("{}: the grids have different masks, expected one mask for the file", path)};
+    mask = grid_mask;
+    cells = grid_cells;
     masked = item.field.get();
   }
   CATENA_TRY(VdbStreamWriter out, VdbStreamWriter::open(path));
@@ -154,26 +154,28 @@ Outcome write_vdb(const std::string& path, const std::vector<NamedGrid>& items) 
 
 Result<std::string> import_as_vdb(const LoadRequest& request, const std::string& path, const std::string& name) {
   const io::Format* format = io::find_reader(request.path, io::DataKind::volume);
-  const auto name_or = [&](const std::string& own) { return !name.empty() ? name : !own.empty() ? own : io::file_stem(request.path); };
+  const auto name_or = [&](const std::string& own_name) {
+    return !name.empty() ? name : !own_name.empty() ? own_name : io::file_stem(request.path);
+  };
   if (format == nullptr || format->volume.open == nullptr) {
     CATENA_TRY(const AnyField field, load(request));
-    const std::string chosen = name_or(field.get()->name());
-    CATENA_CHECK(write_vdb(path, {{field, chosen}}));
-    return chosen;
+    const std::string chosen_name = name_or(field.get()->name());
+    CATENA_CHECK(write_vdb(path, {{field, chosen_name}}));
+    return chosen_name;
   }
   CATENA_TRY(const DenseFile file, format->volume.open(request));
   CATENA_CHECK(check_volume(path, file.mapping));
   CATENA_TRY(VdbStreamWriter out, VdbStreamWriter::open(path));
-  const std::string chosen = name_or(file.name);
+  const std::string chosen_name = name_or(file.name);
   const float background[3]{};
   const bool vector = file.components == 3;
-  out.begin_grid(vector ? StreamKind::vector : StreamKind::scalar, chosen, file.mapping, background, true);
+  out.begin_grid(vector ? StreamKind::vector : StreamKind::scalar, chosen_name, file.mapping, background, true);
   CATENA_TRY(const bool some_finite, vector ? stream_layers<nanovdb::Vec3f>(out, file.source) : stream_layers<float>(out, file.source));
   if (!some_finite) return Error{file.prefix + "has no finite value in any active voxel"};
   count_file();
   count_grid();
   CATENA_CHECK(out.finish());
-  return chosen;
+  return chosen_name;
 }
 
 }  // namespace catena::field

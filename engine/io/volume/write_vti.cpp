@@ -19,7 +19,7 @@ Outcome write_vti(const std::string& path, const VoxelBox& box) {
   constexpr double kSquare = 1e-5;  // deviation from orthogonal axes left by single precision; such axes are written unchanged
   for (int a = 0; a < 3; ++a)
     if (std::fabs(dot(direction[a], direction[(a + 1) % 3])) > kSquare)
-      return Error{path + ": the grid's axes are sheared, and a .vti holds axes at right angles only: .nrrd or .nii was expected"};
+      return Error{path + ": the axes of the grid are sheared, and a .vti stores orthogonal axes only; .nrrd or .nii was expected"};
 
   CATENA_TRY(OutputFile out, OutputFile::open(path));
   const auto words = [](const Vec3& v) { return fmt::format("{} {} {}", to_text(v.x), to_text(v.y), to_text(v.z)); };

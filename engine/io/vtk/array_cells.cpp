@@ -20,10 +20,10 @@ namespace catena::vtk {
 namespace {
 
 /// Joins the pieces of one mesh, so that cells on both sides of a cut share its points.
-vtkSmartPointer<vtkDataSet> joined_pieces(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& seen) {
+vtkSmartPointer<vtkDataSet> joined_pieces(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& masks) {
   vtkNew<vtkAppendFilter> join;
   join->MergePointsOn();
-  for (const std::size_t b : column.block_indices) join->AddInputData(extract_valid_cells(opened.blocks[b].data, seen[b]));
+  for (const std::size_t b : column.block_indices) join->AddInputData(extract_valid_cells(opened.blocks[b].data, masks[b]));
   join->Update();
   return join->GetOutput();
 }
@@ -34,7 +34,7 @@ bool is_finite_at(vtkDataArray& values, vtkIdType i) {
   return true;
 }
 
-/// The cells that have a volume and whose own value, or the values of all of whose points, are finite; null if there are none.
+/// Returns the cells that have a volume and finite values (their own, or those of all of their points); null if there are none.
 vtkSmartPointer<vtkDataSet> solid_part(vtkDataSet* data, vtkDataArray& values, bool of_cells) {
   vtkNew<vtkGenericCell> cell;
   vtkNew<vtkIdList> ids, points;
@@ -64,18 +64,18 @@ vtkSmartPointer<vtkDataSet> solid_part(vtkDataSet* data, vtkDataArray& values, b
 
 }  // namespace
 
-std::vector<CellValues> make_cell_values(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& seen,
-                                         std::vector<vtkSmartPointer<vtkDataSet>>& keep) {
+std::vector<CellValues> make_cell_values(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& masks,
+                                         std::vector<vtkSmartPointer<vtkDataSet>>& owned) {
   std::vector<CellValues> cells;
   if (column.is_cell_data && column.block_indices.size() > 1) {
-    ImportedData whole;
-    whole.blocks.push_back({joined_pieces(opened, column, seen), {}});
+    ImportedData joined;
+    joined.blocks.push_back({joined_pieces(opened, column, masks), {}});
     FieldArray one = column;
     one.block_indices = {0};
-    return make_cell_values(whole, one, {ValidityMask()}, keep);
+    return make_cell_values(joined, one, {ValidityMask()}, owned);
   }
   for (const std::size_t b : column.block_indices) {
-    const Block block{extract_valid_cells(opened.blocks[b].data, seen[b]), {}};
+    const Block block{extract_valid_cells(opened.blocks[b].data, masks[b]), {}};
     vtkDataArray* values = column.find_in(block);
     if (values == nullptr) continue;
     const std::string name = name_of(*values);
@@ -95,8 +95,8 @@ std::vector<CellValues> make_cell_values(const ImportedData& opened, const Field
     for (int i = 0; i < data->GetPointData()->GetNumberOfArrays(); ++i)
       if (vtkDataArray* one = data->GetPointData()->GetArray(i); one != nullptr && name_of(*one) == name) values = one;
     if (values == nullptr) continue;
-    keep.push_back(data);
-    cells.push_back(tetrahedralize_polyhedra({data, values}, keep));
+    owned.push_back(data);
+    cells.push_back(tetrahedralize_polyhedra({data, values}, owned));
   }
   return cells;
 }

@@ -85,8 +85,8 @@ std::vector<FieldArray> list_field_arrays(const ImportedData& opened) {
         if (column.components == array.GetNumberOfComponents() && column.block_indices.back() != b) column.block_indices.push_back(b);
         return;
       }
-    const bool taken = std::any_of(columns.begin(), columns.end(), [&](const FieldArray& column) { return column.name == name; });
-    columns.push_back({taken ? name + " (cells)" : name, name, of_cells, array.GetNumberOfComponents(), {b}});
+    const bool is_taken = std::any_of(columns.begin(), columns.end(), [&](const FieldArray& column) { return column.name == name; });
+    columns.push_back({is_taken ? name + " (cells)" : name, name, of_cells, array.GetNumberOfComponents(), {b}});
   });
   return columns;
 }
@@ -143,21 +143,21 @@ std::optional<ImageGrid> find_image_grid(const ImportedData& opened, const Field
   return grid;
 }
 
-ImageWriteResult write_image(const ImportedData& opened, const FieldArray& column, const ImageGrid& grid, const ValidityMask& seen,
+ImageWriteResult write_image(const ImportedData& opened, const FieldArray& column, const ImageGrid& grid, const ValidityMask& mask,
                              float* values, std::uint8_t* valid, std::uint8_t* cells) {
   const Block& block = opened.blocks[column.block_indices.front()];
   vtkDataArray& array = *column.find_in(block);
   ImageWriteResult written;
   const int components = column.components == 1 ? 1 : 3;
-  int n[3] = {grid.size.x, grid.size.y, grid.size.z}, own[3], cells_along[3];
+  int n[3] = {grid.size.x, grid.size.y, grid.size.z}, data_index[3], cells_along[3];
   for (int a = 0; a < 3; ++a) {
-    own[a] = grid.is_flat[a] ? 1 : n[a];
-    cells_along[a] = std::max(own[a] - 1, 1);
+    data_index[a] = grid.is_flat[a] ? 1 : n[a];
+    cells_along[a] = std::max(data_index[a] - 1, 1);
   }
   // one contiguous number per voxel: copied at once
-  const bool plain =
-      column.components == components && own[0] == n[0] && own[1] == n[1] && own[2] == n[2] && array.HasStandardMemoryLayout();
-  if (plain) {
+  const bool is_contiguous = column.components == components && data_index[0] == n[0] && data_index[1] == n[1] && data_index[2] == n[2] &&
+                             array.HasStandardMemoryLayout();
+  if (is_contiguous) {
     const std::size_t count = static_cast<std::size_t>(array.GetNumberOfTuples()) * static_cast<std::size_t>(components);
     switch (array.GetDataType()) {
       vtkTemplateMacro(written.is_exact = convert(static_cast<const VTK_TT*>(array.GetVoidPointer(0)), count, values));
@@ -170,31 +170,31 @@ ImageWriteResult write_image(const ImportedData& opened, const FieldArray& colum
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j)
       for (int i = 0; i < n[0]; ++i, ++at) {
-        const vtkIdType tuple = number(i, j, k, own);
-        if (!plain) {
+        const vtkIdType tuple = number(i, j, k, data_index);
+        if (!is_contiguous) {
           float* to = values + at * static_cast<std::size_t>(components);
           if (column.components == 2) to[2] = 0;
           written.is_exact = convert_tuple(array, tuple, column.components, to) && written.is_exact;
         }
-        const bool good = column.is_cell_data ? seen.is_valid_cell(tuple) : seen.is_valid_point(tuple);
-        valid[at] = good ? 1 : 0;
-        written.all_valid = written.all_valid && good;
+        const bool is_valid = column.is_cell_data ? mask.is_valid_cell(tuple) : mask.is_valid_point(tuple);
+        valid[at] = is_valid ? 1 : 0;
+        written.all_valid = written.all_valid && is_valid;
         if (cells == nullptr) continue;
         const bool has_cell = i + 1 < n[0] && j + 1 < n[1] && k + 1 < n[2];
-        cells[at] = column.is_cell_data || !has_cell || seen.is_valid_cell(number(i, j, k, cells_along)) ? 1 : 0;
+        cells[at] = column.is_cell_data || !has_cell || mask.is_valid_cell(number(i, j, k, cells_along)) ? 1 : 0;
       }
   written.has_cell_mask = cells != nullptr && !column.is_cell_data && needs_cell_mask(grid.size, valid, cells);
   return written;
 }
 
-field::GridStats compute_stats(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& seen) {
+field::GridStats compute_stats(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& masks) {
   field::GridStats stats;
   double lo = 1e300, hi = -1e300;
-  Vec3 least(1e300), most(-1e300);
+  Vec3 minimum(1e300), maximum(-1e300);
   for (const std::size_t b : column.block_indices) {
     vtkDataArray* array = column.find_in(opened.blocks[b]);
     for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i) {
-      if (!(column.is_cell_data ? seen[b].is_valid_cell(i) : seen[b].is_valid_point(i))) continue;
+      if (!(column.is_cell_data ? masks[b].is_valid_cell(i) : masks[b].is_valid_point(i))) continue;
       Vec3 v(0.0);
       for (int c = 0; c < column.components; ++c) v[c] = array->GetComponent(i, c);
       ++stats.active_voxels;
@@ -205,18 +205,18 @@ field::GridStats compute_stats(const ImportedData& opened, const FieldArray& col
       const double size = column.components == 1 ? v.x : norm(v);
       lo = std::min(lo, size);
       hi = std::max(hi, size);
-      for (int c = 0; c < 3; ++c) least[c] = std::min(least[c], v[c]), most[c] = std::max(most[c], v[c]);
+      for (int c = 0; c < 3; ++c) minimum[c] = std::min(minimum[c], v[c]), maximum[c] = std::max(maximum[c], v[c]);
     }
   }
   if (lo > hi) return stats;
   stats.min = lo;
   stats.max = hi;
-  stats.component_min = least;
-  stats.component_max = most;
+  stats.component_min = minimum;
+  stats.component_max = maximum;
   return stats;
 }
 
-DisplayRange compute_display_range(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& seen,
+DisplayRange compute_display_range(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& masks,
                                    const field::GridStats& stats) {
   constexpr std::uint64_t kSampled = 1u << 17;
   // a sample of the values; the step is not a power of two, because rows may be
@@ -225,7 +225,7 @@ DisplayRange compute_display_range(const ImportedData& opened, const FieldArray&
     for (const std::size_t b : column.block_indices) {
       vtkDataArray* array = column.find_in(opened.blocks[b]);
       for (vtkIdType i = 0; i < array->GetNumberOfTuples(); i += by) {
-        if (!(column.is_cell_data ? seen[b].is_valid_cell(i) : seen[b].is_valid_point(i))) continue;
+        if (!(column.is_cell_data ? masks[b].is_valid_cell(i) : masks[b].is_valid_point(i))) continue;
         Vec3 v(0.0);
         for (int c = 0; c < column.components; ++c) v[c] = array->GetComponent(i, c);
         take(column.components == 1 ? v.x : norm(v));
@@ -234,9 +234,9 @@ DisplayRange compute_display_range(const ImportedData& opened, const FieldArray&
   };
   std::vector<float> sample;
   each(step, [&](double v) { sample.push_back(static_cast<float>(v)); });
-  const DisplayRange rough = display_range(std::move(sample), stats.min, stats.max);
-  if (!rough.has_outliers()) return rough;
-  RangeCounter counter(rough);
+  const DisplayRange estimate = display_range(std::move(sample), stats.min, stats.max);
+  if (!estimate.has_outliers()) return estimate;
+  RangeCounter counter(estimate);
   each(1, [&](double v) { counter.add(v); });
   return counter.range();
 }

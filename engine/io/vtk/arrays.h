@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The arrays of a file by name, across blocks, and how each becomes a field.
+/// The arrays of a file by name, across blocks, and their conversion to fields:
 ///   image       one block that is an image: voxel by voxel; cell values are placed at the cell centers
 ///   resampled   any other data whose cells have a volume (resample.h); cell values are first averaged at the points
 #pragma once
@@ -53,18 +53,18 @@ struct ImageWriteResult {
 };
 /// Writes the voxels of an image: `values` as 32-bit floats, x fastest, `valid` as 1 or 0 per voxel, and, unless `cells` is null, 1 or 0
 /// for the cell based at each voxel (point data only).
-ImageWriteResult write_image(const ImportedData& opened, const FieldArray& column, const ImageGrid& grid, const ValidityMask& seen,
+ImageWriteResult write_image(const ImportedData& opened, const FieldArray& column, const ImageGrid& grid, const ValidityMask& mask,
                              float* values, std::uint8_t* valid, std::uint8_t* cells);
 
-/// Returns the valid cells of the blocks that have an array, with values at their points. `seen`: the validity mask of each block
-/// (validity_mask.h). `keep` receives the data sets created for them, which must live as long as the result.
-std::vector<CellValues> make_cell_values(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& seen,
-                                         std::vector<vtkSmartPointer<vtkDataSet>>& keep);
+/// Returns the valid cells of the blocks that have an array, with values at their points. `masks`: the validity mask of each block
+/// (validity_mask.h). `owned` receives the data sets created for them, which must live as long as the result.
+std::vector<CellValues> make_cell_values(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& masks,
+                                         std::vector<vtkSmartPointer<vtkDataSet>>& owned);
 
-/// Statistics of the array's own values, over all blocks, where they are valid.
-field::GridStats compute_stats(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& seen);
-/// Display range of the same values.
-DisplayRange compute_display_range(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& seen,
+/// Returns the statistics of the array's own values, over all blocks, where they are valid.
+field::GridStats compute_stats(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& masks);
+/// Returns the display range of the array's own values, over all blocks, where they are valid.
+DisplayRange compute_display_range(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& masks,
                                    const field::GridStats& stats);
 
 }  // namespace catena::vtk

@@ -37,7 +37,7 @@ class CellSampler {
 
   /// Returns whether p lies inside, with VTK's tolerance; `distance2`: receives the squared distance from the cell.
   bool contains(const Vec3& p, double& distance2);
-  /// Whether the last contains() found p inside without VTK's tolerance, which is a thousandth of the cell.
+  /// Returns whether the last contains() found p inside without VTK's tolerance, which is a thousandth of the cell.
   bool strictly_inside() const { return strictly_inside_; }
   /// Point of the cell nearest to the p of the last contains(), as found by VTK.
   const Vec3& closest_point() const { return closest_point_; }
@@ -49,7 +49,7 @@ class CellSampler {
 
  private:
   static constexpr int kMaxPoints = 216;  ///< Maximum number of points of a cell: a hexahedron of order 5.
-  /// How far an extrapolated value may exceed the range of the cell's values, as a fraction of it.
+  /// Maximum distance of an extrapolated value from the range of the cell's values, as a fraction of this range.
   static constexpr double kExtrapolationLimit = 0.25;
 
   CellValues block_;
@@ -96,7 +96,7 @@ class CellFinder {
   std::vector<vtkSmartPointer<vtkStaticCellLocator>> locators_;
 };
 
-/// Random positions in a box, and how a sampling grid classifies them.
+/// Random positions in a box, and their classification by a sampling grid.
 class BoxSamples {
  public:
   BoxSamples(CellFinder& within, const Vec3& lo, const Vec3& hi, std::uint64_t seed);
@@ -110,7 +110,8 @@ class BoxSamples {
     Vec3 position;
     bool is_inside;
   };
-  /// Whether there are cells on both sides of p along the axis, at most kNarrowGapVoxels voxels apart, with p near the middle between them.
+  /// Returns whether there are cells on both sides of p along the axis, at most kNarrowGapVoxels voxels apart, with p near the middle
+  /// between them.
   bool is_in_narrow_gap(const Vec3& p, int axis, double voxel) const;
 
   CellFinder& cell_finder_;
@@ -138,10 +139,10 @@ class CellSamples {
   /// Finds the grid cell that contains p: its base voxel and the position inside it, 0 to 1. Returns false outside of the grid.
   static bool locate_voxel_cell(const ResampleGrid& lattice, const Vec3& p, int (&base)[3], double (&t)[3]);
 
-  /// Error of the trilinear interpolation in grid cells: `corner(place, base, k, value)` gives the value at corner k of the grid cell at
+  /// Error of the trilinear interpolation in grid cells: `corner(sample, base, k, value)` gives the value at corner k of the grid cell at
   /// `base`, and returns false if there is none. Uses every `every`-th of the positions.
   template <class Corner>
-  ResampleError measure_error(const ResampleGrid& lattice, const std::vector<Sample>& places, std::size_t every,
+  ResampleError measure_error(const ResampleGrid& lattice, const std::vector<Sample>& samples, std::size_t every,
                               const Corner& corner) const;
 
  private:
@@ -154,21 +155,21 @@ class CellSamples {
 };
 
 template <class Corner>
-ResampleError CellSamples::measure_error(const ResampleGrid& lattice, const std::vector<Sample>& places, std::size_t every,
+ResampleError CellSamples::measure_error(const ResampleGrid& lattice, const std::vector<Sample>& samples, std::size_t every,
                                          const Corner& corner) const {
   std::vector<double> errors;
-  for (std::size_t i = 0; i < places.size(); i += every) {
-    const Sample& place = places[i];
+  for (std::size_t i = 0; i < samples.size(); i += every) {
+    const Sample& sample = samples[i];
     int base[3];
     double t[3], sum[3] = {0, 0, 0};
-    bool good = locate_voxel_cell(lattice, place.position, base, t);
-    for (int k = 0; k < 8 && good; ++k) {
+    bool is_valid = locate_voxel_cell(lattice, sample.position, base, t);
+    for (int k = 0; k < 8 && is_valid; ++k) {
       double value[3] = {0, 0, 0}, weight = 1;
-      good = corner(place, base, k, value);
+      is_valid = corner(sample, base, k, value);
       for (int a = 0; a < 3; ++a) weight *= (k >> a & 1) != 0 ? t[a] : 1 - t[a];
       for (std::size_t c = 0; c < components_; ++c) sum[c] += weight * value[c];
     }
-    if (good) errors.push_back(difference(sum, place.value));
+    if (is_valid) errors.push_back(difference(sum, sample.value));
   }
   return summarize_errors(errors);
 }

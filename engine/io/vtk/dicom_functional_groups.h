@@ -21,12 +21,12 @@ struct DicomFunctionalGroups {
           if (auto found = find(item); static_cast<bool>(found)) return found;
     return find(root);
   }
-  /// Returns all numbers of an element, if there are at least `least`.
-  std::optional<std::vector<double>> numbers(gdcm::Tag group, gdcm::Tag tag, std::size_t least,
+  /// Returns all numbers of an element, if there are at least `min_count`.
+  std::optional<std::vector<double>> numbers(gdcm::Tag group, gdcm::Tag tag, std::size_t min_count,
                                              DicomEncoding encoding = DicomEncoding::text) const {
     return first(group, [&](const gdcm::DataSet& set) {
       std::vector<double> found = read_numbers(set, tag, encoding);
-      return found.size() >= least ? std::optional(std::move(found)) : std::nullopt;
+      return found.size() >= min_count ? std::optional(std::move(found)) : std::nullopt;
     });
   }
   /// Returns the first number of an element.

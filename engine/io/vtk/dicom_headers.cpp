@@ -52,7 +52,7 @@ bool read_rescale(const DicomFunctionalGroups& groups, DicomFrame& frame, DicomF
     const auto scaling = read_number(groups.root, Tag(0x3004, 0xe));
     if (scaling) frame.slope = *scaling;
     if (read_text(groups.root, Tag(0x3004, 0x2)) == "GY" && scaling) file.unit = "Gy";
-    if (!scaling && frame.index == 0) file.notes.push_back("the header states no DoseGridScaling: values are the stored numbers");
+    if (!scaling && frame.index == 0) file.notes.push_back("the header has no DoseGridScaling: the stored numbers are used unscaled");
     return true;
   }
   if (slope || intercept) {
@@ -71,18 +71,18 @@ bool read_rescale(const DicomFunctionalGroups& groups, DicomFrame& frame, DicomF
   frame.slope = *real_slope;
   frame.intercept = *real_intercept;
   if (frame.index > 0) return true;
-  file.notes.push_back("values are those of the header's first real world value mapping");
+  file.notes.push_back("the values are scaled by the first real world value mapping of the header");
   for (const DataSet& unit : read_items(mappings[0], Tag(0x40, 0x8ea))) file.unit = read_text(unit, Tag(0x8, 0x100));
   return true;
 }
 
 void read_units(const DataSet& root, const DicomFunctionalGroups& groups, DicomFile& file) {
-  const std::string type = groups.text(Tag(0x28, 0x9145), Tag(0x28, 0x1054)), stated = read_text(root, Tag(0x54, 0x1001));
+  const std::string type = groups.text(Tag(0x28, 0x9145), Tag(0x28, 0x1054)), unit_text = read_text(root, Tag(0x54, 0x1001));
   if (file.modality == "CT" && type.empty()) file.unit = "HU";
   if (type == "HU") file.unit = "HU";
   static constexpr std::pair<const char*, const char*> kPet[] = {{"BQML", "Bq/mL"}, {"GML", "g/mL"}, {"CNTS", "counts"}, {"CPS", "1/s"}};
   for (const auto& [code, word] : kPet)
-    if (stated == code) file.unit = word;
+    if (unit_text == code) file.unit = word;
 }
 
 /// Reads position and axes, as far as the frame itself has them.
@@ -110,8 +110,10 @@ void read_other_spacing(const DataSet& root, DicomFile& file) {
     const char* note;
   };
   static const Other kOthers[] = {
-      {Tag(0x18, 0x1164), "the header has no PixelSpacing: lengths are those on the detector (ImagerPixelSpacing), not in the patient"},
-      {Tag(0x18, 0x2010), "the header has no PixelSpacing: lengths are those of the scanned picture (NominalScannedPixelSpacing)"}};
+      {Tag(0x18, 0x1164),
+       "the header has no PixelSpacing: ImagerPixelSpacing is used, so that lengths are measured on the detector, not in the patient"},
+      {Tag(0x18, 0x2010),
+       "the header has no PixelSpacing: NominalScannedPixelSpacing is used, so that lengths are measured on the scanned image"}};
   for (const Other& other : kOthers) {
     const auto spacing = read_numbers(root, other.tag);
     if (spacing.size() < 2 || file.frames.front().row_spacing != 0) continue;
@@ -123,12 +125,12 @@ void read_other_spacing(const DataSet& root, DicomFile& file) {
 /// Adds the frame offsets of an RT dose. Returns false if the offsets contradict the position.
 bool add_grid_offsets(const std::vector<double>& offsets, DicomFile& file) {
   for (DicomFrame& frame : file.frames) {
-    const double z = frame.position.z, by = offsets[frame.index];
+    const double z = frame.position.z, offset = offsets[frame.index];
     const bool along_z = std::fabs(std::fabs(frame.normal().z) - 1) < 1e-6;
     if (offsets[0] == 0)
-      frame.position = frame.position + by * frame.normal();
+      frame.position = frame.position + offset * frame.normal();
     else if (along_z && std::fabs(offsets[0] - z) < 1e-3)
-      frame.position.z = by;  // the offsets are z coordinates in patient space
+      frame.position.z = offset;  // the offsets are z coordinates in patient space
     else
       return false;
   }
@@ -143,7 +145,7 @@ void place_frames(const DataSet& root, double step, DicomFile& file) {
   if (!offsets.empty()) {
     if (offsets.size() != file.frames.size())
       file.problem =
-          fmt::format("GridFrameOffsetVector has {} numbers, expected one for each of {} frames", offsets.size(), file.frames.size());
+          fmt::format("GridFrameOffsetVector has {} numbers, expected one for each of the {} frames", offsets.size(), file.frames.size());
     else if (!file.frames.front().has_position)
       file.problem = "the header has no ImagePositionPatient";
     else if (!add_grid_offsets(offsets, file))
@@ -157,10 +159,10 @@ void place_frames(const DataSet& root, double step, DicomFile& file) {
   const std::string increment = read_bytes(root, Tag(0x28, 0x9));
   const bool timed = increment.size() >= 2 && increment[0] == 0x18 && increment[1] == 0;  // FrameTime and similar
   if (timed)
-    file.problem = fmt::format("its {} frames follow each other in time, expected slices", file.frames.size());
+    file.problem = fmt::format("the {} frames are a time series, expected slices", file.frames.size());
   else if (step == 0)
     file.problem = fmt::format(
-        "the header says no distance between its {} frames (no position of each, GridFrameOffsetVector or SpacingBetweenSlices)",
+        "the header has no distance between the {} frames, expected frame positions, GridFrameOffsetVector or SpacingBetweenSlices",
         file.frames.size());
   else
     for (DicomFrame& frame : file.frames) frame.position = frame.position + frame.index * step * frame.normal();
@@ -186,27 +188,30 @@ void check_frames(DicomFile& file) {
   for (const DicomFrame& frame : file.frames) {
     const Vec3 &a = frame.row_direction, &b = frame.column_direction;
     if (std::fabs(norm(a) - 1) > 1e-2 || std::fabs(norm(b) - 1) > 1e-2 || std::fabs(dot(a, b)) > 1e-2)
-      file.problem = "ImageOrientationPatient is no pair of unit vectors at right angles";
-    const bool stated = frame.row_spacing != 0 || frame.column_spacing != 0;
-    if (stated && !(frame.row_spacing > 0 && frame.column_spacing > 0 && std::max(frame.row_spacing, frame.column_spacing) < kMaxLength))
-      file.problem = fmt::format("PixelSpacing is {:g} and {:g} mm, expected lengths", frame.row_spacing, frame.column_spacing);
-    if (!(norm(frame.position) < kMaxLength)) file.problem = "ImagePositionPatient is farther away than 1e6 mm";
+      file.problem = "ImageOrientationPatient is invalid, expected two orthogonal unit vectors";
+    const bool has_spacing = frame.row_spacing != 0 || frame.column_spacing != 0;
+    if (has_spacing &&
+        !(frame.row_spacing > 0 && frame.column_spacing > 0 && std::max(frame.row_spacing, frame.column_spacing) < kMaxLength))
+      file.problem =
+          fmt::format("PixelSpacing is {:g} and {:g} mm, expected positive lengths below 1e6 mm", frame.row_spacing, frame.column_spacing);
+    if (!(norm(frame.position) < kMaxLength)) file.problem = "ImagePositionPatient is farther than 1e6 mm from the origin";
     if (!std::isfinite(frame.slope) || !std::isfinite(frame.intercept) || frame.slope == 0)
-      file.problem = fmt::format("a rescale slope is {:g} and its intercept {:g}, expected finite numbers and a slope other than 0",
+      file.problem = fmt::format("the rescale slope is {:g} and the intercept is {:g}, expected finite numbers and a slope other than 0",
                                  frame.slope, frame.intercept);
   }
 }
 
 void read_geometry(const DataSet& root, std::size_t frames, DicomFile& file) {
-  const std::vector<DataSet> shared = read_items(root, Tag(0x5200, 0x9229)), own = read_items(root, Tag(0x5200, 0x9230), kMaxFrames);
+  const std::vector<DataSet> shared = read_items(root, Tag(0x5200, 0x9229)),
+                             frame_groups = read_items(root, Tag(0x5200, 0x9230), kMaxFrames);
   DicomFrame frame;
   frame.columns = static_cast<std::uint32_t>(read_number(root, Tag(0x28, 0x11), DicomEncoding::u16).value_or(0));
   frame.rows = static_cast<std::uint32_t>(read_number(root, Tag(0x28, 0x10), DicomEncoding::u16).value_or(0));
   frame.instance = static_cast<int>(std::clamp(read_number(root, Tag(0x20, 0x13)).value_or(0), -1e9, 1e9));
-  bool own_places = !own.empty(), mapped = true;
+  bool own_places = !frame_groups.empty(), mapped = true;
   double step = 0;
   for (std::size_t n = 0; n < frames; ++n) {
-    const DicomFunctionalGroups groups{root, shared.empty() ? nullptr : &shared[0], n < own.size() ? &own[n] : nullptr};
+    const DicomFunctionalGroups groups{root, shared.empty() ? nullptr : &shared[0], n < frame_groups.size() ? &frame_groups[n] : nullptr};
     DicomFrame one = frame;
     one.index = static_cast<std::uint32_t>(n);
     read_place(groups, one);
@@ -214,35 +219,36 @@ void read_geometry(const DataSet& root, std::size_t frames, DicomFile& file) {
     if (n == 0) read_units(root, groups, file);
     mapped = read_rescale(groups, one, file) && mapped;
     if (n == 0) step = groups.number(Tag(0x28, 0x9110), Tag(0x18, 0x88)).value_or(0);
-    own_places =
-        own_places && n < own.size() && (!read_items(own[n], Tag(0x20, 0x9113)).empty() || !read_items(own[n], Tag(0x20, 0x930e)).empty());
+    own_places = own_places && n < frame_groups.size() &&
+                 (!read_items(frame_groups[n], Tag(0x20, 0x9113)).empty() || !read_items(frame_groups[n], Tag(0x20, 0x930e)).empty());
     file.frames.push_back(std::move(one));
   }
   read_nm_vectors(root, file.frames);
   read_detectors(root, file);
   read_other_spacing(root, file);
   if (!own_places) place_frames(root, step, file);
-  if (!mapped) file.problem = "its real world value mapping is a table, expected a slope and an intercept";
+  if (!mapped) file.problem = "the real world value mapping is a table, expected a slope and an intercept";
   if (file.problem.empty()) check_frames(file);
 }
 
-/// Offset of the pixels and their number of bytes. They follow the header of the element, where the stream stopped; -1: there are none.
+/// Returns the offset of the pixels, and sets `bytes` to their size; -1: there are none. The pixels follow the header of the element, where
+/// the stream stopped.
 std::int64_t find_pixels(const std::string& path, std::uint64_t at, std::uint64_t& bytes) {
-  constexpr std::uint64_t kLongest = 12;
-  if (at < kLongest) return -1;
+  constexpr std::uint64_t kHeaderBytes = 12;
+  if (at < kHeaderBytes) return -1;
   std::ifstream in(path, std::ios::binary);
-  std::string head(kLongest, '\0');
-  in.seekg(static_cast<std::streamoff>(at - kLongest)).read(head.data(), static_cast<std::streamsize>(kLongest));
+  std::string head(kHeaderBytes, '\0');
+  in.seekg(static_cast<std::streamoff>(at - kHeaderBytes)).read(head.data(), static_cast<std::streamsize>(kHeaderBytes));
   const std::string_view tag("\xe0\x7f\x10\x00", 4);
   if (!in || (!head.starts_with(tag) && head.substr(4, 4) != tag)) return -1;
   for (std::size_t b = 0; b < 4; ++b) bytes |= std::uint64_t{static_cast<unsigned char>(head[8 + b])} << 8 * b;
   return static_cast<std::int64_t>(at);
 }
 
-/// Whether the file meta information, in explicit VR and little-endian, has TransferSyntaxUID.
+/// Returns whether the file meta information, in explicit VR and little-endian, has TransferSyntaxUID.
 bool states_transfer_syntax(const std::string& path) {
-  constexpr std::size_t kStart = 132, kMostBytes = 1 << 16;
-  std::string bytes(kMostBytes, '\0');
+  constexpr std::size_t kStart = 132, kMaxMetaBytes = 1 << 16;
+  std::string bytes(kMaxMetaBytes, '\0');
   std::ifstream in(path, std::ios::binary);
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(in.gcount()));
@@ -252,10 +258,10 @@ bool states_transfer_syntax(const std::string& path) {
   };
   for (std::size_t at = kStart; at + 12 <= bytes.size() && word(at) == 2;) {
     const std::string_view type = std::string_view(bytes).substr(at + 4, 2);
-    const bool wide = type == "OB" || type == "OW" || type == "SQ" || type == "UN" || type == "UT";
-    const std::size_t length = wide ? word(at + 8) | word(at + 10) << 16 : word(at + 6);
+    const bool has_long_length = type == "OB" || type == "OW" || type == "SQ" || type == "UN" || type == "UT";
+    const std::size_t length = has_long_length ? word(at + 8) | word(at + 10) << 16 : word(at + 6);
     if (word(at + 2) == 0x10) return length > 0;
-    at += (wide ? 12 : 8) + length;
+    at += (has_long_length ? 12 : 8) + length;
   }
   return false;
 }
@@ -271,11 +277,12 @@ void read_pixel_words(const DataSet& root, DicomFile& file) {
   const std::string photometric = read_text(root, Tag(0x28, 0x4)), type = read_text(root, Tag(0x8, 0x8));
   const int samples = std::max<int>(word(0x2), 1);
   if (samples != 1 || (photometric != "MONOCHROME2" && photometric != "MONOCHROME1" && !photometric.empty()))
-    file.problem = fmt::format("is a picture in colours ({}), expected grey values",
-                               photometric.empty() ? "several samples a pixel" : in_quotes(photometric));
+    file.problem = fmt::format("is a colour image ({}), expected grey values",
+                               photometric.empty() ? "several samples per pixel" : in_quotes(photometric));
   else if (type.find("MOSAIC") != std::string::npos)
-    file.problem = "is a mosaic of many slices in one picture; a converter (dcm2niix) makes a volume of it";
-  if (photometric == "MONOCHROME1") file.notes.push_back("MONOCHROME1: other programs show it inverted; the values are those of the file");
+    file.problem = "is a mosaic of several slices in one image, expected separate slices (dcm2niix converts mosaics to volumes)";
+  if (photometric == "MONOCHROME1")
+    file.notes.push_back("the image is MONOCHROME1, which other programs show inverted; the stored values are used");
 }
 
 }  // namespace
@@ -284,11 +291,11 @@ std::unique_ptr<gdcm::Reader> open_dicom_reader(const std::string& path, bool he
   auto reader = std::make_unique<gdcm::Reader>();
   reader->SetFileName(path.c_str());
   bool read = false;
-  const bool ended = call_gdcm([&] {
+  const bool completed = call_gdcm([&] {
     const Tag pixels(0x7fe0, 0x10);
     read = reader->CanRead() && (header_only ? reader->ReadUpToTag(pixels, {pixels}) : reader->Read());
   });
-  if (!ended) static_cast<void>(reader.release());
+  if (!completed) static_cast<void>(reader.release());
   return read ? std::move(reader) : nullptr;
 }
 
@@ -301,7 +308,7 @@ bool is_dicom_file(const std::string& path) {
 DicomKind read_dicom_header(const std::string& path, DicomFile& file) {
   const bool magic = is_dicom_file(path);
   const auto failed = [&] {
-    if (magic && !states_transfer_syntax(path)) file.problem = "its header states no transfer syntax";
+    if (magic && !states_transfer_syntax(path)) file.problem = "the header has no transfer syntax";
     return magic ? DicomKind::damaged : DicomKind::not_dicom;
   };
   file.path = path;

@@ -61,7 +61,7 @@ struct DicomFrame {
   std::size_t file = 0;     ///< Index of the file in the scan.
   std::uint32_t index = 0;  ///< Index of the frame in the file.
   std::uint32_t columns = 0, rows = 0;
-  bool has_position = false, has_orientation = false;  ///< Whether the header specifies position and orientation.
+  bool has_position = false, has_orientation = false;  ///< True: specified by the header.
   Vec3 position{0.0};                                  ///< Center of the first pixel, mm.
   Vec3 row_direction{1, 0, 0}, column_direction{0, 1, 0};
   double column_spacing = 0, row_spacing = 0;  ///< Distance between columns, between rows, mm; 0: not specified.
@@ -80,7 +80,7 @@ struct DicomFile {
   std::string path, name;  ///< `name` is used in messages.
   std::string series, description, series_number, modality, unit, frame_of_reference, transfer_syntax;
   bool localizer = false, segmentation = false;
-  std::string problem;             ///< Why the frames are not a field, as a message fragment; empty: they are.
+  std::string problem;             ///< Message fragment: the reason that the frames are not a field; empty: they are.
   std::vector<std::string> notes;  ///< Assumptions that were made.
   std::uint16_t bits_allocated = 0, bits_stored = 0, high_bit = 0;
   bool is_signed = false;

@@ -24,7 +24,7 @@ using Syntax = gdcm::TransferSyntax;
 /// Type of the numbers as stored, before rescale.
 enum class Stored { integers, floats, doubles };
 
-/// Maps stored to modality values, and tells which stored values are padding. For integers in units of the stored type.
+/// Map from stored to modality values, and the range of the stored values that are padding, in units of the stored type.
 struct ValueTable {
   std::vector<double> table;  ///< modality LUT; empty: none
   double first = 0;           ///< stored value of its first entry
@@ -37,12 +37,12 @@ struct ValueTable {
   bool is_padding(double stored) const { return padding_lo && stored >= *padding_lo && stored <= *padding_hi; }
 };
 
-/// A 16-bit word of the header as a value of the pixels' type.
+/// Returns a 16-bit word of the header as a value of the pixels' type.
 double in_type_of_pixels(double word, const DicomFile& file) {
   const auto bits = static_cast<std::uint16_t>(word);
   if (file.is_signed) return static_cast<std::int16_t>(bits);
-  const double most = std::ldexp(1.0, std::min<int>(file.bits_stored, 32)) - 1;
-  return std::min<double>(bits, most);
+  const double maximum = std::ldexp(1.0, std::min<int>(file.bits_stored, 32)) - 1;
+  return std::min<double>(bits, maximum);
 }
 
 Result<ValueTable> table_of(const gdcm::DataSet& root, const DicomFile& file, Stored stored) {
@@ -62,12 +62,12 @@ Result<ValueTable> table_of(const gdcm::DataSet& root, const DicomFile& file, St
   if (stored == Stored::doubles) pair(Tag(0x28, 0x123), Tag(0x28, 0x125), DicomEncoding::f64);
   for (const gdcm::DataSet& lut : read_items(root, Tag(0x28, 0x3000))) {
     const std::vector<double> descriptor = read_numbers(lut, Tag(0x28, 0x3002), DicomEncoding::u16);
-    if (descriptor.size() < 3) return Error{"its modality LUT has no descriptor"};
+    if (descriptor.size() < 3) return Error{"the modality LUT has no descriptor"};
     const auto entries = static_cast<std::size_t>(descriptor[0] == 0 ? 65'536 : descriptor[0]);
     table.first = file.is_signed ? static_cast<std::int16_t>(static_cast<std::uint16_t>(descriptor[1])) : descriptor[1];
     const std::string bytes = read_bytes(lut, Tag(0x28, 0x3006));
     const std::size_t width = descriptor[2] <= 8 && bytes.size() < 2 * entries ? 1 : 2;
-    if (bytes.size() < width * entries) return Error{fmt::format("its modality LUT is cut short, expected {} entries", entries)};
+    if (bytes.size() < width * entries) return Error{fmt::format("the modality LUT is truncated, expected {} entries", entries)};
     for (std::size_t i = 0; i < entries; ++i) {
       const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(bytes[at]); };
       table.table.push_back(width == 1 ? byte(i) : byte(2 * i) | byte(2 * i + 1) << 8);
@@ -81,10 +81,10 @@ class FrameDecoder {
  public:
   FrameDecoder(const DicomFile& file, Stored stored, unsigned bits, const ValueTable& table)
       : stored_(stored), bits_(bits), table_(table), is_signed_(file.is_signed) {
-    const unsigned used = std::min<unsigned>(file.bits_stored, bits);
-    shift_ = file.high_bit + 1u > used && file.high_bit < bits ? file.high_bit + 1u - used : 0u;
-    mask_ = used >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << used) - 1;
-    sign_ = std::uint64_t{1} << (used - 1);
+    const unsigned used_bits = std::min<unsigned>(file.bits_stored, bits);
+    shift_ = file.high_bit + 1u > used_bits && file.high_bit < bits ? file.high_bit + 1u - used_bits : 0u;
+    mask_ = used_bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << used_bits) - 1;
+    sign_ = std::uint64_t{1} << (used_bits - 1);
   }
 
   /// `first_bit`: offset of the frame's first pixel in `bytes`.
@@ -148,7 +148,7 @@ void order_words(std::string& bytes, unsigned bits) {
 }
 
 Result<Pixels> decoded_pixels(const DicomFile& file, std::size_t pixels) {
-  auto reader = std::make_unique<gdcm::PixmapReader>();  // reads no geometry; an ImageReader rejects some forms of it that occur
+  auto reader = std::make_unique<gdcm::PixmapReader>();  // reads no geometry, unlike ImageReader, which rejects some valid geometries
   reader->SetFileName(file.path.c_str());
   Pixels decoded;
   std::size_t bytes = 0;
@@ -162,13 +162,13 @@ Result<Pixels> decoded_pixels(const DicomFile& file, std::size_t pixels) {
         if (read) bytes = reader->GetPixmap().GetBufferLength();
       }) ||
       !read)
-    return Error{"its pixels cannot be decoded"};
+    return Error{"the pixels cannot be decoded"};
   if (pixels == 0 || bytes % pixels != 0 || bytes / pixels > 8)
-    return Error{fmt::format("its compressed pixels make {} bytes, expected {} pixels", bytes, pixels)};
+    return Error{fmt::format("the compressed pixels decode to {} bytes, expected {} pixels", bytes, pixels)};
   decoded.bytes.resize(bytes);
   decoded.bits = static_cast<unsigned>(8 * (bytes / pixels));
   if (!guarded([&] { read = reader->GetPixmap().GetBuffer(decoded.bytes.data()); }) || !read)
-    return Error{"its compressed pixels cannot be decoded: they are damaged, or compressed in an unknown way"};
+    return Error{"the compressed pixels cannot be decoded: the pixels are damaged, or the compression is unknown"};
   return decoded;
 }
 
@@ -178,52 +178,52 @@ Outcome check_fragments(const DicomFile& file) {
   std::ifstream in(file.path, std::ios::binary | std::ios::ate);
   const auto end = static_cast<std::int64_t>(in.tellg());
   for (std::int64_t at = file.fragments_offset; at + 8 <= end;) {
-    std::array<std::uint16_t, 4> head{};  // group and element of an item or delimiter; two words of length
+    std::array<std::uint16_t, 4> head{};  // group and element of an item or delimiter, and the length as two words
     in.seekg(at).read(reinterpret_cast<char*>(head.data()), sizeof head);
     if (in && head[0] == 0xfffe && head[1] == 0xe0dd) return Done{};
-    if (!in || head[0] != 0xfffe || head[1] != 0xe000) return Error{"its compressed pixels are damaged"};
+    if (!in || head[0] != 0xfffe || head[1] != 0xe000) return Error{"the compressed pixels are damaged"};
     at += 8 + (std::int64_t{head[3]} << 16 | head[2]);
   }
-  return Error{"it is cut short within its compressed pixels"};
+  return Error{"the file is truncated inside the compressed pixels"};
 }
 
-Outcome cut_short(std::size_t has, std::size_t expected) {
-  return Error{fmt::format("it is cut short: it has {} bytes of pixels, expected {}", has, expected)};
+Outcome truncated(std::size_t has, std::size_t expected) {
+  return Error{fmt::format("the file is truncated: it has {} bytes of pixels, expected {}", has, expected)};
 }
 
 /// Reads uncompressed pixels, one frame at a time.
 Outcome read_plain(const DicomFile& file, const std::vector<const DicomFrame*>& frames, const FrameDecoder& decoder,
-                   const FrameCallback& take, PixelStats& notes) {
+                   const FrameCallback& on_frame, PixelStats& notes) {
   std::ifstream in(file.path, std::ios::binary | std::ios::ate);
   const auto end = static_cast<std::uint64_t>(in.tellg());
   const auto start = static_cast<std::uint64_t>(file.pixel_offset);
-  const std::uint64_t there = std::min<std::uint64_t>(end > start ? end - start : 0, file.pixel_bytes);
+  const std::uint64_t available = std::min<std::uint64_t>(end > start ? end - start : 0, file.pixel_bytes);
   const std::size_t bits = file.bits_allocated, count = std::size_t{frames.front()->columns} * frames.front()->rows;
-  if (const std::uint64_t all = (file.frames.size() * count * bits + 7) / 8; there < all) return cut_short(there, all);
+  if (const std::uint64_t all = (file.frames.size() * count * bits + 7) / 8; available < all) return truncated(available, all);
   std::vector<float> values(count);
   std::string bytes;
   for (const DicomFrame* frame : frames) {
     const std::size_t first = frame->index * count * bits;
     bytes.resize((first % 8 + count * bits + 7) / 8);
     in.seekg(static_cast<std::streamoff>(start + first / 8)).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    if (!in) return cut_short(there, bytes.size());
+    if (!in) return truncated(available, bytes.size());
     decoder.decode(bytes, first % 8, *frame, values, notes);
-    take(*frame, values);
+    on_frame(*frame, values);
   }
   return Done{};
 }
 
 }  // namespace
 
-Outcome read_dicom_pixels(const DicomFile& file, const std::vector<const DicomFrame*>& frames, const FrameCallback& take,
+Outcome read_dicom_pixels(const DicomFile& file, const std::vector<const DicomFrame*>& frames, const FrameCallback& on_frame,
                           PixelStats& notes) {
   if (frames.empty()) return Done{};
   const std::size_t count = std::size_t{frames.front()->columns} * frames.front()->rows;
-  const bool plain = file.pixel_offset >= 0;
-  if (!plain) CATENA_CHECK(check_fragments(file));
+  const bool is_uncompressed = file.pixel_offset >= 0;
+  if (!is_uncompressed) CATENA_CHECK(check_fragments(file));
   const Tag pixel_tag(0x7fe0, 0x10);
-  const std::unique_ptr<gdcm::Reader> owned = open_dicom_reader(file.path, plain);
-  if (owned == nullptr) return Error{"cannot be read: it is damaged"};
+  const std::unique_ptr<gdcm::Reader> owned = open_dicom_reader(file.path, is_uncompressed);
+  if (owned == nullptr) return Error{"cannot be read: the file is damaged"};
   const gdcm::Reader& reader = *owned;
   const gdcm::DataSet& root = reader.GetFile().GetDataSet();
   const Syntax& syntax = reader.GetFile().GetHeader().GetDataSetTransferSyntax();
@@ -234,9 +234,9 @@ Outcome read_dicom_pixels(const DicomFile& file, const std::vector<const DicomFr
   if (allocated != 1 && allocated != 8 && allocated != 16 && allocated != 32 && allocated != 64)
     return Error{fmt::format("has pixels of {} bits, expected 1, 8, 16, 32 or 64", allocated)};
   if (file.bits_stored < 1 || (stored == Stored::integers && file.bits_stored > allocated))
-    return Error{fmt::format("has {} bits stored of {} a pixel", file.bits_stored, allocated)};
-  if (plain) return read_plain(file, frames, FrameDecoder(file, stored, allocated, table), take, notes);
-  // compressed, big-endian or deflated pixels, or floats: all at once
+    return Error{fmt::format("has {} stored bits per pixel, expected 1 to {}", file.bits_stored, allocated)};
+  if (is_uncompressed) return read_plain(file, frames, FrameDecoder(file, stored, allocated, table), on_frame, notes);
+  // compressed, big-endian or deflated pixels, and floats, are read all at once
   Pixels pixels{read_bytes(root, floats ? Tag(0x7fe0, 0x8) : doubles ? Tag(0x7fe0, 0x9) : pixel_tag), allocated};
   const std::size_t all = count * file.frames.size();
   if (syntax.IsEncapsulated()) {
@@ -245,13 +245,13 @@ Outcome read_dicom_pixels(const DicomFile& file, const std::vector<const DicomFr
     order_words(pixels.bytes, allocated);
   }
   if (const std::size_t expected = (all * pixels.bits + 7) / 8; pixels.bytes.size() < expected)
-    return cut_short(pixels.bytes.size(), expected);
+    return truncated(pixels.bytes.size(), expected);
   const FrameDecoder decoder(file, stored, pixels.bits, table);
   std::vector<float> values(count);
   for (const DicomFrame* frame : frames) {
     const std::size_t first = frame->index * count * pixels.bits;
     decoder.decode(std::string_view(pixels.bytes).substr(first / 8), first % 8, *frame, values, notes);
-    take(*frame, values);
+    on_frame(*frame, values);
   }
   return Done{};
 }

@@ -18,7 +18,7 @@ struct PixelStats {
 using FrameCallback = std::function<void(const DicomFrame& frame, std::span<const float> values)>;
 
 /// Reads frames of one file. Returns an Error with a message fragment without the file name. GDCM may throw.
-Outcome read_dicom_pixels(const DicomFile& file, const std::vector<const DicomFrame*>& frames, const FrameCallback& take,
+Outcome read_dicom_pixels(const DicomFile& file, const std::vector<const DicomFrame*>& frames, const FrameCallback& on_frame,
                           PixelStats& notes);
 
 }  // namespace catena::vtk

@@ -20,11 +20,11 @@ using Frames = std::vector<const DicomFrame*>;
 constexpr double kSameDirection = 1e-3;  // difference of unit vectors
 constexpr double kSameSpacing = 1e-3;    // relative
 
-/// Distance along the normal, mm, below which frames have the same position: small relative to a pixel, even in microscopy.
-double same_place(const DicomFrame& frame) {
-  constexpr double kMost = 1e-3, kPart = 0.02;
+/// Returns the distance along the normal, mm, below which frames have the same position: small relative to a pixel, even in microscopy.
+double position_tolerance(const DicomFrame& frame) {
+  constexpr double kMaxToleranceMm = 1e-3, kPart = 0.02;
   const double pixel = std::min(frame.column_spacing, frame.row_spacing);
-  return pixel > 0 ? std::min(kMost, kPart * pixel) : kMost;
+  return pixel > 0 ? std::min(kMaxToleranceMm, kPart * pixel) : kMaxToleranceMm;
 }
 bool same_axes(const DicomFrame& a, const DicomFrame& b) {
   return norm(a.row_direction - b.row_direction) < kSameDirection && norm(a.column_direction - b.column_direction) < kSameDirection;
@@ -46,13 +46,14 @@ std::string orientation_word(const DicomFrame& frame) {
 /// Sorts frames along the normal; frames at the same position by their numbers.
 void sort_along_normal(Frames& frames) {
   const Vec3 normal = frames.front()->normal();
-  const auto place = [&](const DicomFrame* frame) { return dot(frame->position, normal); };
+  const auto position_of = [&](const DicomFrame* frame) { return dot(frame->position, normal); };
   std::ranges::sort(frames, [&](const DicomFrame* a, const DicomFrame* b) {
-    return std::make_tuple(place(a), a->instance, a->file, a->index) < std::make_tuple(place(b), b->instance, b->file, b->index);
+    return std::make_tuple(position_of(a), a->instance, a->file, a->index) <
+           std::make_tuple(position_of(b), b->instance, b->file, b->index);
   });
   for (auto from = frames.begin(); from != frames.end();) {
-    const auto to =
-        std::find_if(from, frames.end(), [&](const DicomFrame* frame) { return place(frame) - place(*from) > same_place(*frame); });
+    const auto to = std::find_if(
+        from, frames.end(), [&](const DicomFrame* frame) { return position_of(frame) - position_of(*from) > position_tolerance(*frame); });
     std::sort(from, to, [](const DicomFrame* a, const DicomFrame* b) {
       return std::make_tuple(a->instance, a->file, a->index) < std::make_tuple(b->instance, b->file, b->index);
     });
@@ -60,16 +61,16 @@ void sort_along_normal(Frames& frames) {
   }
 }
 
-/// Numbers of consecutive sorted frames at the same position.
+/// Returns the numbers of consecutive sorted frames at the same position.
 std::vector<std::size_t> counts_at_places(const Frames& sorted) {
   std::vector<std::size_t> counts;
   const Vec3 normal = sorted.front()->normal();
   double at = 0;
   for (const DicomFrame* frame : sorted) {
-    const double place = dot(frame->position, normal);
-    if (counts.empty() || place - at > same_place(*frame)) {
+    const double position = dot(frame->position, normal);
+    if (counts.empty() || position - at > position_tolerance(*frame)) {
       counts.push_back(1);
-      at = place;
+      at = position;
     } else {
       ++counts.back();
     }
@@ -77,23 +78,23 @@ std::vector<std::size_t> counts_at_places(const Frames& sorted) {
   return counts;
 }
 
-/// Largest distance of the frames, across the normal, from the line through the first and the last.
-double off_line(const Frames& sorted) {
+/// Returns the maximum distance of the frames, across the normal, from the line through the first and the last.
+double distance_from_line(const Frames& sorted) {
   const Vec3 normal = sorted.front()->normal(), from = sorted.front()->position, all = sorted.back()->position - from;
   const double span = dot(all, normal);
-  double most = 0;
+  double maximum = 0;
   for (const DicomFrame* frame : sorted) {
     const Vec3 d = frame->position - from;
-    most = std::max(most, norm(d - (span > same_place(*sorted.front()) ? dot(d, normal) / span : 0.0) * all));
+    maximum = std::max(maximum, norm(d - (span > position_tolerance(*sorted.front()) ? dot(d, normal) / span : 0.0) * all));
   }
-  return most;
+  return maximum;
 }
 
 bool is_stack(const Frames& sorted) {
   const std::vector<std::size_t> counts = counts_at_places(sorted);
   const double pixel = std::min(sorted.front()->column_spacing, sorted.front()->row_spacing);
   return std::ranges::all_of(counts, [](std::size_t n) { return n == 1; }) &&
-         (sorted.size() < 3 || off_line(sorted) <= 0.5 * std::max(pixel, same_place(*sorted.front())));
+         (sorted.size() < 3 || distance_from_line(sorted) <= 0.5 * std::max(pixel, position_tolerance(*sorted.front())));
 }
 
 struct Part {
@@ -143,7 +144,7 @@ std::vector<Part> parted_by_number(const Frames& sorted) {
   return parts;
 }
 
-/// Whether the distances between slices along the normal are equal.
+/// Returns whether the distances between slices along the normal are equal.
 bool is_even(const Frames& sorted) {
   constexpr double kUneven = 0.02;
   const Vec3 normal = sorted.front()->normal();
@@ -153,7 +154,7 @@ bool is_even(const Frames& sorted) {
   return true;
 }
 
-/// The acquisitions of a stack if slices of one lie between those of another; empty if they do not.
+/// Returns the acquisitions of a stack if slices of one lie between those of another; empty if they do not.
 std::vector<Part> interleaved_acquisitions(const Frames& stack, const DicomFile& file) {
   std::vector<Part> parts = parted_by(stack, DicomKey::acquisition, file);
   const Vec3 normal = stack.front()->normal();
@@ -170,11 +171,11 @@ std::vector<Part> interleaved_acquisitions(const Frames& stack, const DicomFile&
 /// comes nearest, and recursively.
 std::vector<Part> stacks_of(Frames frames, const DicomFile& file, int depth = 0) {
   sort_along_normal(frames);
-  const bool placed = std::ranges::all_of(frames, [](const DicomFrame* frame) { return frame->has_position; });
-  if (!placed || !file.problem.empty()) return {{{}, std::move(frames)}};  // one volume, which is going to be refused
+  const bool has_positions = std::ranges::all_of(frames, [](const DicomFrame* frame) { return frame->has_position; });
+  if (!has_positions || !file.problem.empty()) return {{{}, std::move(frames)}};  // one volume, rejected later
   const bool segments = file.segmentation && depth == 0;
   if (is_stack(frames) && !segments) {
-    // two passes that interleave evenly are one scan; if they are uneven together and each is even by itself, they are two scans
+    // two passes that interleave evenly are one scan; two passes that are evenly spaced only by themselves are two scans
     std::vector<Part> passes = is_even(frames) ? std::vector<Part>() : interleaved_acquisitions(frames, file);
     if (!passes.empty() && std::ranges::all_of(passes, [](const Part& part) { return is_even(part.frames); })) return passes;
     return {{{}, std::move(frames)}};
@@ -195,10 +196,10 @@ std::vector<Part> stacks_of(Frames frames, const DicomFile& file, int depth = 0)
   }
   constexpr int kDeepest = 4;
   // a key that differs in every image does not separate stacks
-  const bool many = best.size() > 2 * std::max<std::size_t>(deepest, 2) && !segments;
-  if (best.empty() || many || depth >= kDeepest) {
-    const bool same_place = deepest > 1;
-    return same_place ? parted_by_number(frames) : std::vector<Part>{{{}, std::move(frames)}};
+  const bool too_many = best.size() > 2 * std::max<std::size_t>(deepest, 2) && !segments;
+  if (best.empty() || too_many || depth >= kDeepest) {
+    const bool has_duplicates = deepest > 1;
+    return has_duplicates ? parted_by_number(frames) : std::vector<Part>{{{}, std::move(frames)}};
   }
   std::vector<Part> all;
   for (Part& part : best)
@@ -237,8 +238,9 @@ std::string geometry_suffix(const DicomFrame& one, const DicomFrame& main, const
   return "other images";
 }
 
-/// Problem if frames with other pixels lie in the gaps of a stack: they belong to it, and without them it would be wrong; empty if none do.
-std::string torn_by(const Frames& stack, const Frames& others, const std::vector<DicomFile>& files) {
+/// Returns a problem if frames with other pixels lie in the gaps of a stack: they belong to it, and without them it would be wrong; empty
+/// if none do.
+std::string gap_problem(const Frames& stack, const Frames& others, const std::vector<DicomFile>& files) {
   Frames sorted = stack;
   sort_along_normal(sorted);
   if (sorted.size() < 2 || !same_axes(*sorted.front(), *others.front())) return {};
@@ -247,20 +249,21 @@ std::string torn_by(const Frames& stack, const Frames& others, const std::vector
   for (std::size_t k = 1; k < sorted.size(); ++k) gaps.push_back(dot(sorted[k]->position - sorted[k - 1]->position, normal));
   std::vector<double> ordered = gaps;
   std::ranges::nth_element(ordered, ordered.begin() + static_cast<std::ptrdiff_t>(ordered.size() / 4));
-  const double usual = ordered[ordered.size() / 4];
+  const double typical_gap = ordered[ordered.size() / 4];
   for (const DicomFrame* other : others) {
-    const double place = dot(other->position, normal);
+    const double position = dot(other->position, normal);
     for (std::size_t k = 0; k < gaps.size(); ++k) {
       const double from = dot(sorted[k]->position, normal);
-      const bool lone = place - from > 0.5 * usual && from + gaps[k] - place > 0.5 * usual && gaps[k] > 1.5 * usual;
-      if (!lone) continue;
+      const bool isolated =
+          position - from > 0.5 * typical_gap && from + gaps[k] - position > 0.5 * typical_gap && gaps[k] > 1.5 * typical_gap;
+      if (!isolated) continue;
       const DicomFrame& main = *sorted.front();
       const std::string name = files[other->file].name;
       if (!same_size(*other, main))
-        return fmt::format("{} has {} x {} pixels, expected {} x {} as the other slices", name, other->columns, other->rows, main.columns,
+        return fmt::format("{} has {} x {} pixels, expected {} x {} like the other slices", name, other->columns, other->rows, main.columns,
                            main.rows);
       if (!same_spacing(*other, main))
-        return fmt::format("{} has pixels of {:g} x {:g} mm, expected {:g} x {:g} as the other slices", name, other->column_spacing,
+        return fmt::format("{} has pixels of {:g} x {:g} mm, expected {:g} x {:g} like the other slices", name, other->column_spacing,
                            other->row_spacing, main.column_spacing, main.row_spacing);
     }
   }
@@ -283,25 +286,25 @@ void check_volume(DicomVolume& volume, const std::vector<DicomFile>& files) {
   const auto lacks = [&](const auto& has) { return !std::ranges::all_of(volume.frames, has); };
   if (lacks([](const DicomFrame* f) { return f->has_position; })) {
     if (!one)
-      volume.problem = fmt::format("its {} images have no ImagePositionPatient, expected a place for each slice", volume.frames.size());
+      volume.problem = fmt::format("the {} images have no ImagePositionPatient, expected a position for each slice", volume.frames.size());
     else
-      volume.notes.push_back("the header states no position (ImagePositionPatient): the image begins at 0 0 0");
+      volume.notes.push_back("the header has no ImagePositionPatient: the image begins at the origin");
   } else if (lacks([](const DicomFrame* f) { return f->has_orientation; })) {
-    volume.notes.push_back("the header states no ImageOrientationPatient: rows are taken along x, columns along y");
+    volume.notes.push_back("the header has no ImageOrientationPatient: rows are assumed along x and columns along y");
   }
   if (first.column_spacing == 0) {
     if (!one)
-      volume.problem = "the headers state no PixelSpacing, expected lengths";
+      volume.problem = "the headers have no PixelSpacing, expected positive lengths";
     else
-      volume.notes.push_back("the header states no PixelSpacing: lengths are counted in pixels");
+      volume.notes.push_back("the header has no PixelSpacing: lengths are in pixels");
   }
   if (one || !volume.problem.empty()) return;
   if (const std::size_t passes = interleaved_acquisitions(volume.frames, files[first.file]).size(); passes > 0)
-    volume.notes.push_back(fmt::format(
-        "its slices are of {} acquisitions (AcquisitionNumber) that lie between each other: they are taken for one scan", passes));
-  const double off = off_line(volume.frames), pixel = std::min(first.column_spacing, first.row_spacing);
+    volume.notes.push_back(
+        fmt::format("the slices come from {} interleaved acquisitions (AcquisitionNumber), which are read as one scan", passes));
+  const double off = distance_from_line(volume.frames), pixel = std::min(first.column_spacing, first.row_spacing);
   if (volume.frames.size() > 2 && off > 0.5 * pixel)
-    volume.problem = fmt::format("its slices are shifted against each other by up to {:.3g} mm, expected a straight stack", off);
+    volume.problem = fmt::format("the slices are shifted sideways by up to {:.3g} mm, expected a straight stack", off);
 }
 
 struct Series {
@@ -309,13 +312,13 @@ struct Series {
   Frames frames;
 };
 
-/// SeriesNumber as an integer without sign, leading zeros and blanks; any other text unchanged.
+/// Returns SeriesNumber as an integer without sign, leading zeros and blanks; any other text unchanged.
 std::string plain_number(const std::string& number) {
   const auto value = parse_integer(number.starts_with('+') ? number.substr(1) : number);
   return value ? std::to_string(*value) : sanitize_for_terminal(number);
 }
 
-/// Series in the order of their numbers. If no series has a number, they are counted from 1.
+/// Returns the series in the order of their numbers. If no series has a number, they are counted from 1.
 std::vector<Series> series_of(const std::vector<DicomFile>& files) {
   std::vector<Series> all;
   std::map<std::string, std::size_t> known;
@@ -352,13 +355,13 @@ std::vector<DicomVolume> group_dicom_volumes(const std::vector<DicomFile>& files
   std::vector<DicomVolume> volumes;
   std::size_t series_index = 0;
   for (const Series& series : series_of(files)) {
-    std::vector<DicomVolume> own;
+    std::vector<DicomVolume> series_volumes;
     const std::vector<Frames> parts = parted_by_geometry(series.frames, files);
     for (std::size_t p = 0; p < parts.size(); ++p) {
       std::vector<Part> stacks = stacks_of(parts[p], files[parts[p].front()->file]);
-      std::string torn;
-      for (std::size_t q = 0; q < parts.size() && torn.empty(); ++q)
-        if (q != p && parts[q].size() <= parts[p].size()) torn = torn_by(stacks.front().frames, parts[q], files);
+      std::string split_problem;
+      for (std::size_t q = 0; q < parts.size() && split_problem.empty(); ++q)
+        if (q != p && parts[q].size() <= parts[p].size()) split_problem = gap_problem(stacks.front().frames, parts[q], files);
       for (Part& stack : stacks) {
         DicomVolume volume;
         volume.series = volume.name = series.description;
@@ -368,15 +371,14 @@ std::vector<DicomVolume> group_dicom_volumes(const std::vector<DicomFile>& files
         if (p > 0) volume.name += ", " + geometry_suffix(*parts[p].front(), *parts[0].front(), files);
         if (!stack.suffix.empty()) volume.name += ", " + stack.suffix;
         volume.frames = std::move(stack.frames);
-        volume.problem = torn;
+        volume.problem = split_problem;
         if (stacks.size() > 1 && !stack.told_apart)
-          volume.notes.push_back(
-              "several images lie at one place, and their headers do not tell them apart: they are taken by their numbers");
+          volume.notes.push_back("several images have the same position and indistinguishable headers: they are separated by image number");
         check_volume(volume, files);
-        own.push_back(std::move(volume));
+        series_volumes.push_back(std::move(volume));
       }
     }
-    for (DicomVolume& volume : own) {
+    for (DicomVolume& volume : series_volumes) {
       volume.name = make_unique_name(volume.name, [&](const std::string& name) {
         return std::ranges::any_of(volumes, [&](const DicomVolume& other) { return other.name == name; });
       });

@@ -12,7 +12,7 @@ namespace catena::vtk {
 
 /// A stack of frames.
 struct DicomVolume {
-  std::string name;              ///< Name of the grid: the description of the series, and what distinguishes the volume within it.
+  std::string name;  ///< Name of the grid: the description of the series, and the attribute that distinguishes the volume within it.
   std::string volume_number;     ///< "3", or "3.2": the second volume with the SeriesNumber 3; empty: not in the header.
   std::string series;            ///< Description of the series alone.
   std::string series_number;     ///< SeriesNumber, which several series may share.
@@ -21,7 +21,7 @@ struct DicomVolume {
   std::size_t file = 0;
   std::vector<const DicomFrame*> frames;  ///< Ordered along the normal.
   bool is_image = true;                   ///< False: one of the files by itself is not a field (color images, frames in time).
-  std::string problem;                    ///< Why the volume is not a field, as a message fragment; empty: it is one.
+  std::string problem;                    ///< Message fragment: the reason that the volume is not a field; empty: it is one.
   std::vector<std::string> notes;
 };
 

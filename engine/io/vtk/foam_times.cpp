@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether the file is a volume field, by the class in its header, which begins within the length of the license banner; a compressed file
-/// counts by its name alone.
+/// Returns whether the file is a volume field, by the class in its header, which begins within the length of the license banner; a
+/// compressed file counts by its name alone.
 bool is_volume_field(const fs::path& path) {
   if (has_extension(path.string(), ".gz")) return true;
   std::array<char, 2048> head{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The registry of the formats that this program reads: the counterpart of remote_formats() in engine/io/volume/load_remote.cpp.
+// The formats that catena-read-vtk reads, with their readers: the counterpart of remote_formats() in engine/io/volume/load_remote.cpp.
 #include <fmt/format.h>
 
 #include <filesystem>

@@ -36,7 +36,7 @@ struct Gathered {
 
 void add(vtkPolyData& poly, const std::string& value_name, Gathered& all) {
   const auto base = static_cast<std::uint32_t>(all.points.size() / 3);
-  std::vector<bool> used(static_cast<std::size_t>(poly.GetNumberOfPoints()), false);
+  std::vector<bool> used_points(static_cast<std::size_t>(poly.GetNumberOfPoints()), false);
   for (vtkIdType i = 0; i < poly.GetNumberOfPoints(); ++i) {
     double p[3];
     poly.GetPoint(i, p);
@@ -45,7 +45,7 @@ void add(vtkPolyData& poly, const std::string& value_name, Gathered& all) {
   vtkIdType n = 0;
   const vtkIdType* ids = nullptr;
   const auto number = [&](vtkIdType i) {
-    used[static_cast<std::size_t>(i)] = true;
+    used_points[static_cast<std::size_t>(i)] = true;
     return base + static_cast<std::uint32_t>(i);
   };
   for (vtkCellArray* cells = poly.GetPolys(); cells->GetNextCell(n, ids);)
@@ -57,13 +57,13 @@ void add(vtkPolyData& poly, const std::string& value_name, Gathered& all) {
     all.ends.push_back(all.lines.size());
   }
   for (vtkIdType i = 0; i < poly.GetNumberOfPoints(); ++i)
-    if (!used[static_cast<std::size_t>(i)]) all.loose.push_back(base + static_cast<std::uint32_t>(i));
+    if (!used_points[static_cast<std::size_t>(i)]) all.loose.push_back(base + static_cast<std::uint32_t>(i));
   vtkDataArray* values = value_name.empty() ? nullptr : poly.GetPointData()->GetArray(value_name.c_str());
   for (vtkIdType i = 0; !value_name.empty() && i < poly.GetNumberOfPoints(); ++i)
     all.values.push_back(values != nullptr ? static_cast<float>(values->GetComponent(i, 0)) : std::numeric_limits<float>::quiet_NaN());
 }
 
-/// The data as vtkPolyData: polygons and strips as triangles, other cells unchanged.
+/// Returns the data as vtkPolyData: polygons and strips as triangles, other cells unchanged.
 vtkSmartPointer<vtkPolyData> poly_of(vtkDataSet* data) {
   vtkSmartPointer<vtkPolyData> poly = vtkPolyData::SafeDownCast(data);
   if (poly == nullptr) {
@@ -82,13 +82,13 @@ vtkSmartPointer<vtkPolyData> poly_of(vtkDataSet* data) {
 }
 
 template <class T>
-void put(const std::vector<T>& numbers, sandbox::ResponseFile& out, field::BufferRange& piece) {
+void write_buffer(const std::vector<T>& numbers, sandbox::ResponseFile& out, field::BufferRange& piece) {
   if (numbers.empty()) return;
   field::NanoMemory memory = out.allocate(numbers.size() * sizeof(T), piece);
   std::memcpy(memory.data(), numbers.data(), numbers.size() * sizeof(T));
 }
 
-/// The single-component array to color by: the active scalars, otherwise the first.
+/// Returns the name of the single-component array to color by: the active scalars, otherwise the first.
 std::string value_of(const ImportedData& opened) {
   for (const Block& block : opened.blocks) {
     vtkPointData* arrays = block.data->GetPointData();
@@ -128,21 +128,21 @@ field::PrimitiveKinds find_primitive_kinds(const ImportedData& opened) {
 Outcome write_geometry(const ImportedData& opened, std::uint64_t memory_bytes, sandbox::ResponseFile& out, field::ReadResponse& reply) {
   Gathered all;
   reply.geometry.value_name = value_of(opened);
-  const std::vector<ValidityMask> seen = make_validity_masks(opened, {});
+  const std::vector<ValidityMask> masks = make_validity_masks(opened, {});
   for (std::size_t b = 0; b < opened.blocks.size(); ++b) {
-    const vtkSmartPointer<vtkPolyData> poly = poly_of(extract_valid_cells(opened.blocks[b].data, seen[b]));
-    constexpr double kMostPoints = 4e9;
-    if (static_cast<double>(all.points.size() / 3) + static_cast<double>(poly->GetNumberOfPoints()) > kMostPoints)
+    const vtkSmartPointer<vtkPolyData> poly = poly_of(extract_valid_cells(opened.blocks[b].data, masks[b]));
+    constexpr double kMaxPoints = 4e9;
+    if (static_cast<double>(all.points.size() / 3) + static_cast<double>(poly->GetNumberOfPoints()) > kMaxPoints)
       return Error{"has more than 4e9 points"};
     add(*poly, reply.geometry.value_name, all);
   }
-  CATENA_CHECK(check_memory_available("what it shows", all.bytes(), memory_bytes));
-  put(all.points, out, reply.geometry.points);
-  put(all.triangles, out, reply.geometry.triangles);
-  put(all.lines, out, reply.geometry.lines);
-  put(all.ends, out, reply.geometry.line_ends);
-  put(all.loose, out, reply.geometry.loose_points);
-  put(all.values, out, reply.geometry.values);
+  CATENA_CHECK(check_memory_available("the geometry", all.bytes(), memory_bytes));
+  write_buffer(all.points, out, reply.geometry.points);
+  write_buffer(all.triangles, out, reply.geometry.triangles);
+  write_buffer(all.lines, out, reply.geometry.lines);
+  write_buffer(all.ends, out, reply.geometry.line_ends);
+  write_buffer(all.loose, out, reply.geometry.loose_points);
+  write_buffer(all.values, out, reply.geometry.values);
   return Done{};
 }
 

@@ -47,7 +47,7 @@ class Answer {
         path_(request.load_request.path),
         opened_(opened),
         columns_(list_field_arrays(opened)),
-        seen_(make_validity_masks(opened, request.load_request.mask_grid.value_or(std::string()))),
+        masks_(make_validity_masks(opened, request.load_request.mask_grid.value_or(std::string()))),
         out_(out) {}
 
   Outcome load(ReadResponse& response) {
@@ -58,7 +58,7 @@ class Answer {
     response.dense.type = type_of(opened_, *column);
     if (looks_byte_swapped(*column->find_in(opened_.blocks[column->block_indices.front()]), path_))
       response.notes.push_back(byte_order_advice(path_));
-    if (column->components == 2) response.notes.push_back("vectors of two components have got a third, 0");
+    if (column->components == 2) response.notes.push_back("the vectors have two components; the third is set to 0");
     if (const auto image = find_image_grid(opened_, *column)) return load_image(*column, *image, response);
     return load_cells(*column, response);
   }
@@ -69,21 +69,21 @@ class Answer {
       info.name = column.name;
       info.type = type_of(opened_, column);
       info.is_vector = column.components > 1;
-      info.stats = compute_stats(opened_, column, seen_);
-      info.display_range = compute_display_range(opened_, column, seen_, info.stats);
+      info.stats = compute_stats(opened_, column, masks_);
+      info.display_range = compute_display_range(opened_, column, masks_, info.stats);
       info.is_usable = info.stats.active_voxels > info.stats.nan_count;
       if (const auto image = find_image_grid(opened_, column)) {
         info.size = image->size;
         info.mapping = image->mapping;
       } else {
-        std::vector<vtkSmartPointer<vtkDataSet>> keep;
+        std::vector<vtkSmartPointer<vtkDataSet>> owned;
         sandbox::extend_cpu_limit(kSecondsPerVoxel * room_for(column).voxels);
-        const std::vector<CellValues> cells = make_cell_values(opened_, column, seen_, keep);
+        const std::vector<CellValues> cells = make_cell_values(opened_, column, masks_, owned);
         const auto plan = plan_resampling(cells, room_for(column).voxels);
         info.is_usable = info.is_usable && plan;
         info.element_kind = column.is_cell_data ? field::ElementKind::cells : field::ElementKind::points;
         if (plan) {
-          info.type += ", resampled to so many voxels or more";
+          info.type += ", resampled to at least this many voxels";
           info.size = plan->grid.size;
           info.mapping = mapping_of(plan->grid);
           if (const std::string less = coarsened(column, cells, *plan); !less.empty()) response.notes.push_back(column.name + ": " + less);
@@ -116,22 +116,22 @@ class Answer {
     double voxels, of_file;
   };
   Room room_for(const FieldArray& column) const {
-    constexpr double kMost = 96e6, kLeast = 8e6, kPerCell = 200, kShare = 0.25;
+    constexpr double kMaxVoxels = 96e6, kMinVoxels = 8e6, kPerCell = 200, kShare = 0.25;
     double cells = 0;
     for (const std::size_t b : column.block_indices) cells += static_cast<double>(opened_.blocks[b].data->GetNumberOfCells());
-    const double of_file = std::clamp(kPerCell * cells, kLeast, kMost);
+    const double of_file = std::clamp(kPerCell * cells, kMinVoxels, kMaxVoxels);
     if (request_.user_memory_limit == 0) return {of_file, of_file};
     return {std::min(of_file, kShare * static_cast<double>(request_.user_memory_limit) / bytes_a_voxel(column)), of_file};
   }
 
-  /// Message fragment about the resolution lost by the user's memory limit; empty if nothing is lost.
+  /// Returns a message fragment about the resolution lost by the user's memory limit; empty if nothing is lost.
   std::string coarsened(const FieldArray& column, const std::vector<CellValues>& cells, const ResamplePlan& plan) const {
     const Room room = room_for(column);
     if (room.voxels == room.of_file) return {};
-    const auto whole = plan_resampling(cells, room.of_file);
-    if (!whole || whole->grid.voxel_count() == plan.grid.voxel_count()) return {};
-    const field::Index3 &n = plan.grid.size, &w = whole->grid.size;
-    return fmt::format("--memory {:.6g} has it resampled to {} x {} x {} voxels instead of {} x {} x {}",
+    const auto full_plan = plan_resampling(cells, room.of_file);
+    if (!full_plan || full_plan->grid.voxel_count() == plan.grid.voxel_count()) return {};
+    const field::Index3 &n = plan.grid.size, &w = full_plan->grid.size;
+    return fmt::format("--memory {:.6g} limits the resampled grid to {} x {} x {} voxels instead of {} x {} x {}",
                        1e-6 * static_cast<double>(request_.user_memory_limit), n.x, n.y, n.z, w.x, w.y, w.z);
   }
 
@@ -141,29 +141,29 @@ class Answer {
     if (request_.user_memory_limit != 0 || bytes <= static_cast<double>(request_.memory_bytes)) return Done{};
     const double free = std::floor(1e-6 * static_cast<double>(request_.memory_bytes));
     return Error{fmt::format(
-        "{}: {} resampled to {} x {} x {} voxels needs {:.0f} MB of memory, expected at most {:.0f} MB; --memory {:.0f} "
-        "resamples it to fewer voxels",
+        "{}: {}, resampled to {} x {} x {} voxels, needs {:.0f} MB of memory, expected at most {:.0f} MB; --memory {:.0f} "
+        "resamples to fewer voxels",
         path_, column.name, lattice.size.x, lattice.size.y, lattice.size.z, std::ceil(1e-6 * bytes), free, std::max(1.0, free))};
   }
 
   bool has_volume(const FieldArray& column) const {
-    std::vector<vtkSmartPointer<vtkDataSet>> keep;
-    return find_image_grid(opened_, column) || !make_cell_values(opened_, column, seen_, keep).empty();
+    std::vector<vtkSmartPointer<vtkDataSet>> owned;
+    return find_image_grid(opened_, column) || !make_cell_values(opened_, column, masks_, owned).empty();
   }
 
   Result<const FieldArray*> choose() const {
     const std::string& name = request_.load_request.grid;
-    if (columns_.empty()) return Error{path_ + ": there are no values in the file that a field could be made of"};
-    const bool chosen = name.empty() || !opened_.name.empty();  // chosen by the opening function, under another name too
-    if (chosen && columns_.size() == 1) return &columns_.front();
+    if (columns_.empty()) return Error{path_ + ": the file has no values that can become a field"};
+    const bool is_chosen = name.empty() || !opened_.name.empty();  // the opening function may have chosen the array by another name
+    if (is_chosen && columns_.size() == 1) return &columns_.front();
     if (name.empty()) {
       std::vector<FieldArray> fields;
       std::ranges::copy_if(columns_, std::back_inserter(fields), [&](const FieldArray& column) { return has_volume(column); });
       if (fields.empty())
-        return Error{fmt::format("{}: the cells of {} have no volume (surfaces, lines or points), so that no field can be made of them",
-                                 path_, list_of(columns_))};
+        return Error{fmt::format("{}: the cells of {} have no volume (surfaces, lines or points), expected cells with a volume", path_,
+                                 list_of(columns_))};
       if (fields.size() == 1) return &*std::ranges::find(columns_, fields.front().name, &FieldArray::name);
-      return Error{fmt::format("{}: the file has several grids, name one of: {}", path_, list_of(fields))};
+      return Error{fmt::format("{}: the file has several grids, expected the name of one of: {}", path_, list_of(fields))};
     }
     for (const FieldArray& column : columns_)
       if (column.name == name) return &column;
@@ -192,20 +192,20 @@ class Answer {
   Outcome load_image(const FieldArray& column, const ImageGrid& grid, ReadResponse& response) {
     float* values = nullptr;
     std::uint8_t *valid = nullptr, *cells = nullptr;
-    const ValidityMask& seen = seen_[column.block_indices.front()];
-    CATENA_CHECK(allocate(grid.size, response, values, valid, seen.cells.empty() || column.is_cell_data ? nullptr : &cells));
+    const ValidityMask& validity = masks_[column.block_indices.front()];
+    CATENA_CHECK(allocate(grid.size, response, values, valid, validity.cells.empty() || column.is_cell_data ? nullptr : &cells));
     response.mapping = grid.mapping;
     const std::string mask = request_.load_request.mask_grid.value_or(std::string());
     if (request_.load_request.mask_required && column.find_in(opened_.blocks[column.block_indices.front()]) != nullptr && !has_array(mask))
       return Error{fmt::format("{}: there is no mask \"{}\"", path_, mask)};
-    const ImageWriteResult written = write_image(opened_, column, grid, seen, values, valid, cells);
+    const ImageWriteResult written = write_image(opened_, column, grid, validity, values, valid, cells);
     if (!written.has_cell_mask) response.dense.cells = {};
     if (written.all_valid && !written.has_cell_mask) response.dense.valid = {};
     if (column.is_cell_data)
-      response.notes.push_back(fmt::format("{} belongs to cells: its values sit in their middles{}", column.name,
-                                           written.all_valid ? "" : ", and holes reach to the middles of the cells around them"));
-    if (grid.is_flat[0] || grid.is_flat[1] || grid.is_flat[2]) response.notes.push_back("what is flat has got a thickness of one voxel");
-    if (!written.is_exact) response.notes.push_back(fmt::format("values of type {} are rounded to 32-bit floats", response.dense.type));
+      response.notes.push_back(fmt::format("{} has cell values, which are placed at the cell centres{}", column.name,
+                                           written.all_valid ? "" : "; holes extend to the centres of the surrounding cells"));
+    if (grid.is_flat[0] || grid.is_flat[1] || grid.is_flat[2]) response.notes.push_back("flat data get a thickness of one voxel");
+    if (!written.is_exact) response.notes.push_back(fmt::format("values of type {} were rounded to 32-bit floats", response.dense.type));
     return Done{};
   }
 
@@ -218,84 +218,86 @@ class Answer {
 
   Outcome load_cells(const FieldArray& column, ReadResponse& response) {
     sandbox::extend_cpu_limit(kSecondsPerVoxel * room_for(column).voxels);
-    std::vector<vtkSmartPointer<vtkDataSet>> keep;
-    const std::vector<CellValues> cells = make_cell_values(opened_, column, seen_, keep);
+    std::vector<vtkSmartPointer<vtkDataSet>> owned;
+    const std::vector<CellValues> cells = make_cell_values(opened_, column, masks_, owned);
     const auto refused = [&](const Error& e) {
-      return Error{fmt::format("{}: {} {}, so that no field can be made of it", path_, column.name, e.message)};
+      return Error{fmt::format("{}: {} {} and cannot become a field", path_, column.name, e.message)};
     };
     const auto plan = plan_resampling(cells, room_for(column).voxels);
     if (!plan) return refused(plan.error());
     CATENA_CHECK(check_room(column, plan->grid));
-    const auto made = resample(cells, *plan, room_for(column).voxels);
-    if (!made) return refused(made.error());
-    const field::Index3& n = made->grid.size;
+    const auto result = resample(cells, *plan, room_for(column).voxels);
+    if (!result) return refused(result.error());
+    const field::Index3& n = result->grid.size;
     float* values = nullptr;
     std::uint8_t *valid = nullptr, *own_cells = nullptr;
-    const bool masked = needs_cell_mask(n, made->valid.data(), made->cells.data());
+    const bool masked = needs_cell_mask(n, result->valid.data(), result->cells.data());
     CATENA_CHECK(allocate(n, response, values, valid, masked ? &own_cells : nullptr));
-    response.mapping = mapping_of(made->grid);
-    std::copy(made->values.begin(), made->values.end(), values);
-    std::copy(made->valid.begin(), made->valid.end(), valid);
-    if (masked) std::copy(made->cells.begin(), made->cells.end(), own_cells);
-    const field::GridStats stats = compute_stats(opened_, column, seen_);
+    response.mapping = mapping_of(result->grid);
+    std::copy(result->values.begin(), result->values.end(), values);
+    std::copy(result->valid.begin(), result->valid.end(), valid);
+    if (masked) std::copy(result->cells.begin(), result->cells.end(), own_cells);
+    const field::GridStats stats = compute_stats(opened_, column, masks_);
     response.dense.has_range = true;
-    response.dense.range = compute_display_range(opened_, column, seen_, stats);
+    response.dense.range = compute_display_range(opened_, column, masks_, stats);
     // the note about the resampling
     vtkIdType count = 0;
     for (const CellValues& block : cells) count += block.data->GetNumberOfCells();
     std::string of = response.is_vector ? "largest length" : "range";
-    if (made->range.has_outliers()) of += fmt::format(" without outliers, {:.4g} to {:.4g}", made->range.lo, made->range.hi);
+    if (result->range.has_outliers()) of += fmt::format(" without outliers, {:.4g} to {:.4g}", result->range.lo, result->range.hi);
     std::string note = fmt::format(
-        "{} cells resampled to {} x {} x {} voxels: at random places inside the cells it differs by {:.2g} % of the {} (99 % of them; at "
-        "most {:.2g} %)",
-        count, n.x, n.y, n.z, made->error.p99, of, made->error.max);
-    if (made->error.p99 > kTargetError && made->refinement_stalled)
-      note += "; finer voxels hardly help: the values jump, or bend, within less than a voxel";
-    else if (made->error.p99 > kTargetError)
-      note += fmt::format("; less than {:g} % would take about {:.2g} million voxels, more than the {:.2g} million that {}", kTargetError,
-                          1e-6 * made->required_voxels, 1e-6 * room_for(column).voxels,
-                          room_for(column).voxels < room_for(column).of_file ? "--memory allows" : "a file of so many cells gets");
+        "{} cells were resampled to {} x {} x {} voxels: at 99 % of random positions inside the cells the grid differs by at most {:.2g} % "
+        "of the {} (maximum {:.2g} %)",
+        count, n.x, n.y, n.z, result->error.p99, of, result->error.max);
+    if (result->error.p99 > kTargetError && result->refinement_stalled)
+      note += "; finer voxels do not reduce the error, because the values change abruptly within less than a voxel";
+    else if (result->error.p99 > kTargetError)
+      note +=
+          fmt::format("; an error below {:g} % needs about {:.2g} million voxels, more than the {:.2g} million that {}", kTargetError,
+                      1e-6 * result->required_voxels, 1e-6 * room_for(column).voxels,
+                      room_for(column).voxels < room_for(column).of_file ? "--memory allows" : "a file with this number of cells may use");
     response.notes.push_back(note);
     if (column.is_cell_data)
-      response.notes.push_back(fmt::format("{} belongs to cells: its values were averaged at the points first", column.name));
+      response.notes.push_back(fmt::format("{} has cell values, which were averaged at the points before resampling", column.name));
     if (stats.nan_count > 0)
-      response.notes.push_back(fmt::format("{} values of {} are not finite: no cell that has one is read", stats.nan_count,
+      response.notes.push_back(fmt::format("{} values at {} are not finite: cells with such a value are left out", stats.nan_count,
                                            column.is_cell_data ? "cells" : "points"));
-    add_losses(response, *made, stats);
+    add_losses(response, *result, stats);
     if (const std::string less = coarsened(column, cells, *plan); !less.empty()) response.notes.push_back(less);
-    if (!masked && std::all_of(made->valid.begin(), made->valid.end(), [](std::uint8_t v) { return v != 0; })) response.dense.valid = {};
+    if (!masked && std::all_of(result->valid.begin(), result->valid.end(), [](std::uint8_t v) { return v != 0; }))
+      response.dense.valid = {};
     return Done{};
   }
 
   /// Adds notes about errors of the mask over the whole box, and about extreme values lost in cells that are smaller than voxels.
-  static void add_losses(ReadResponse& response, const ResampleResult& made, const field::GridStats& stats) {
-    const ResampleShares& shares = made.shares;
+  static void add_losses(ReadResponse& response, const ResampleResult& result, const field::GridStats& stats) {
+    const ResampleShares& shares = result.shares;
     if (shares.falsely_inside + shares.falsely_outside > 0) {
       std::string note = fmt::format(
-          "of random places in the whole box {:.2g} % are outside the cells, less than a voxel from one, and have a value; {:.2g} % are "
-          "inside "
-          "and have none",
+          "{:.2g} % of random positions in the whole box are outside the cells by less than a voxel, but have a value; {:.2g} % are inside "
+          "the cells, but have no value",
           100 * shares.falsely_inside, 100 * shares.falsely_outside);
       if (shares.filled_gaps > 0)
-        note += fmt::format("; {:.2g} % are in the middle of gaps too narrow for these voxels, which are filled", 100 * shares.filled_gaps);
+        note += fmt::format("; {:.2g} % are in the middle of gaps that are filled because they are too narrow for these voxels",
+                            100 * shares.filled_gaps);
       response.notes.push_back(note);
     }
     const double range = response.is_vector ? stats.max : stats.max - stats.min;
-    const bool top = stats.max - made.max_value > 0.01 * kTargetError * range,
-               bottom = !response.is_vector && made.min_value - stats.min > 0.01 * kTargetError * range;
-    if (top)
+    const bool maximum_lost = stats.max - result.max_value > 0.01 * kTargetError * range,
+               bottom = !response.is_vector && result.min_value - stats.min > 0.01 * kTargetError * range;
+    if (maximum_lost)
       response.notes.push_back(
-          fmt::format("the greatest value, {:.6g}, is lost: at its place the grid has {:.6g}", stats.max, made.max_value));
+          fmt::format("the maximum, {:.6g}, is lost: the grid has {:.6g} at this position", stats.max, result.max_value));
     if (bottom)
       response.notes.push_back(
-          fmt::format("the least value, {:.6g}, is lost: at its place the grid has {:.6g}", stats.min, made.min_value));
+          fmt::format("the minimum, {:.6g}, is lost: the grid has {:.6g} at this position", stats.min, result.min_value));
   }
 
   const ReadRequest& request_;
   const std::string& path_;
   const ImportedData& opened_;
   std::vector<FieldArray> columns_;
-  std::vector<ValidityMask> seen_;  ///< by block
+  std::vector<ValidityMask> masks_;  ///< by block
   sandbox::ResponseFile& out_;
   field::NanoMemory values_, valid_, cells_;
 };
@@ -342,14 +344,14 @@ Outcome answer_opened(const ReadRequest& request, const ImportedData& opened, sa
       return answer.load(response);
     case field::ReadMode::describe:
       if (!opened.deferred_volumes.empty()) return describe_later(request, opened, out, response);
-      for (const std::string& other : list_unsupported_arrays(opened)) response.notes.push_back(other + " is left out");
+      for (const std::string& other : list_unsupported_arrays(opened)) response.notes.push_back(other + " was left out");
       return answer.describe(response);
     case field::ReadMode::geometry:
       for (const Block& block : opened.blocks)
         if (auto* points = vtkPointSet::SafeDownCast(block.data);
             points != nullptr && looks_byte_swapped(*points->GetPoints()->GetData(), request.load_request.path))
-          return Error{
-              fmt::format("{}: its places are no shape: {}", request.load_request.path, byte_order_advice(request.load_request.path))};
+          return Error{fmt::format("{}: the point positions are implausible: {}", request.load_request.path,
+                                   byte_order_advice(request.load_request.path))};
       if (const auto done = write_geometry(opened, request.memory_bytes, out, response); !done)
         return Error{fmt::format("{}: {}", request.load_request.path, done.error().message)};
       return Done{};
@@ -373,7 +375,7 @@ std::string with_step(const std::string& what, const ReadRequest& request, const
   later.step = static_cast<int>(last);
   const auto other = open_any(later);
   take_reader_errors();
-  if (other && has(list_field_arrays(*other))) text += fmt::format("; step {} (time {:g}) has it", last, opened.times[last]);
+  if (other && has(list_field_arrays(*other))) text += fmt::format("; step {} (time {:g}) has this grid", last, opened.times[last]);
   return text;
 }
 
@@ -395,10 +397,10 @@ ReadResponse handle_request(const ReadRequest& request, const std::string& path,
     const auto done = answer_opened(request, *opened, out, response);
     return done ? response : failed(with_step(done.error().message, request, source, *opened));
   } catch (const std::bad_alloc&) {
-    return failed(request.load_request.path + ": not enough memory to read it (or the file is damaged)");
+    return failed(request.load_request.path + ": there is not enough memory to read the file, or the file is damaged");
   } catch (const std::exception& e) {
     out.report(e);
-    return failed(fmt::format("{}: the file is damaged or of an unknown kind ({})", request.load_request.path, strip_addresses(e.what())));
+    return failed(fmt::format("{}: the file is damaged or its type is unknown ({})", request.load_request.path, strip_addresses(e.what())));
   }
 }
 

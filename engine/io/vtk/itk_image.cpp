@@ -95,8 +95,8 @@ Result<ImageExtent> read_image_extent(const itk::ImageIOBase& io) {
   for (unsigned a = 0; a < io.GetNumberOfDimensions(); ++a) {
     const auto n = io.GetDimensions(a);
     all *= static_cast<double>(n);
-    if (n < 1 || n > 1'000'000) return Error{fmt::format("the size along axis {} is {}, expected 1 to 1000000", a, n)};
-    if (all > 1e12) return Error{fmt::format("the sizes of the first {} axes make {:.3g} voxels, expected at most 1e12", a + 1, all)};
+    if (n < 1 || n > 1'000'000) return Error{fmt::format("the size of axis {} is {}, expected 1 to 1000000", a + 1, n)};
+    if (all > 1e12) return Error{fmt::format("the first {} axes have {:.3g} voxels, expected at most 1e12", a + 1, all)};
     if (a < 3)
       shape.size[a] = static_cast<int>(n);
     else

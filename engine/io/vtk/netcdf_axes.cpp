@@ -84,9 +84,9 @@ NetcdfDimension read_netcdf_dimension(int file, int dimension) {
   char name[NC_MAX_NAME + 1] = "";
   nc_inq_dimname(file, dimension, name);
   NetcdfDimension found;
-  int variable = 0, own = -1, dimensions = 0;
+  int variable = 0, own_dimension = -1, dimensions = 0;
   if (nc_inq_varid(file, name, &variable) == NC_NOERR && nc_inq_varndims(file, variable, &dimensions) == NC_NOERR && dimensions == 1 &&
-      nc_inq_vardimid(file, variable, &own) == NC_NOERR && own == dimension) {
+      nc_inq_vardimid(file, variable, &own_dimension) == NC_NOERR && own_dimension == dimension) {
     const auto word = [&](const char* attribute) { return lowered(one_line(read_netcdf_text(file, variable, attribute))); };
     found.unit = read_netcdf_text(file, variable, "units");
     found.axis = axis_of_attribute(word("axis"));
@@ -103,22 +103,22 @@ NetcdfDimension read_netcdf_dimension(int file, int dimension) {
 
 AxisOrder compute_axis_order(const std::array<NetcdfAxis, 3>& axes) {
   AxisOrder order{-1, -1, -1};
-  std::array<bool, 3> placed{};
-  const auto put = [&](std::size_t from, std::size_t to) {
+  std::array<bool, 3> assigned{};
+  const auto assign = [&](std::size_t from, std::size_t to) {
     order[to] = static_cast<int>(from);
-    placed[from] = true;
+    assigned[from] = true;
   };
   for (std::size_t a = 0; a < 3; ++a) {
-    const auto wanted = static_cast<std::size_t>(axes[a]);
-    if (wanted >= 3) continue;
-    if (order[wanted] >= 0) return kFileOrder;
-    put(a, wanted);
+    const auto target = static_cast<std::size_t>(axes[a]);
+    if (target >= 3) continue;
+    if (order[target] >= 0) return kFileOrder;
+    assign(a, target);
   }
   for (std::size_t a = 0; a < 3; ++a)
-    if (!placed[a] && order[a] < 0) put(a, a);
+    if (!assigned[a] && order[a] < 0) assign(a, a);
   for (std::size_t a = 0; a < 3; ++a)
-    for (std::size_t to = 0; to < 3 && !placed[a]; ++to)
-      if (order[to] < 0) put(a, to);
+    for (std::size_t to = 0; to < 3 && !assigned[a]; ++to)
+      if (order[to] < 0) assign(a, to);
   return order;
 }
 

@@ -21,12 +21,12 @@ enum class NetcdfAxis { x, y, z, time, unknown };
 struct NetcdfDimension {
   NetcdfAxis axis = NetcdfAxis::unknown;
   bool guessed_from_name = false;  ///< No attribute specifies the axis; it was guessed from the name.
-  std::string unit;                ///< Of the coordinate variable, as in the file.
+  std::string unit;                ///< Unit of the coordinate variable, as in the file.
 };
 /// Identifies a dimension of an open file, by its NetCDF ids.
 NetcdfDimension read_netcdf_dimension(int file, int dimension);
 
-/// [a]: which axis of the data lies along world axis a. Unknown axes fill the remaining positions.
+/// Order of axes. [a]: index of the data's axis that lies along world axis a. Unknown axes fill the remaining positions.
 using AxisOrder = std::array<int, 3>;
 inline constexpr AxisOrder kFileOrder{0, 1, 2};
 /// Computes the order from the axes in storage order, fastest first. If two are the same axis, the order of the file is retained.

@@ -19,7 +19,7 @@
 namespace catena::vtk {
 namespace {
 
-constexpr std::uint64_t kMostEntries = 1'000'000;
+constexpr std::uint64_t kMaxEntries = 1'000'000;
 
 class Header {
  public:
@@ -34,15 +34,15 @@ class Header {
   }
   std::uint64_t number() { return bytes(version_ == 5 ? 8 : 4); }
   std::uint64_t offset() { return bytes(version_ == 1 ? 4 : 8); }
-  /// Number of entries of a list, after its tag.
+  /// Returns the number of entries of a list, after its tag.
   std::uint64_t entries() {
     bytes(4);
     const std::uint64_t count = number();
-    if (count > kMostEntries) fail();
+    if (count > kMaxEntries) fail();
     return ok() ? count : 0;
   }
   void skip(std::uint64_t count) {
-    if (count > kMostEntries * 1024) fail();
+    if (count > kMaxEntries * 1024) fail();
     in_.ignore(static_cast<std::streamsize>((count + 3) / 4 * 4));
   }
   void skip_name() { skip(number()); }
@@ -50,12 +50,12 @@ class Header {
     for (std::uint64_t n = entries(); n > 0 && ok(); --n) {
       skip_name();
       const std::uint64_t size = type_bytes(bytes(4)), count = number();
-      if (count > kMostEntries * 1024) fail();
+      if (count > kMaxEntries * 1024) fail();
       skip(size * count);
     }
   }
-  /// Bytes of NC_BYTE, NC_CHAR, NC_SHORT, NC_INT, NC_FLOAT, NC_DOUBLE, NC_UBYTE, NC_USHORT, NC_UINT, NC_INT64, NC_UINT64, which are 1
-  /// to 11.
+  /// Returns the bytes of NC_BYTE, NC_CHAR, NC_SHORT, NC_INT, NC_FLOAT, NC_DOUBLE, NC_UBYTE, NC_USHORT, NC_UINT, NC_INT64, NC_UINT64, which
+  /// are 1 to 11.
   std::uint64_t type_bytes(std::uint64_t type) {
     constexpr std::uint64_t kBytes[] = {1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
     if (type < 1 || type > std::size(kBytes)) fail();
@@ -73,7 +73,7 @@ class Header {
 };
 
 struct Variable {
-  std::uint64_t begin, bytes;  ///< for a record variable: of one record
+  std::uint64_t begin, bytes;  ///< offset of the first value, and size; for a record variable: size of one record
   bool of_records;
 };
 
@@ -98,9 +98,9 @@ Outcome check_netcdf_size(const std::string& path) {
     double values = 1;
     bool of_records = false;
     std::uint64_t dimensions = header.number();
-    if (dimensions > kMostEntries) header.fail();
+    if (dimensions > kMaxEntries) header.fail();
     for (std::uint64_t d = 0; d < dimensions && header.ok(); ++d) {
-      const std::uint64_t which = header.number(), length = which < lengths.size() ? lengths[which] : 0;
+      const std::uint64_t dimension = header.number(), length = dimension < lengths.size() ? lengths[dimension] : 0;
       of_records = of_records || (d == 0 && length == 0);
       if (d > 0 || length > 0) values *= static_cast<double>(length);
     }
@@ -120,8 +120,8 @@ Outcome check_netcdf_size(const std::string& path) {
   double end = 0;
   for (const Variable& v : variables) {
     if (v.bytes == 0 || (v.of_records && (!known || records == 0))) continue;
-    const double before = v.of_records ? record * static_cast<double>(records - 1) : 0;
-    end = std::max(end, static_cast<double>(v.begin) + before + static_cast<double>(v.bytes));
+    const double bytes_before = v.of_records ? record * static_cast<double>(records - 1) : 0;
+    end = std::max(end, static_cast<double>(v.begin) + bytes_before + static_cast<double>(v.bytes));
   }
   if (end > static_cast<double>(size)) return Error{kTruncatedMessage};
   return Done{};

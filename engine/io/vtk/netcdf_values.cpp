@@ -27,8 +27,8 @@ struct Numbers {
 Numbers numbers_at(int file, int variable, const char* name) {
   Numbers numbers;
   std::size_t count = 0;
-  constexpr std::size_t kMost = 10'000;
-  if (nc_inq_att(file, variable, name, &numbers.type, &count) != NC_NOERR || count == 0 || count > kMost) return {};
+  constexpr std::size_t kMaxAttributeNumbers = 10'000;
+  if (nc_inq_att(file, variable, name, &numbers.type, &count) != NC_NOERR || count == 0 || count > kMaxAttributeNumbers) return {};
   const auto read = [&]<class T>(T, auto get) {
     std::vector<T> raw(count);
     if (get(file, variable, name, raw.data()) == NC_NOERR) numbers.list.assign(raw.begin(), raw.end());
@@ -47,7 +47,7 @@ Numbers numbers_at(int file, int variable, const char* name) {
   return numbers;
 }
 
-/// Rank of the numeric types by what they can represent.
+/// Returns the rank of a numeric type by the values that it can represent.
 int width_of(nc_type type) {
   switch (type) {
     case NC_BYTE:
@@ -71,13 +71,15 @@ int width_of(nc_type type) {
   }
 }
 
-/// An attribute's number as a stored number of the variable; an integer that differs only in signedness is converted with the same bits.
+/// Returns an attribute's number as a stored number of the variable; an integer that differs only in signedness is converted with the same
+/// bits.
 template <class T>
 long double as_stored(long double v) {
   if constexpr (std::is_integral_v<T>) {
-    const long double all = std::ldexp(1.0L, 8 * sizeof(T)), least = std::numeric_limits<T>::min(), most = std::numeric_limits<T>::max();
-    if (v < least && v >= -all / 2) return v + all;
-    if (v > most && v < all) return v - all;
+    const long double all = std::ldexp(1.0L, 8 * sizeof(T)), minimum = std::numeric_limits<T>::min(),
+                      maximum = std::numeric_limits<T>::max();
+    if (v < minimum && v >= -all / 2) return v + all;
+    if (v > maximum && v < all) return v - all;
     return v;
   } else {
     return static_cast<long double>(static_cast<T>(v));
@@ -102,9 +104,9 @@ class TypedVariable {
     if (range.list.size() == 2) {
       limit(range.type, range.list[0], range.list[1]);
     } else {
-      const Numbers least = at("valid_min"), most = at("valid_max");
-      if (least.list.size() == 1) limit(least.type, least.list[0], std::nullopt);
-      if (most.list.size() == 1) limit(most.type, std::nullopt, most.list[0]);
+      const Numbers minimum = at("valid_min"), maximum = at("valid_max");
+      if (minimum.list.size() == 1) limit(minimum.type, minimum.list[0], std::nullopt);
+      if (maximum.list.size() == 1) limit(maximum.type, std::nullopt, maximum.list[0]);
     }
   }
 
@@ -117,17 +119,17 @@ class TypedVariable {
     T* numbers = static_cast<T*>(stored->GetVoidPointer(0));
     if (const int code = nc_get_vara(part_.file, part_.variable, part_.start.data(), part_.count.data(), numbers); code != NC_NOERR)
       return Error{nc_strerror(code)};
-    std::size_t filled = 0, beyond = 0;
+    std::size_t filled = 0, out_of_range = 0;
     for (std::size_t i = 0; i < all; ++i) {
       if (is_hole(numbers[i]))
         ++filled;
       else if (is_beyond(numbers[i]))
-        ++beyond;
+        ++out_of_range;
     }
-    if (beyond > 0)
-      notes.push_back(fmt::format("{} of {} values are outside the file's valid range ({} .. {}): they are holes", beyond, all,
-                                  in_words(least_), in_words(most_)));
-    if (filled + beyond == 0 && scale_.is_identity()) return stored;
+    if (out_of_range > 0)
+      notes.push_back(fmt::format("{} of {} values are outside the valid range of the file ({} .. {}) and are read as holes", out_of_range,
+                                  all, in_words(least_), in_words(most_)));
+    if (filled + out_of_range == 0 && scale_.is_identity()) return stored;
     constexpr bool kSmall = std::is_same_v<T, float> || (std::is_integral_v<T> && sizeof(T) <= 2);
     const bool single = kSmall && (scale_.is_identity() || value_type_ == NC_FLOAT);
     const auto values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(single ? VTK_FLOAT : VTK_DOUBLE));
@@ -146,7 +148,7 @@ class TypedVariable {
   void add_holes(const Numbers& numbers, bool in_either_units) {
     for (const long double number : numbers.list) {
       holes_.push_back(static_cast<Wide>(as_stored<T>(number)));
-      // doubles and their fill value, or one of them, have often been rounded to single precision
+      // often doubles, their fill value, or both are rounded to single precision
       if (std::is_same_v<T, double>) rounded_holes_.push_back(static_cast<float>(number));
       if (in_either_units && !scale_.is_identity()) value_holes_.push_back(static_cast<double>(number));
     }
@@ -154,7 +156,7 @@ class TypedVariable {
 
   void add_default_fill() {
     if (sizeof(T) == 1) return;
-    // in the file's own type, of which T may be the unsigned form
+    // the fill value has the type of the file; T may be its unsigned form
     int without = 0;
     alignas(8) unsigned char raw[8] = {};
     if (nc_inq_var_fill(part_.file, part_.variable, &without, raw) != NC_NOERR || without != 0) return;
@@ -163,13 +165,13 @@ class TypedVariable {
     holes_.push_back(static_cast<Wide>(fill));
   }
 
-  void limit(nc_type type, std::optional<long double> least, std::optional<long double> most) {
+  void limit(nc_type type, std::optional<long double> minimum, std::optional<long double> maximum) {
     limits_values_ = !scale_.is_identity() && type == value_type_ && width_of(type) > width_of(type_);
     const auto bound = [&](std::optional<long double> v, std::optional<Wide>& to) {
       if (v && !std::isnan(*v)) to = static_cast<Wide>(limits_values_ ? *v : as_stored<T>(*v));
     };
-    bound(least, least_);
-    bound(most, most_);
+    bound(minimum, least_);
+    bound(maximum, most_);
     if (least_ && most_ && *least_ > *most_) least_ = most_ = std::nullopt;
   }
 
@@ -199,8 +201,8 @@ class TypedVariable {
   void unpack(const T* stored, std::size_t count, Value* values) const {
     for (std::size_t i = 0; i < count; ++i) {
       const bool bad = is_hole(stored[i]) || is_beyond(stored[i]);
-      const Value plain = scale_.is_identity() ? static_cast<Value>(stored[i]) : static_cast<Value>(value_of(stored[i]));
-      values[i] = bad ? std::numeric_limits<Value>::quiet_NaN() : plain;
+      const Value value = scale_.is_identity() ? static_cast<Value>(stored[i]) : static_cast<Value>(value_of(stored[i]));
+      values[i] = bad ? std::numeric_limits<Value>::quiet_NaN() : value;
     }
   }
 
@@ -219,16 +221,16 @@ class TypedVariable {
 std::string read_netcdf_text(int file, int variable, const char* name) {
   std::size_t count = 0;
   nc_type type = NC_NAT;
-  constexpr std::size_t kMost = 1000;
+  constexpr std::size_t kMaxTextBytes = 1000;
   if (nc_inq_att(file, variable, name, &type, &count) != NC_NOERR) return {};
   if (type == NC_STRING && count == 1) {
     char* words = nullptr;
     if (nc_get_att_string(file, variable, name, &words) != NC_NOERR) return {};
-    const std::string text = words != nullptr ? std::string(words).substr(0, kMost) : std::string();
+    const std::string text = words != nullptr ? std::string(words).substr(0, kMaxTextBytes) : std::string();
     nc_free_string(1, &words);
     return text;
   }
-  if (type != NC_CHAR || count > kMost) return {};
+  if (type != NC_CHAR || count > kMaxTextBytes) return {};
   std::string text(count, '\0');
   if (nc_get_att_text(file, variable, name, text.data()) != NC_NOERR) return {};
   return text.substr(0, text.find('\0'));
@@ -246,15 +248,15 @@ Result<vtkSmartPointer<vtkDataArray>> read_netcdf_values(const NetcdfHyperslab& 
   nc_type type = NC_NAT;
   if (const int code = nc_inq_vartype(part.file, part.variable, &type); code != NC_NOERR) return Error{nc_strerror(code)};
   if (type > NC_MAX_ATOMIC_TYPE) {
-    // for an enumeration its base type
+    // an enumeration is read as its base type
     char name[NC_MAX_NAME + 1];
     std::size_t bytes = 0, members = 0;
     nc_type base = NC_NAT;
     type = nc_inq_enum(part.file, type, name, &base, &bytes, &members) == NC_NOERR ? base : NC_NAT;
   }
-  const std::string said = read_netcdf_text(part.file, part.variable, "_Unsigned");
-  const bool make_unsigned = said == "true" || said == "True" || said == "TRUE",
-             make_signed = said == "false" || said == "False" || said == "FALSE";
+  const std::string valid_range_text = read_netcdf_text(part.file, part.variable, "_Unsigned");
+  const bool make_unsigned = valid_range_text == "true" || valid_range_text == "True" || valid_range_text == "TRUE",
+             make_signed = valid_range_text == "false" || valid_range_text == "False" || valid_range_text == "FALSE";
   const auto as = [&]<class T>(T) { return TypedVariable<T>(part, type).read(notes); };
   switch (type) {
     case NC_BYTE:

@@ -23,8 +23,9 @@ struct NetcdfHyperslab {
   std::vector<std::size_t> start, count;
 };
 
-/// Reads values. Integers without missing values and scale keep their type; other values become floats or doubles. Appends to `notes` what
-/// was masked because of a valid range. Returns an Error with a message fragment, or null if the variable has no numbers (text, compounds).
+/// Reads values. Integers without missing values and scale keep their type; other values become floats or doubles. Appends a note
+/// on values that were masked because of a valid range. Returns an Error with a message fragment, or null if the variable has no numbers
+/// (text, compounds).
 Result<vtkSmartPointer<vtkDataArray>> read_netcdf_values(const NetcdfHyperslab& part, std::vector<std::string>& notes);
 
 /// scale_factor and add_offset of a variable.

@@ -12,7 +12,7 @@
 namespace catena::vtk {
 namespace {
 
-constexpr std::size_t kLongestHeader = 1 << 20, kMostAxes = 16;
+constexpr std::size_t kMaxHeader = 1 << 20, kMaxAxes = 16;
 
 std::string in_lower_case(std::string_view text, bool keep_blanks = true) {
   std::string out;
@@ -25,22 +25,23 @@ std::string in_lower_case(std::string_view text, bool keep_blanks = true) {
 Result<std::vector<std::vector<double>>> vectors_of(std::string_view text) {
   std::vector<std::vector<double>> vectors;
   while (!(text = trim(text)).empty()) {
-    if (vectors.size() >= kMostAxes) return Error{fmt::format("more than {} vectors", kMostAxes)};
+    if (vectors.size() >= kMaxAxes) return Error{fmt::format("more than {} vectors", kMaxAxes)};
     vectors.emplace_back();
     if (text.front() != '(') {
       const std::string_view word = text.substr(0, text.find_first_of(" \t("));
-      if (in_lower_case(word) != "none") return Error{"\"" + std::string(word) + "\", expected vectors like (1,0,0), or none"};
+      if (in_lower_case(word) != "none") return Error{"\"" + std::string(word) + "\", expected vectors such as (1,0,0), or none"};
       text.remove_prefix(word.size());
       continue;
     }
     const std::size_t end = text.find(')');
-    if (end == std::string_view::npos) return Error{"a vector without its closing bracket"};
-    for (std::string_view rest = text.substr(1, end - 1); !rest.empty();) {
-      const std::size_t comma = std::min(rest.find(','), rest.size());
-      const auto number = parse_double(rest.substr(0, comma));
-      if (!number || vectors.back().size() >= kMostAxes) return Error{"\"" + std::string(rest.substr(0, comma)) + "\", expected a number"};
+    if (end == std::string_view::npos) return Error{"a vector without a closing bracket"};
+    for (std::string_view remaining = text.substr(1, end - 1); !remaining.empty();) {
+      const std::size_t comma = std::min(remaining.find(','), remaining.size());
+      const auto number = parse_double(remaining.substr(0, comma));
+      if (!number || vectors.back().size() >= kMaxAxes)
+        return Error{"\"" + std::string(remaining.substr(0, comma)) + "\", expected a number"};
       vectors.back().push_back(*number);
-      rest.remove_prefix(std::min(comma + 1, rest.size()));
+      remaining.remove_prefix(std::min(comma + 1, remaining.size()));
     }
     text.remove_prefix(end + 1);
   }
@@ -66,9 +67,9 @@ Result<NrrdHeader> parse_nrrd_header(const std::string& text) {
     if (line[0] == '#' || colon == std::string::npos || line.compare(colon, 2, ":=") == 0) continue;
     const std::string field = in_lower_case(line.substr(0, colon), false);
     const std::string_view value = trim(std::string_view(line).substr(colon + 1));
-    constexpr std::size_t kLongestName = 4096;
-    if (field == "datafile" && value.size() > kLongestName)
-      return Error{fmt::format("\"data file\" has a name of {} characters, expected at most {}", value.size(), kLongestName)};
+    constexpr std::size_t kMaxName = 4096;
+    if (field == "datafile" && value.size() > kMaxName)
+      return Error{fmt::format("\"data file\" has a name of {} characters, expected at most {}", value.size(), kMaxName)};
     if (field == "space") {
       for (const char c : in_lower_case(value))
         if (c != '-' && c != ' ') header.space += c;
@@ -77,7 +78,7 @@ Result<NrrdHeader> parse_nrrd_header(const std::string& text) {
       header.space_dimension = static_cast<std::size_t>(std::max(0LL, parse_integer(value).value_or(0)));
     } else if (field == "kinds") {
       std::istringstream words{std::string(value)};
-      for (std::string word; header.kinds.size() < kMostAxes && words >> word;) header.kinds.push_back(word);
+      for (std::string word; header.kinds.size() < kMaxAxes && words >> word;) header.kinds.push_back(word);
     } else if (field == "spacedirections" || field == "spaceorigin" || field == "measurementframe") {
       const auto vectors = vectors_of(value);
       if (!vectors) return Error{fmt::format("\"{}\" has {}", line.substr(0, std::min<std::size_t>(colon, 40)), vectors.error().message)};
@@ -92,7 +93,7 @@ Result<NrrdHeader> parse_nrrd_header(const std::string& text) {
 Result<NrrdHeader> read_nrrd_header(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::string text, line;
-  while (text.size() < kLongestHeader && std::getline(in, line) && !line.empty() && line != "\r") text += line + "\n";
+  while (text.size() < kMaxHeader && std::getline(in, line) && !line.empty() && line != "\r") text += line + "\n";
   return parse_nrrd_header(text);
 }
 
@@ -104,8 +105,8 @@ bool NrrdHeader::is_patient() const {
 
 std::array<double, 2> NrrdHeader::ras_signs() const {
   if (!is_patient()) return {1, 1};
-  const bool left = space.starts_with('l'), posterior = space.starts_with("lp") || space.starts_with("leftposterior");
-  return {left ? -1.0 : 1.0, posterior ? -1.0 : 1.0};
+  const bool is_left = space.starts_with('l'), posterior = space.starts_with("lp") || space.starts_with("leftposterior");
+  return {is_left ? -1.0 : 1.0, posterior ? -1.0 : 1.0};
 }
 
 std::optional<field::Mapping> NrrdHeader::mapping() const {
@@ -114,7 +115,7 @@ std::optional<field::Mapping> NrrdHeader::mapping() const {
   Mat3 linear(1.0);
   Vec3 first(0.0);
   for (int c = 0; c < 2; ++c) linear[c][c] = sign[static_cast<std::size_t>(c)];
-  const auto put = [&](const std::vector<double>& from, Vec3& to) {
+  const auto copy_vector = [&](const std::vector<double>& from, Vec3& to) {
     to = Vec3(0.0);
     for (int c = 0; c < 3 && static_cast<std::size_t>(c) < from.size(); ++c)
       to[c] = from[static_cast<std::size_t>(c)] * (c < 2 ? sign[static_cast<std::size_t>(c)] : 1);
@@ -122,10 +123,10 @@ std::optional<field::Mapping> NrrdHeader::mapping() const {
   int axis = 0;
   for (std::size_t a = 0; a < directions.size() && axis < 3; ++a) {
     if (a < kinds.size() && !is_domain(kinds[a])) continue;
-    if (!directions[a].empty()) put(directions[a], linear[axis]);
+    if (!directions[a].empty()) copy_vector(directions[a], linear[axis]);
     ++axis;
   }
-  if (!origin.empty() && std::isfinite(origin[0])) put(origin, first);
+  if (!origin.empty() && std::isfinite(origin[0])) copy_vector(origin, first);
   return field::Mapping::from_linear(linear, first);
 }
 
@@ -146,13 +147,13 @@ NrrdRange NrrdHeader::range() const {
 }
 
 std::size_t NrrdHeader::ambiguous_axis() const {
-  std::size_t unclear = 0, domain = 0;
+  std::size_t ambiguous = 0, domain = 0;
   for (std::size_t a = 0; a < directions.size(); ++a) {
     const std::string kind = a < kinds.size() ? kinds[a] : "";
     domain += is_domain(kind) ? 1 : 0;
-    if (directions[a].empty() && is_unknown(kind)) unclear = a + 1;
+    if (directions[a].empty() && is_unknown(kind)) ambiguous = a + 1;
   }
-  return domain != space_dimension ? unclear : 0;
+  return domain != space_dimension ? ambiguous : 0;
 }
 
 }  // namespace catena::vtk

@@ -31,7 +31,7 @@ struct NrrdHeader {
   std::vector<std::vector<double>> measurement_frame;  ///< Columns of the measurement frame; empty: the axes of the space.
   std::size_t space_dimension = 0;
 
-  /// Whether `space` is a patient space.
+  /// Returns whether `space` is a patient space.
   bool is_patient() const;
   /// Signs that convert x and y of this space to right and anterior; (1, 1) if it is not a patient space.
   std::array<double, 2> ras_signs() const;

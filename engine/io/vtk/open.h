@@ -19,7 +19,7 @@ namespace catena::vtk {
 /// One data set of a file.
 struct Block {
   vtkSmartPointer<vtkDataSet> data;
-  std::optional<field::Mapping> mapping;  ///< Of an image whose axes VTK cannot represent; nullopt: the image's own.
+  std::optional<field::Mapping> mapping;  ///< Mapping of an image whose axes VTK cannot represent; nullopt: the image's own.
 };
 
 /// Contents of a file.
@@ -30,18 +30,18 @@ struct ImportedData {
   bool is_patient_space = false;
   std::vector<double> times;
   std::string time_unit;           ///< Unit of `times`; empty: not specified.
-  std::vector<std::string> notes;  ///< How the data differ from the file: messages without a final period.
+  std::vector<std::string> notes;  ///< Differences between the data and the file: messages without a final period.
 
   // for a folder of several volumes (DICOM)
-  std::vector<field::GridMetadata> grid_metadata;  ///< Of all volumes, by each of their names, whether opened or not.
+  std::vector<field::GridMetadata> grid_metadata;  ///< Metadata of all volumes, by each of their names, whether opened or not.
   std::vector<std::function<Result<ImportedData>()>>
       deferred_volumes;             ///< Volumes in the order of their numbers; each is opened when it is described.
   std::string name, volume_number;  ///< Name and number of one volume.
   int image_count = 0;              ///< Number of images in the volume; 0: not counted.
-  std::string problem;              ///< Complete message why the volume is not a field, and has no blocks; empty: it is one.
+  std::string problem;  ///< Complete message: the reason that the volume is not a field and has no blocks; empty: it is a field.
 };
 
-/// What to read. `display_name` begins every message; `path` is the location of the file in this process.
+/// File to read. `display_name` begins every message; `path` is the location of the file in this process.
 struct Source {
   std::string display_name, path;
   std::string grid;  ///< Requested image, for formats that hold several; empty: all; for DICOM: the largest.
@@ -51,7 +51,8 @@ struct Source {
   field::ReadMode mode = field::ReadMode::load;  ///< DICOM opens only what the mode needs.
 };
 
-/// Openers, one per family of formats. Errors have complete messages.
+// Openers, one per family of formats. Errors have complete messages.
+
 /// Opens VTK's XML files.
 Result<ImportedData> open_vtk_xml(const Source& source);
 /// Opens VTK's XML files of several blocks; an Error if a block index is too large.
@@ -61,7 +62,7 @@ Result<ImportedData> open_ensight(const Source& source);
 Result<ImportedData> open_cgns(const Source& source);
 Result<ImportedData> open_netcdf(const Source& source);
 Result<ImportedData> open_with_itk(const Source& source);
-/// Whether the file has "DICM" after the preamble.
+/// Returns whether the file has "DICM" after the preamble.
 bool is_dicom_file(const std::string& path);
 /// Opens a DICOM file, or a folder of them.
 Result<ImportedData> open_dicom(const Source& source);

@@ -29,9 +29,9 @@ struct Step {
 };
 using Steps = std::vector<Step>;
 
-constexpr std::uint64_t kMostBytes = 64 << 20;
+constexpr std::uint64_t kMaxBytes = 64 << 20;
 /// Maximum number of XML elements; parsing that many takes seconds.
-constexpr std::ptrdiff_t kMostElements = 200'000;
+constexpr std::ptrdiff_t kMaxElements = 200'000;
 
 bool is_collection(const std::string& path) { return has_extension(path, ".pvd") || has_extension(path, ".series"); }
 
@@ -41,10 +41,11 @@ Outcome add_datasets(vtkXMLDataElement& collection, std::map<double, std::vector
     vtkXMLDataElement* element = collection.GetNestedElement(i);
     if (std::strcmp(element->GetName(), "DataSet") != 0) continue;
     const char *file = element->GetAttribute("file"), *time = element->GetAttribute("timestep");
-    if (file == nullptr || *file == '\0') return Error{fmt::format("its DataSet number {} has no file", i + 1)};
+    if (file == nullptr || *file == '\0') return Error{fmt::format("DataSet {} has no file", i + 1)};
     const auto number = time == nullptr ? std::optional(0.0) : parse_double(time);
     if (!number || !std::isfinite(*number))
-      return Error{fmt::format("timestep {} of {} was expected to be a number", in_quotes(time), in_quotes(file))};
+      return Error{fmt::format("the timestep {} of the DataSet with file {} is invalid; a finite number was expected", in_quotes(time),
+                               in_quotes(file))};
     steps[*number].emplace_back(file);
   }
   return Done{};
@@ -52,8 +53,8 @@ Outcome add_datasets(vtkXMLDataElement& collection, std::map<double, std::vector
 
 Result<Steps> read_pvd(const std::string& path) {
   const auto root = vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
-  if (const std::string complaint = take_reader_errors(); root == nullptr || !complaint.empty())
-    return Error{"it is no XML file, or not a whole one" + (complaint.empty() ? "" : " (" + complaint + ")")};
+  if (const std::string reader_errors = take_reader_errors(); root == nullptr || !reader_errors.empty())
+    return Error{"the file is not valid XML, or is truncated" + (reader_errors.empty() ? "" : " (" + reader_errors + ")")};
   std::map<double, std::vector<std::string>> by_time;  // files of the same time are parts of one step
   for (int i = 0; i < root->GetNumberOfNestedElements(); ++i)
     if (std::strcmp(root->GetNestedElement(i)->GetName(), "Collection") == 0)
@@ -66,7 +67,7 @@ Result<Steps> read_pvd(const std::string& path) {
 Result<Steps> read_series(const std::string& path, const std::string& text) {
   CATENA_TRY(const json::Node root, json::parse(text, path));
   const json::Node* files = root.find("files");
-  if (files == nullptr || files->kind != json::Kind::array) return Error{"it has no list \"files\""};
+  if (files == nullptr || files->kind != json::Kind::array) return Error{"there is no list \"files\""};
   Steps steps;
   for (const json::Node& one : files->items) {
     CATENA_TRY(const std::string name, json::require_string(one, "name"));
@@ -77,7 +78,7 @@ Result<Steps> read_series(const std::string& path, const std::string& text) {
   return steps;
 }
 
-/// Path of a named file for this process. The error is a message fragment.
+/// Returns the path of a named file for this process. The error is a message fragment.
 Result<std::string> part_path(const Source& source, const std::string& name) {
   const fs::path folder = fs::path(source.path).parent_path();
   std::error_code code;
@@ -85,9 +86,9 @@ Result<std::string> part_path(const Source& source, const std::string& name) {
   const fs::path at = fs::weakly_canonical(folder / relative, code);
   const fs::path inside = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, code);
   if (std::mismatch(inside.begin(), inside.end(), at.begin(), at.end()).first != inside.end())
-    return Error{in_quotes(name) + " lies outside of its folder; a file in it or below it was expected"};
-  if (!fs::exists(at, code)) return Error{in_quotes(name) + ", which it names, is not there"};
-  if (is_collection(name)) return Error{in_quotes(name) + " is a collection, too; files of data were expected"};
+    return Error{in_quotes(name) + " is outside the folder of the collection; a file in this folder or below was expected"};
+  if (!fs::exists(at, code)) return Error{in_quotes(name) + ", named in the collection, does not exist"};
+  if (is_collection(name)) return Error{in_quotes(name) + " is a collection, too; a data file was expected"};
   return at.string();
 }
 
@@ -104,14 +105,14 @@ void append(ImportedData part, ImportedData& all) {
 
 Result<ImportedData> open_collection(const Source& source) {
   const auto failed = [&](const std::string& what) { return Error{one_line(source.display_name + ": " + what)}; };
-  const auto text = read_text_file(source.path, "a collection of files", kMostBytes);
-  if (!text) return failed("cannot be read as a collection of files: it is longer than 64 MiB, or it cannot be opened");
+  const auto text = read_text_file(source.path, "a collection of files", kMaxBytes);
+  if (!text) return failed("cannot be read as a collection of files: the file is larger than 64 MiB, or cannot be opened");
   const bool pvd = has_extension(source.path, ".pvd");
-  if (std::ranges::count(*text, pvd ? '<' : '{') > kMostElements)
-    return failed(fmt::format("has more than {} elements; shorter collections of files were expected", kMostElements));
+  if (std::ranges::count(*text, pvd ? '<' : '{') > kMaxElements)
+    return failed(fmt::format("has more than {} elements; a shorter collection was expected", kMaxElements));
   const auto steps = pvd ? read_pvd(source.path) : read_series(source.display_name, *text);
   if (!steps) return failed(steps.error().message);
-  if (steps->empty()) return failed("names no files");
+  if (steps->empty()) return failed("the collection lists no files");
   ImportedData all;
   for (const Step& step : *steps) all.times.push_back(step.time);
   const Step& step = (*steps)[std::min(static_cast<std::size_t>(source.step), steps->size() - 1)];

@@ -32,7 +32,7 @@ struct DicomScan {
 };
 using DicomScanPtr = std::shared_ptr<const DicomScan>;
 
-/// A list of at most ten texts, and the number of the others.
+/// Returns a list of at most ten texts, and the number of the others.
 std::string cut_list(const std::vector<std::string>& words) {
   constexpr std::size_t kMax = 10;
   std::string list =
@@ -68,8 +68,8 @@ Result<DicomScanPtr> scan_of(const Source& source) {
         scan->files.push_back(std::move(file));
         break;
       case DicomKind::other_object:
-        if (file.modality == "DICOMDIR" && paths.size() > 1) break;  // the folder's directory file
-        ++scan->others[file.modality.empty() ? "of no modality" : sanitize_for_terminal(file.modality)];
+        if (file.modality == "DICOMDIR" && paths.size() > 1) break;  // the directory file of the folder
+        ++scan->others[file.modality.empty() ? "without modality" : sanitize_for_terminal(file.modality)];
         break;
       case DicomKind::damaged:
         scan->damaged.push_back(sanitize_for_terminal(file.name) + (file.problem.empty() ? "" : " (" + file.problem + ")"));
@@ -80,22 +80,21 @@ Result<DicomScanPtr> scan_of(const Source& source) {
   }
   std::error_code code;
   const bool folder = fs::is_directory(source.path, code);
-  if (!folder && !scan->files.empty()) {  // a file is called by its own name
+  if (!folder && !scan->files.empty()) {  // a single file gives its own name to the volume
     scan->files.front().description = sanitize_for_terminal(fs::path(source.display_name).stem().string());
     scan->files.front().series_number.clear();
   }
   scan->volumes = group_dicom_volumes(scan->files);
   if (!scan->volumes.empty()) return DicomScanPtr(scan);
   if (!scan->damaged.empty())
-    return Error{fmt::format("{}: no DICOM image can be read, damaged: {}", source.display_name, cut_list(scan->damaged))};
+    return Error{fmt::format("{}: no DICOM image can be read; damaged files: {}", source.display_name, cut_list(scan->damaged))};
   if (!scan->others.empty())
-    return Error{
-        fmt::format("{}: holds DICOM objects that are no images ({}), expected images", source.display_name, scan->others.begin()->first)};
+    return Error{fmt::format("{}: contains only DICOM objects that are not images ({}), expected images", source.display_name,
+                             scan->others.begin()->first)};
   return Error{
       source.display_name +
-      (folder
-           ? ": the folder holds no DICOM images, and is no OpenFOAM case (there is no system/controlDict, constant/polyMesh or processor0)"
-           : ": is no DICOM file, expected an image")};
+      (folder ? ": the folder contains neither DICOM images nor an OpenFOAM case (system/controlDict, constant/polyMesh or processor0)"
+              : ": is not a DICOM file, expected an image")};
 }
 
 // ---- choice of the volume ----
@@ -111,14 +110,14 @@ const DicomVolume* largest_of(const std::vector<DicomVolume>& volumes, const std
   return best;
 }
 
-std::string words_for(const DicomVolume& volume) {
+std::string describe_volume(const DicomVolume& volume) {
   return fmt::format("{}{}\"{}\" ({} image{})", volume.volume_number, volume.volume_number.empty() ? "" : " ", volume.name,
                      volume.frames.size(), volume.frames.size() == 1 ? "" : "s");
 }
 
 std::string list_of_volumes(const std::vector<DicomVolume>& volumes) {
   std::vector<std::string> words;
-  for (const DicomVolume& volume : volumes) words.push_back(words_for(volume));
+  for (const DicomVolume& volume : volumes) words.push_back(describe_volume(volume));
   return cut_list(words);
 }
 
@@ -129,7 +128,7 @@ struct Choice {
 
 /// Finds a volume by name, by series description, or by number; of several volumes of a series the largest. Returns an Error if the number
 /// belongs to several series.
-Result<Choice> chosen(const DicomScan& scan, const std::string& grid) {
+Result<Choice> choose_volume(const DicomScan& scan, const std::string& grid) {
   const auto& volumes = scan.volumes;
   if (grid.empty()) return Choice{largest_of(volumes, [](const DicomVolume&) { return true; }), {}};
   const auto named = [&](const DicomVolume& v) { return v.name == grid || v.series == grid; };
@@ -145,25 +144,26 @@ Result<Choice> chosen(const DicomScan& scan, const std::string& grid) {
   if (volume == nullptr) volume = largest_of(volumes, named);
   if (volume != nullptr) {
     if (const std::string list = several_series([&](const DicomVolume& v) { return named(v) || numbered(v); }); !list.empty())
-      return Choice{volume, fmt::format("{} is taken for a name, and stands for several series: {}", in_quotes(grid), list)};
+      return Choice{volume, fmt::format("{} is read as a name, and matches several series: {}", in_quotes(grid), list)};
     return Choice{volume, {}};
   }
   if (const DicomVolume* exact = largest_of(volumes, [&](const DicomVolume& v) { return v.volume_number == grid; }))
     return Choice{exact, {}};
   if (const std::string list = several_series(numbered); !list.empty())
-    return Error{one_line(fmt::format("{}: {} is the number of several series, expected one of: {}", scan.shown, in_quotes(grid), list))};
+    return Error{one_line(fmt::format("{}: several series have the number {}, expected one of: {}", scan.shown, in_quotes(grid), list))};
   if ((volume = largest_of(volumes, numbered)) != nullptr) return Choice{volume, {}};
-  return Error{one_line(fmt::format("{}: there is no grid {}, there are: {}", scan.shown, in_quotes(grid), list_of_volumes(volumes)))};
+  return Error{
+      one_line(fmt::format("{}: there is no grid {}, expected one of: {}", scan.shown, in_quotes(grid), list_of_volumes(volumes)))};
 }
 
 void add_scan_notes(const DicomScan& scan, const DicomVolume& volume, const std::string& grid, std::vector<std::string>& notes) {
   if (scan.volumes.size() > 1 && grid != volume.name && grid != volume.volume_number)
-    notes.push_back(fmt::format("the largest of {} volumes is shown, {}; --grid takes a number or a name: {}", scan.volumes.size(),
-                                words_for(volume), list_of_volumes(scan.volumes)));
+    notes.push_back(fmt::format("the largest of {} volumes is shown, {}; --grid selects a volume by number or name: {}",
+                                scan.volumes.size(), describe_volume(volume), list_of_volumes(scan.volumes)));
   std::vector<std::string> others;
   for (const auto& [modality, count] : scan.others) others.push_back(fmt::format("{} {}", count, modality));
-  if (!others.empty()) notes.push_back(fmt::format("DICOM objects that are no images are left out: {}", cut_list(others)));
-  if (!scan.damaged.empty()) notes.push_back(fmt::format("damaged files are left out: {}", cut_list(scan.damaged)));
+  if (!others.empty()) notes.push_back(fmt::format("DICOM objects that are not images were left out: {}", cut_list(others)));
+  if (!scan.damaged.empty()) notes.push_back(fmt::format("damaged files were left out: {}", cut_list(scan.damaged)));
 }
 
 // ---- values ----
@@ -177,25 +177,24 @@ Outcome read_stack(const DicomScan& scan, const DicomVolume& volume, std::vector
     slot[frame] = slot.size();
     by_file[frame->file].push_back(frame);
   }
-  // the header is untrusted: before memory is allocated, the file must be large enough for the pixels, compressed ones by kBestRatio at
-  // most
+  // the header is untrusted: before memory is allocated, the file must be large enough for the pixels, compressed at most by kBestRatio
   constexpr double kBestRatio = 2000;
-  double there = 0;
+  double available = 0;
   for (const auto& [index, frames] : by_file) {
     std::error_code code;
     const auto bytes = static_cast<double>(fs::file_size(scan.files[index].path, code));
-    there += code ? 0 : scan.files[index].pixel_offset >= 0 ? 8 * bytes : kBestRatio * bytes;
+    available += code ? 0 : scan.files[index].pixel_offset >= 0 ? 8 * bytes : kBestRatio * bytes;
   }
-  if (static_cast<double>(voxels) * static_cast<double>(volume.frames.size()) > there)
-    return Error{fmt::format("{}: {}: the files are cut short, expected {} images of {} x {} pixels", scan.shown, volume.name,
+  if (static_cast<double>(voxels) * static_cast<double>(volume.frames.size()) > available)
+    return Error{fmt::format("{}: {}: the files are truncated, expected {} images of {} x {} pixels", scan.shown, volume.name,
                              volume.frames.size(), first.columns, first.rows)};
   stack.resize(voxels * volume.frames.size());
   for (const auto& [index, frames] : by_file) {
     const DicomFile& file = scan.files[index];
-    const auto take = [&](const DicomFrame& frame, std::span<const float> values) {
+    const auto store_frame = [&](const DicomFrame& frame, std::span<const float> values) {
       std::ranges::copy(values, stack.begin() + static_cast<std::ptrdiff_t>(slot.at(&frame) * voxels));
     };
-    if (const auto done = read_dicom_pixels(file, frames, take, notes); !done)
+    if (const auto done = read_dicom_pixels(file, frames, store_frame, notes); !done)
       return Error{scan.files.size() == 1 ? fmt::format("{}: {}", scan.shown, done.error().message)
                                           : fmt::format("{}: {}: {}", scan.shown, file.name, done.error().message)};
   }
@@ -220,8 +219,9 @@ Result<ImportedData> open_volume(const DicomScan& scan, const DicomVolume& volum
     values = std::move(even);
   }
   if (pixels.padding_count > 0)
-    opened.notes.push_back(fmt::format("{} pixels that the header calls padding (PixelPaddingValue) are holes", pixels.padding_count));
-  if (pixels.rounded_count > 0) opened.notes.push_back(fmt::format("{} stored numbers are rounded to 32-bit floats", pixels.rounded_count));
+    opened.notes.push_back(fmt::format("{} pixels with the PixelPaddingValue of the header are read as holes", pixels.padding_count));
+  if (pixels.rounded_count > 0)
+    opened.notes.push_back(fmt::format("{} stored numbers were rounded to 32-bit floats", pixels.rounded_count));
   const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(VTK_FLOAT));
   array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
   std::copy(values.begin(), values.end(), static_cast<float*>(array->GetVoidPointer(0)));
@@ -239,7 +239,7 @@ Result<ImportedData> open_volume(const DicomScan& scan, const DicomVolume& volum
   return opened;
 }
 
-/// Units under every name by which a volume may be requested.
+/// Returns the units under every name by which a volume may be requested.
 std::vector<field::GridMetadata> words_of_volumes(const DicomScan& scan, const std::string& grid) {
   std::vector<field::GridMetadata> words;
   const auto add = [&](const std::string& name, const DicomVolume& volume) {
@@ -252,11 +252,11 @@ std::vector<field::GridMetadata> words_of_volumes(const DicomScan& scan, const s
   std::set<std::string> others{"", grid};
   for (const DicomVolume& volume : scan.volumes) others.insert({volume.series, volume.series_number});
   for (const std::string& name : others)
-    if (const auto choice = chosen(scan, name)) add(name, *choice->volume);
+    if (const auto choice = choose_volume(scan, name)) add(name, *choice->volume);
   return words;
 }
 
-/// Note that more files of the series are in the folder of the single file that was opened; empty if there are none.
+/// Returns a note that more files of the series are in the folder of the single file that was opened; empty if there are none.
 std::string series_beside(const Source& source, const DicomFile& self) {
   if (self.series.empty()) return {};
   std::error_code code;
@@ -266,15 +266,15 @@ std::string series_beside(const Source& source, const DicomFile& self) {
     if (std::error_code ignored; at->is_regular_file(ignored)) files.push_back(at->path());
   std::ranges::sort(files);
   constexpr std::ptrdiff_t kLooks = 4;  // files of a series have consecutive names: checking a few on either side is enough
-  const auto own = std::ranges::find(files, file) - files.begin();
-  for (std::ptrdiff_t k = std::max(own - kLooks, std::ptrdiff_t{0}); k <= std::min(own + kLooks, std::ssize(files) - 1); ++k) {
+  const auto own_index = std::ranges::find(files, file) - files.begin();
+  for (std::ptrdiff_t k = std::max(own_index - kLooks, std::ptrdiff_t{0}); k <= std::min(own_index + kLooks, std::ssize(files) - 1); ++k) {
     DicomFile other;
-    if (k == own || read_dicom_header(files[static_cast<std::size_t>(k)].string(), other) != DicomKind::image ||
+    if (k == own_index || read_dicom_header(files[static_cast<std::size_t>(k)].string(), other) != DicomKind::image ||
         other.series != self.series)
       continue;
-    const fs::path shown = fs::path(source.display_name).parent_path();
-    const std::string folder = shown.empty() ? "." : shown.string();
-    return "more images of its series lie beside it: the folder opens as a volume (catena render " + folder + ")";
+    const fs::path folder_name = fs::path(source.display_name).parent_path();
+    const std::string folder = folder_name.empty() ? "." : folder_name.string();
+    return "the folder of this file has more images of the series: open the folder to get the volume (catena render " + folder + ")";
   }
   return {};
 }
@@ -297,13 +297,13 @@ Result<ImportedData> open_dicom(const Source& source) {
         return refused;
       });
   } else if (source.mode != field::ReadMode::metadata) {
-    CATENA_TRY(const Choice choice, chosen(*scan, source.grid));
+    CATENA_TRY(const Choice choice, choose_volume(*scan, source.grid));
     CATENA_TRY(opened, open_volume(*scan, *choice.volume));
     add_scan_notes(*scan, *choice.volume, source.grid, opened.notes);
     if (!choice.note.empty()) opened.notes.push_back(choice.note);
     std::error_code code;
     if (!fs::is_directory(source.path, code))
-      if (const std::string beside = series_beside(source, scan->files.front()); !beside.empty()) opened.notes.push_back(beside);
+      if (const std::string note = series_beside(source, scan->files.front()); !note.empty()) opened.notes.push_back(note);
   }
   opened.grid_metadata = words_of_volumes(*scan, source.grid);
   opened.is_patient_space = scan->volumes.front().frames.front()->has_position;

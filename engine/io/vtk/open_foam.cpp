@@ -37,7 +37,7 @@ void each_folder_in(const fs::path& folder, const Visit& visit) {
     if (std::error_code ignored; at->is_directory(ignored)) visit(at->path());
 }
 
-/// Name of the collated folder, such as "processors4"; empty: there is none.
+/// Returns the name of the collated folder, such as "processors4"; empty: there is none.
 std::string collated_in(const fs::path& folder) {
   std::string name;
   each_folder_in(folder, [&](const fs::path& one) {
@@ -76,7 +76,7 @@ void join_pieces(ImportedData& opened) {
   }
 }
 
-/// Times without fields, such as a "0" whose fields were removed, which are not steps. Empty if no time has a field.
+/// Returns the times without fields, such as a "0" whose fields were removed, which are not steps. Empty if no time has a field.
 std::set<double> times_without_fields(const fs::path& folder) {
   std::set<double> times = list_foam_times(folder);
   const std::size_t all = times.size();
@@ -93,7 +93,7 @@ void add_later_fields(const fs::path& folder, ImportedData& opened) {
   if (later.empty()) return;
   const std::vector<std::string_view> names(later.begin(), later.end());
   opened.notes.push_back(
-      fmt::format("step {} (time {:g}) has other fields, too: {}", opened.times.size() - 1, opened.times.back(), join_words(names)));
+      fmt::format("step {} (time {:g}) has more fields: {}", opened.times.size() - 1, opened.times.back(), join_words(names)));
 }
 
 }  // namespace
@@ -101,34 +101,34 @@ void add_later_fields(const fs::path& folder, ImportedData& opened) {
 Result<ImportedData> open_foam(const Source& source) {
   const fs::path folder = is_folder(source.path) ? fs::path(source.path) : fs::path(source.path).parent_path();
   const auto failed = [&](const std::string& what) { return Error{one_line(source.display_name + ": " + what)}; };
-  const bool whole = field::has_openfoam_mesh(folder.string()), pieces = is_folder(folder / "processor0");
+  const bool has_mesh = field::has_openfoam_mesh(folder.string()), pieces = is_folder(folder / "processor0");
   std::error_code code;
-  if (!whole && !pieces) {
-    if (const std::string collated = collated_in(folder); !collated.empty())
-      return failed(
-          fmt::format("is decomposed in the collated format ({}), which is not read: reconstructPar makes one case of it", collated));
-    return failed("is an OpenFOAM case without a mesh: constant/polyMesh, constant/REGION/polyMesh or processor0 was expected");
+  if (!has_mesh && !pieces) {
+    if (const std::string collated_folder = collated_in(folder); !collated_folder.empty())
+      return failed(fmt::format("is decomposed in the unsupported collated format ({}): reconstructPar converts it to a reconstructed case",
+                                collated_folder));
+    return failed("is an OpenFOAM case without a mesh; constant/polyMesh, constant/REGION/polyMesh or processor0 was expected");
   }
   if (!fs::exists(folder / "system/controlDict", code))
-    return failed("is an OpenFOAM case without system/controlDict, which says how its times are called");
+    return failed("is an OpenFOAM case without system/controlDict, which defines the names of the time folders");
   vtkNew<vtkDummyController> alone;
   const auto reader = vtkSmartPointer<vtkPOpenFOAMReader>::New();
   reader->SetController(alone);
-  reader->SetCaseType(whole ? vtkPOpenFOAMReader::RECONSTRUCTED_CASE : vtkPOpenFOAMReader::DECOMPOSED_CASE);
+  reader->SetCaseType(has_mesh ? vtkPOpenFOAMReader::RECONSTRUCTED_CASE : vtkPOpenFOAMReader::DECOMPOSED_CASE);
   reader->SetFileName((folder / "case.foam").c_str());
   reader->CreateCellToPointOff();  // the reader's own averages would replace the cell values
   reader->DecomposePolyhedraOn();
   reader->UpdateInformation();
   choose_volumes(*reader);
   reader->EnableAllCellArrays();
-  const fs::path shown = whole ? folder : folder / "processor0";
-  CATENA_TRY(ImportedData opened, read_with_reader(*reader, source, times_without_fields(shown)));
-  if (!whole) join_pieces(opened);
-  if (opened.times.size() > 1 && source.step == 0) add_later_fields(shown, opened);
-  if (whole && pieces) {
-    const std::set<double> here = list_foam_times(folder), there = list_foam_times(folder / "processor0");
-    if (!std::includes(here.begin(), here.end(), there.begin(), there.end()))
-      opened.notes.push_back("the reconstructed case is read; processor* has other times, too: reconstructPar adds them");
+  const fs::path time_folder = has_mesh ? folder : folder / "processor0";
+  CATENA_TRY(ImportedData opened, read_with_reader(*reader, source, times_without_fields(time_folder)));
+  if (!has_mesh) join_pieces(opened);
+  if (opened.times.size() > 1 && source.step == 0) add_later_fields(time_folder, opened);
+  if (has_mesh && pieces) {
+    const std::set<double> times = list_foam_times(folder), piece_times = list_foam_times(folder / "processor0");
+    if (!std::includes(times.begin(), times.end(), piece_times.begin(), piece_times.end()))
+      opened.notes.push_back("the reconstructed case is read; processor* has more times, which reconstructPar adds");
   }
   return opened;
 }

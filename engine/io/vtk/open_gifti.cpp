@@ -32,7 +32,7 @@ bool is_table(const giiDataArray& array) {
   return array.num_dim == 2 && array.dims[0] > 0 && array.dims[1] == kColumns && array.data != nullptr;
 }
 
-/// Index of a number of a row in the array's data.
+/// Returns the index of a number of a row in the array's data.
 std::size_t place_of(const giiDataArray& array, int row, int column) {
   const auto r = static_cast<std::size_t>(row), c = static_cast<std::size_t>(column);
   return array.ind_ord == GIFTI_IND_ORD_COL_MAJOR ? c * static_cast<std::size_t>(array.dims[0]) + r : kColumns * r + c;
@@ -50,7 +50,7 @@ Result<ImportedData> open_gifti(const Source& source) {
   const auto failed = [&](const std::string& what) { return Error{source.display_name + ": " + what}; };
   gifti_set_verb(0);
   const std::unique_ptr<gifti_image, FreeImage> image(gifti_read_image(source.path.c_str(), 1));
-  if (!image) return failed("cannot be read: it is not a GIFTI file, or it is damaged");
+  if (!image) return failed("cannot be read: not a GIFTI file, or a damaged one");
   const giiDataArray *points = nullptr, *triangles = nullptr;
   ImportedData opened;
   vtkNew<vtkPolyData> poly;
@@ -61,8 +61,8 @@ Result<ImportedData> open_gifti(const Source& source) {
     if (array->intent == kPoints && points == nullptr && is_real && is_table(*array)) points = array;
     if (array->intent == kTriangles && triangles == nullptr && array->datatype == NIFTI_TYPE_INT32 && is_table(*array)) triangles = array;
   }
-  if (points == nullptr) return failed("holds no points: values of a surface that lies in another file are not shown by themselves");
-  if (triangles == nullptr) return failed("holds points without triangles");
+  if (points == nullptr) return failed("contains no points; a GIFTI surface was expected, not values for a surface in another file");
+  if (triangles == nullptr) return failed("contains points without triangles");
   vtkNew<vtkPoints> places;
   if (points->datatype == NIFTI_TYPE_FLOAT64) places->SetDataTypeToDouble();
   const int count = points->dims[0];
@@ -75,7 +75,8 @@ Result<ImportedData> open_gifti(const Source& source) {
     vtkIdType corner[3];
     for (int c = 0; c < kColumns; ++c) {
       corner[c] = ids[place_of(*triangles, i, c)];
-      if (corner[c] < 0 || corner[c] >= count) return failed(fmt::format("triangle {} names point {}, of {}", i, corner[c], count));
+      if (corner[c] < 0 || corner[c] >= count)
+        return failed(fmt::format("triangle {} refers to point {}, but there are {} points", i, corner[c], count));
     }
     cells->InsertNextCell(3, corner);
   }

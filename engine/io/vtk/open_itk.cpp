@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Opens NRRD and MetaImage with ITK. Of an NRRD ITK provides only the numbers: its versions convert the space
+// Opens NRRD and MetaImage with ITK. ITK provides only the numbers of an NRRD: its versions convert the space
 // left-anterior-superior differently, so that the header is read here (nrrd_header.h). MetaImage uses patient space with +x left, +y
 // posterior (LPS); Catena, like NIfTI, uses +x right, +y anterior (RAS): both formats are converted, unless the file states that its space
 // is not patient space.
@@ -30,7 +30,7 @@ std::string stem(const std::string& path) {
   return name.stem().string();
 }
 
-/// The beginning of a file, where formats with a text header have it.
+/// Returns the beginning of a file, where formats with a text header have it.
 std::string header_of(const std::string& path) {
   constexpr std::size_t kHeader = 8192;
   std::string header(kHeader, ' ');
@@ -42,15 +42,15 @@ std::string header_of(const std::string& path) {
 
 /// Returns an Error if the number of axes is more than MetaIO has memory for; MetaIO does not check it.
 Outcome check_dimensions(const std::string& path) {
-  constexpr long long kMost = 10;
+  constexpr long long kMaxAxes = 10;
   std::istringstream lines(header_of(path));
   for (std::string line; std::getline(lines, line);) {
     const std::size_t equals = line.find('=');
     if (equals == std::string::npos || trim(std::string_view(line).substr(0, equals)) != "NDims") continue;
     const std::string_view word = trim(std::string_view(line).substr(equals + 1));
     const auto axes = parse_integer(word);
-    if (!axes || *axes < 1 || *axes > kMost)
-      return Error{fmt::format("NDims is {}, expected 1 to {}", sanitize_for_terminal(std::string(word.substr(0, 40))), kMost)};
+    if (!axes || *axes < 1 || *axes > kMaxAxes)
+      return Error{fmt::format("NDims is {}, expected 1 to {}", sanitize_for_terminal(std::string(word.substr(0, 40))), kMaxAxes)};
   }
   return Done{};
 }
@@ -59,7 +59,7 @@ Outcome check_dimensions(const std::string& path) {
 struct Meaning {
   Mapping mapping;
   bool patient = false;
-  NrrdRange range = NrrdRange::directions;  ///< for voxels of several numbers
+  NrrdRange range = NrrdRange::directions;  ///< meaning of the numbers of a voxel with several
   std::array<double, 2> signs{1, 1};        ///< signs of the x and y components of directions
   std::vector<std::vector<double>> frame{};
   std::string kind{};  ///< as named in the file
@@ -67,21 +67,22 @@ struct Meaning {
 
 std::string left_out(const std::string& name, const std::string& kind, int components) {
   return fmt::format(
-      "{} ({}{} numbers a voxel) is left out, and nothing else is in the file; expected one number a voxel, or vectors of 2 or 3", name,
+      "{} ({}{} numbers per voxel), the only array of the file, cannot be read; expected one number per voxel, or vectors of 2 or 3", name,
       kind.empty() ? "" : kind + ", ", components);
 }
 
-/// Returns a clear Error for what ITK refuses: an axis without a kind and a direction that counts neither positions nor components; general
-/// matrices with a mask; a "3-gradient", whose size ITK does not know.
+/// Returns an Error for files that ITK refuses without a clear message: an axis without a kind and a direction that counts neither
+/// positions nor components; general matrices with a mask; a "3-gradient", whose size ITK does not know.
 Outcome check_axes(const std::string& path, const std::string& name) {
   CATENA_TRY(const NrrdHeader header, read_nrrd_header(path));
   for (const std::string& kind : header.kinds) {
     if (kind == "2D-masked-matrix" || kind == "3D-masked-matrix") return Error{left_out(name, kind, kind.front() == '2' ? 5 : 10)};
-    if (kind == "3-gradient") return Error{"the kind \"3-gradient\" cannot be read, expected \"covariant-vector\", which means the same"};
+    if (kind == "3-gradient") return Error{"the kind \"3-gradient\" is not supported, expected \"covariant-vector\", which is equivalent"};
   }
   if (const std::size_t axis = header.ambiguous_axis(); axis > 0)
     return Error{fmt::format(
-        "axis {} has no direction (\"none\") and no kind, expected a line \"kinds:\" that names it, as vector, RGB-color or list", axis)};
+        "axis {} has neither a direction (\"none\") nor a kind, expected its kind in a line \"kinds:\", such as vector, RGB-color or list",
+        axis)};
   return Done{};
 }
 
@@ -111,27 +112,27 @@ Meaning meaning_of_meta_image(const Io& io, const std::string& path) {
 }
 
 /// Transforms directions from the file's axes to the world's: by an NRRD's measurement frame, and by flipping x and y where they differ.
-vtkSmartPointer<vtkDataArray> turned_vectors(const vtkSmartPointer<vtkDataArray>& values, const Meaning& meaning) {
+vtkSmartPointer<vtkDataArray> transformed_vectors(const vtkSmartPointer<vtkDataArray>& values, const Meaning& meaning) {
   const int components = values->GetNumberOfComponents();
   if ((components != 2 && components != 3) || (meaning.range != NrrdRange::directions && meaning.range != NrrdRange::points)) return values;
-  const auto wanted = static_cast<std::size_t>(components);
+  const auto component_count = static_cast<std::size_t>(components);
   double frame[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // columns
-  if (meaning.range == NrrdRange::directions && meaning.frame.size() == wanted)
-    for (std::size_t k = 0; k < wanted; ++k)
-      for (std::size_t c = 0; c < wanted && c < meaning.frame[k].size(); ++c) frame[k][c] = meaning.frame[k][c];
+  if (meaning.range == NrrdRange::directions && meaning.frame.size() == component_count)
+    for (std::size_t k = 0; k < component_count; ++k)
+      for (std::size_t c = 0; c < component_count && c < meaning.frame[k].size(); ++c) frame[k][c] = meaning.frame[k][c];
   const bool fits_float = values->GetDataType() == VTK_FLOAT || values->GetDataTypeSize() <= 2;
-  const auto turned = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(fits_float ? VTK_FLOAT : VTK_DOUBLE));
-  turned->SetNumberOfComponents(components);
-  turned->SetNumberOfTuples(values->GetNumberOfTuples());
+  const auto transformed = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(fits_float ? VTK_FLOAT : VTK_DOUBLE));
+  transformed->SetNumberOfComponents(components);
+  transformed->SetNumberOfTuples(values->GetNumberOfTuples());
   for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i) {
     double v[3] = {0, 0, 0}, world[3] = {0, 0, 0};
     values->GetTuple(i, v);
     for (int k = 0; k < components; ++k)
       for (int c = 0; c < components; ++c) world[c] += frame[k][c] * v[k];
     for (std::size_t c = 0; c < 2; ++c) world[c] *= meaning.signs[c];
-    turned->SetTuple(i, world);
+    transformed->SetTuple(i, world);
   }
-  return turned;
+  return transformed;
 }
 
 Io io_of(const std::string& path) {
@@ -148,7 +149,7 @@ Result<ImportedData> open_with_itk(const Source& source) {
     const bool nrrd = dynamic_cast<itk::NrrdImageIO*>(io.GetPointer()) != nullptr;
     const auto clear = nrrd ? check_axes(source.path, stem(source.display_name)) : check_dimensions(source.path);
     if (!clear) return failed(clear.error().message);
-    if (!io->CanReadFile(source.path.c_str())) return failed("cannot be read: it is not of the kind that its name says");
+    if (!io->CanReadFile(source.path.c_str())) return failed("cannot be read: the contents do not match the file extension");
     io->SetFileName(source.path);
     io->ReadImageInformation();
     if (to_vtk_type(io->GetComponentType()) == 0) return failed("has voxels of an unknown type, expected integers or floats");
@@ -161,7 +162,7 @@ Result<ImportedData> open_with_itk(const Source& source) {
     if (components > 3 || (components > 1 && meaning.range == NrrdRange::other))
       return failed(left_out(stem(source.display_name), meaning.kind, components));
     ImportedData opened;
-    // a fourth axis is time only if the header says so, which these formats do not
+    // these formats cannot declare a fourth axis as time
     const auto read = read_all_voxels(*io, shape->voxel_count() * static_cast<std::size_t>(shape->volume_count));
     if (!read) return failed(read.error().message);
     vtkSmartPointer<vtkDataArray> values = *read;
@@ -174,13 +175,14 @@ Result<ImportedData> open_with_itk(const Source& source) {
       one->InsertTuples(0, voxels, volume * voxels, values);
       values = one;
       opened.notes.push_back(
-          fmt::format("volume {} of {}, counted from 0: \"step\" of the field chooses another", volume, shape->volume_count));
+          fmt::format("volume {} of {}, counted from 0, is read; \"step\" of the field selects the volume", volume, shape->volume_count));
     }
     opened.is_patient_space = meaning.patient;
     if (components > 1 && meaning.range == NrrdRange::numbers)
       opened.notes.push_back(
-          fmt::format("the {} numbers of a voxel are no directions ({}): they are read as they are", components, meaning.kind));
-    opened.blocks.push_back({make_image_data(shape->size, turned_vectors(values, meaning), stem(source.display_name)), meaning.mapping});
+          fmt::format("the {} numbers of a voxel are not a direction ({}) and are read without rotation", components, meaning.kind));
+    opened.blocks.push_back(
+        {make_image_data(shape->size, transformed_vectors(values, meaning), stem(source.display_name)), meaning.mapping});
     if (opened.is_patient_space) opened.unit_length = "mm";
     const itk::MetaDataDictionary& words = io->GetMetaDataDictionary();
     for (const char* key : {"NRRD_space units[0]", "NRRD_space units[1]"})

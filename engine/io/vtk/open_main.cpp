@@ -45,7 +45,8 @@ std::FILE* open_stream(const char* path, const char* mode) {
 
 }  // namespace
 
-// C++ names of their own, because the headers define some of these as inline functions; the linker sees the C library's names.
+// The functions have separate C++ names, because the headers define some of them as inline functions; the linker sees the C library's
+// names.
 #define CATENA_IN_FRONT_OF(name) __asm__(name) __attribute__((visibility("default"), used))
 extern "C" {
 int catena_open(const char* path, int flags, ...) CATENA_IN_FRONT_OF("open");

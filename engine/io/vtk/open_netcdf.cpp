@@ -31,7 +31,7 @@ std::string dimension_name(int file, int dimension) {
   return name;
 }
 
-/// Number of variables in the groups below a group.
+/// Returns the number of variables in the groups below a group.
 std::size_t variables_in_groups(int file, int depth = 0) {
   int count = 0;
   constexpr int kDeepest = 8;
@@ -62,11 +62,11 @@ class NetcdfReader : public vtkNetCDFCFReader {
 
  protected:
   int ReadMetaData(int file) override {
-    if (const std::size_t hidden = variables_in_groups(file); hidden > 0)
+    if (const std::size_t group_variables = variables_in_groups(file); group_variables > 0)
       notes.push_back(
-          fmt::format("{} variables lie in groups and are left out: \"ncks -G : FILE OUT\" or \"ncks -g GROUP FILE OUT\" brings a "
-                      "group's to the top",
-                      hidden));
+          fmt::format("{} variables in groups were left out: \"ncks -G : FILE OUT\" or \"ncks -g GROUP FILE OUT\" moves the variables "
+                      "of a group to the top level",
+                      group_variables));
     return Superclass::ReadMetaData(file);
   }
 
@@ -95,10 +95,10 @@ class NetcdfReader : public vtkNetCDFCFReader {
     }
     if (static_cast<vtkIdType>(dimensions.size()) != LoadingDimensions->GetNumberOfTuples() ||
         !std::equal(dimensions.begin(), dimensions.end(), LoadingDimensions->GetPointer(0))) {
-      notes.push_back(fmt::format("{} has other dimensions, and is left out", name));
+      notes.push_back(fmt::format("{} has other dimensions and was left out", name));
       return 1;
     }
-    // the box: the last three dimensions are z, y, x
+    // the last three dimensions are z, y, x
     const bool of_points = DimensionsAreForPointData(LoadingDimensions);
     int extent[6];
     GetUpdateExtentForOutput(output, extent);
@@ -110,25 +110,25 @@ class NetcdfReader : public vtkNetCDFCFReader {
         part.start.push_back(0);
         part.count.push_back(1);
         if (length > 1)
-          notes.push_back(fmt::format("of the {} places along {} the first one is read", length, dimension_name(file, dimensions[i])));
+          notes.push_back(fmt::format("only the first of {} positions along {} is read", length, dimension_name(file, dimensions[i])));
         continue;
       }
       if (IsTimeDimension(file, dimensions[i]) != 0)
         notes.push_back(
-            fmt::format("{} is not the first dimension of {}: it is read as an axis of space", dimension_name(file, dimensions[i]), name));
+            fmt::format("{} is not the first dimension of {} and is read as a spatial axis", dimension_name(file, dimensions[i]), name));
       const int cells = of_points ? 1 : 0;
       const auto first = static_cast<std::size_t>(extent[2 * axis]);
-      const auto wanted = static_cast<std::size_t>(std::max(extent[2 * axis + 1] - extent[2 * axis] + cells, 0));
-      if (first > length || wanted > length - first) return failed(name, "has another size than its coordinates");
+      const auto length_read = static_cast<std::size_t>(std::max(extent[2 * axis + 1] - extent[2 * axis] + cells, 0));
+      if (first > length || length_read > length - first) return failed(name, "differs in size from the coordinates");
       part.start.push_back(first);
-      part.count.push_back(wanted);
+      part.count.push_back(length_read);
     }
-    std::vector<std::string> told;
-    const auto values = read_netcdf_values(part, told);
+    std::vector<std::string> value_notes;
+    const auto values = read_netcdf_values(part, value_notes);
     if (!values) return failed(name, values.error().message);
-    for (const std::string& note : told) notes.push_back(fmt::format("{}: {}", name, note));
+    for (const std::string& note : value_notes) notes.push_back(fmt::format("{}: {}", name, note));
     if (*values == nullptr) {
-      notes.push_back(fmt::format("{} holds no numbers, and is left out", name));
+      notes.push_back(fmt::format("{} contains no numbers and was left out", name));
       return 1;
     }
     (*values)->SetName(name);
@@ -157,15 +157,15 @@ class NetcdfReader : public vtkNetCDFCFReader {
       const int dimension = dimensions[dimensions.size() - axis - 1];
       const std::string name = dimension_name(file, dimension);
       if (nc_inq_varid(file, name.c_str(), &variable) == NC_NOERR) axis_scales[axis] = read_netcdf_scale(file, variable);
-      const NetcdfDimension stated = read_netcdf_dimension(file, dimension);
-      axes[axis] = stated.axis;
-      by_name = by_name || stated.guessed_from_name;
+      const NetcdfDimension declared = read_netcdf_dimension(file, dimension);
+      axes[axis] = declared.axis;
+      by_name = by_name || declared.guessed_from_name;
     }
     order = compute_axis_order(axes);
     if (by_name && order != kFileOrder)
       notes.push_back(
-          "the axes follow the names of the dimensions, because not all of their variables have an axis, a standard_name or units "
-          "that say which one they are");
+          "the axes follow the names of the dimensions, because not all coordinate variables have an axis, a standard_name or units "
+          "that identify the axis");
   }
 };
 vtkStandardNewMacro(NetcdfReader);
@@ -190,7 +190,7 @@ void scale_axes(vtkDataSet* data, const std::vector<NetcdfScale>& scales) {
   }
 }
 
-/// First position and step of evenly spaced coordinates; nullopt if they are uneven, or there is only one.
+/// Returns first position and step of evenly spaced coordinates; nullopt if they are uneven, or there is only one.
 std::optional<std::pair<double, double>> even_steps(vtkDataArray* axis) {
   const vtkIdType count = axis != nullptr ? axis->GetNumberOfTuples() : 0;
   if (count < 2) return std::nullopt;
@@ -232,7 +232,7 @@ void make_image(Block& block) {
 vtkSmartPointer<vtkAlgorithm> make_netcdf_reader(const Source& source) {
   const auto reader = vtkSmartPointer<NetcdfReader>::New();
   reader->SetFileName(source.path.c_str());
-  reader->SphericalCoordinatesOff();  // degrees stay degrees: a map, not a globe
+  reader->SphericalCoordinatesOff();  // degrees are used as coordinates, as on a map
   return reader;
 }
 
@@ -241,7 +241,7 @@ void choose_netcdf_variables(vtkAlgorithm* algorithm, const Source& source, Impo
   if (reader == nullptr) return;
   const int count = reader->GetNumberOfVariableArrays();
   std::string best;
-  std::ptrdiff_t most = -1;
+  std::ptrdiff_t max_dimensions = -1;
   for (int i = 0; i < count; ++i) {
     const std::string words = reader->dimensions_of(i);
     const std::ptrdiff_t commas = std::count(words.begin(), words.end(), ',');
@@ -249,7 +249,7 @@ void choose_netcdf_variables(vtkAlgorithm* algorithm, const Source& source, Impo
       best = words;
       break;
     }
-    if (words != "()" && commas > most) best = words, most = commas;
+    if (words != "()" && commas > max_dimensions) best = words, max_dimensions = commas;
   }
   std::vector<std::string> others;
   for (int i = 0; i < count; ++i)
@@ -258,11 +258,11 @@ void choose_netcdf_variables(vtkAlgorithm* algorithm, const Source& source, Impo
   if (best.empty() || (others.empty() && count == 0)) return;
   reader->SetDimensions(best.c_str());
   if (others.empty()) return;
-  constexpr std::size_t kMost = 10;
-  const std::size_t shown = std::min(kMost, others.size());
-  const std::string more = others.size() > shown ? fmt::format(" and {} more", others.size() - shown) : "";
-  opened.notes.push_back(fmt::format("the variables over the dimensions {} are read; --grid NAME chooses others: {}{}", best,
-                                     fmt::join(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(shown), ", "), more));
+  constexpr std::size_t kMaxListed = 10;
+  const std::size_t listed = std::min(kMaxListed, others.size());
+  const std::string more = others.size() > listed ? fmt::format(" and {} more", others.size() - listed) : "";
+  opened.notes.push_back(fmt::format("the variables with the dimensions {} are read; --grid NAME selects others: {}{}", best,
+                                     fmt::join(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(listed), ", "), more));
 }
 
 Outcome finish_netcdf(vtkAlgorithm* algorithm, ImportedData& opened) {
@@ -284,7 +284,7 @@ Outcome finish_netcdf(vtkAlgorithm* algorithm, ImportedData& opened) {
   }
   if (arrays == 0)
     return Error{
-        fmt::format("holds no variables of numbers over dimensions{}{}", opened.notes.empty() ? "" : "; ", fmt::join(opened.notes, "; "))};
+        fmt::format("contains no numeric variables with dimensions{}{}", opened.notes.empty() ? "" : "; ", fmt::join(opened.notes, "; "))};
   return Done{};
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Opens PLY (Turk, 1994): text or binary of either byte order, elements with properties of any type. Read are the vertices with x, y, z as
-// doubles and their other single numbers as values, faces (polygons) and strips of triangles; other elements are ignored. VTK's own reader
-// rounds coordinates to single precision, which merges vertices that lie far from the origin.
+// Opens PLY (Turk, 1994): text or binary in either byte order, elements with properties of any type. Vertices are read with x, y, z as
+// doubles and their other scalar properties as values, also faces (polygons) and triangle strips; other elements are ignored. VTK's own
+// reader rounds coordinates to single precision, which merges vertices far from the origin.
 #include <fmt/format.h>
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>
@@ -125,15 +125,16 @@ class PlyReader {
 
   Result<vtkSmartPointer<vtkPolyData>> read() {
     CATENA_CHECK(read_header());
-    // the counted items must exist: a number takes at least one byte, in text two
+    // the file must be large enough for the elements: a number takes at least one byte, in text two
     PlyNumbers numbers(bytes_.substr(body_), text_, big_);
     points_->SetDataTypeToDouble();
     for (const PlyElement& element : elements_) {
-      std::uint64_t least = 0;
-      for (const PlyProperty& p : element.properties) least += text_ ? 1 : byte_size(p.list.value_or(p.type));
-      if (least > 0 && element.count > numbers.left() / least)
-        return Error{fmt::format("says {} of \"{}\", more than its {} bytes can hold", element.count, element.name, numbers.left())};
-      if (least > 0) CATENA_CHECK(read_element(element, numbers));
+      std::uint64_t min_bytes = 0;
+      for (const PlyProperty& p : element.properties) min_bytes += text_ ? 1 : byte_size(p.list.value_or(p.type));
+      if (min_bytes > 0 && element.count > numbers.left() / min_bytes)
+        return Error{
+            fmt::format("declares {} of \"{}\", more than the {} bytes of data can hold", element.count, element.name, numbers.left())};
+      if (min_bytes > 0) CATENA_CHECK(read_element(element, numbers));
     }
     if (points_->GetNumberOfPoints() == 0) return Error{"has no vertices with x, y and z"};
     const auto poly = vtkSmartPointer<vtkPolyData>::New();
@@ -149,9 +150,9 @@ class PlyReader {
   Outcome read_header() {
     std::size_t at = 0;
     const auto next_line = [&](std::string_view& line) {
-      constexpr std::size_t kLongestHeader = 1 << 20;
+      constexpr std::size_t kMaxHeader = 1 << 20;
       const std::size_t end = bytes_.find_first_of("\r\n", at);
-      if (end == std::string_view::npos || end > kLongestHeader) return false;
+      if (end == std::string_view::npos || end > kMaxHeader) return false;
       line = bytes_.substr(at, end - at);
       at = end + (bytes_.substr(end, 2) == "\r\n" ? 2 : 1);
       return true;
@@ -179,31 +180,31 @@ class PlyReader {
         const auto type = ply_type(list ? c : a);
         const auto count = list ? ply_type(b) : std::nullopt;
         const std::string& name = list ? d : b;
-        if (elements_.empty() || !type || (list && !count) || name.empty())
-          return Error{"has a property of an unknown form: " + in_quotes(line)};
+        if (elements_.empty() || !type || (list && !count) || name.empty()) return Error{"has an invalid property: " + in_quotes(line)};
         elements_.back().properties.push_back({name, *type, count});
       }
     }
-    if (!known) return Error{"has an unknown format, expected ascii, binary_little_endian or binary_big_endian 1.0"};
+    if (!known) return Error{"has no format line, or an unknown format; ascii, binary_little_endian or binary_big_endian was expected"};
     body_ = at;
     return Done{};
   }
 
   Outcome read_element(const PlyElement& element, PlyNumbers& numbers) {
     const bool vertices = element.name == "vertex";
-    // destination of a vertex's numbers: 0, 1, 2: a coordinate; 3 and more: values
-    std::vector<int> goes(element.properties.size(), -1);
+    // destinations of a vertex's numbers: 0 to 2 are coordinates, 3 and more are values
+    std::vector<int> targets(element.properties.size(), -1);
     if (vertices) {
       if (points_->GetNumberOfPoints() > 0) return Error{"has two elements \"vertex\""};
-      CATENA_CHECK(check_memory_available("its vertices", static_cast<double>(element.count) * 8 * (3 + static_cast<double>(goes.size()))));
+      CATENA_CHECK(
+          check_memory_available("the vertices", static_cast<double>(element.count) * 8 * (3 + static_cast<double>(targets.size()))));
       int found = 0;
-      for (std::size_t p = 0; p < goes.size(); ++p) {
+      for (std::size_t p = 0; p < targets.size(); ++p) {
         const PlyProperty& property = element.properties[p];
         if (property.list) continue;
         for (int axis = 0; axis < 3; ++axis)
-          if (property.name == std::string(1, static_cast<char>('x' + axis))) goes[p] = axis, found |= 1 << axis;
-        if (goes[p] < 0 && is_value(property.name)) {
-          goes[p] = 3 + static_cast<int>(values_.size());
+          if (property.name == std::string(1, static_cast<char>('x' + axis))) targets[p] = axis, found |= 1 << axis;
+        if (targets[p] < 0 && is_value(property.name)) {
+          targets[p] = 3 + static_cast<int>(values_.size());
           const auto array = vtkSmartPointer<vtkFloatArray>::New();
           array->SetName(property.name.c_str());
           array->SetNumberOfTuples(static_cast<vtkIdType>(element.count));
@@ -218,22 +219,22 @@ class PlyReader {
       double xyz[3] = {0, 0, 0};
       for (std::size_t p = 0; p < element.properties.size(); ++p) {
         const PlyProperty& property = element.properties[p];
-        const bool wanted = property.list && (element.name == "face" || element.name == "tristrips") &&
-                            (property.name == "vertex_indices" || property.name == "vertex_index");
+        const bool is_used = property.list && (element.name == "face" || element.name == "tristrips") &&
+                             (property.name == "vertex_indices" || property.name == "vertex_index");
         double number = 0, count = 1;
         if (property.list && !numbers.next(*property.list, count)) return cut(element, n);
         corners.clear();
         if (!(count >= 0) || count > static_cast<double>(numbers.left())) return cut(element, n);
         for (double i = 0; i < count; ++i) {
           if (!numbers.next(property.type, number)) return cut(element, n);
-          if (wanted) corners.push_back(static_cast<vtkIdType>(std::clamp(number, -2.0, 1e15)));
+          if (is_used) corners.push_back(static_cast<vtkIdType>(std::clamp(number, -2.0, 1e15)));
         }
-        if (wanted) CATENA_CHECK(add_corners(element, n, corners));
-        if (property.list || goes[p] < 0) continue;
-        if (goes[p] < 3)
-          xyz[goes[p]] = number;
+        if (is_used) CATENA_CHECK(add_corners(element, n, corners));
+        if (property.list || targets[p] < 0) continue;
+        if (targets[p] < 3)
+          xyz[targets[p]] = number;
         else
-          values_[static_cast<std::size_t>(goes[p] - 3)]->SetValue(static_cast<vtkIdType>(n), static_cast<float>(number));
+          values_[static_cast<std::size_t>(targets[p] - 3)]->SetValue(static_cast<vtkIdType>(n), static_cast<float>(number));
       }
       if (vertices) points_->SetPoint(static_cast<vtkIdType>(n), xyz);
     }
@@ -253,7 +254,7 @@ class PlyReader {
       } else if (corner < 0 || corner >= points_->GetNumberOfPoints()) {
         const std::string order = !text_ && looks_byte_swapped(*points_->GetData(), ".ply") ? "; " + byte_order_advice(".ply") : "";
         return Error{
-            fmt::format("{} {} names vertex {}, expected 0 to {}{}", element.name, n, corner, points_->GetNumberOfPoints() - 1, order)};
+            fmt::format("{} {} refers to vertex {}, expected 0 to {}{}", element.name, n, corner, points_->GetNumberOfPoints() - 1, order)};
       } else {
         strip.push_back(corner);
       }
@@ -265,7 +266,7 @@ class PlyReader {
     return Done{};
   }
 
-  /// Whether a property is a value; normals, colors and texture coordinates are not.
+  /// Returns whether a property is a value; normals, colors and texture coordinates are not.
   static bool is_value(const std::string& name) {
     static constexpr std::string_view kLook[] = {
         "nx", "ny", "nz", "red", "green",     "blue",     "alpha", "diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha",
@@ -274,7 +275,7 @@ class PlyReader {
   }
 
   Error cut(const PlyElement& element, std::uint64_t n) const {
-    return Error{fmt::format("is cut short or damaged: \"{}\" {} of {} is not there whole", element.name, n + 1, element.count)};
+    return Error{fmt::format("is truncated or damaged: \"{}\" {} of {} is incomplete", element.name, n + 1, element.count)};
   }
 
   std::string_view bytes_;

@@ -41,8 +41,8 @@ void keep_units(vtkDataSetAttributes* arrays, ImportedData& opened) {
   }
 }
 
-/// The time that a file of one step states: ParaView's TimeValue, VisIt's TIME; nullopt if it states none.
-std::optional<double> stated_time(vtkDataObject* object) {
+/// Returns the time that a file of one step states: ParaView's TimeValue, VisIt's TIME; nullopt if it states none.
+std::optional<double> time_of_file(vtkDataObject* object) {
   if (object == nullptr) return std::nullopt;
   for (const char* name : {"TimeValue", "TIME"}) {
     vtkDataArray* array = object->GetFieldData()->GetArray(name);
@@ -53,9 +53,9 @@ std::optional<double> stated_time(vtkDataObject* object) {
 
 /// Returns an Error if a block index is too large: VTK allocates every block below the largest index.
 Outcome check_indices(const Source& source) {
-  constexpr std::uint64_t kMostBytes = 16 << 20;
-  constexpr long long kMostBlocks = 1'000'000;
-  const auto text = read_text_file(source.path, "a collection of blocks", kMostBytes);
+  constexpr std::uint64_t kMaxBytes = 16 << 20;
+  constexpr long long kMaxBlocks = 1'000'000;
+  const auto text = read_text_file(source.path, "a collection of blocks", kMaxBytes);
   if (!text) return Done{};  // VTK reports the problem
   for (std::size_t at = text->find("index"); at != std::string::npos; at = text->find("index", at + 1)) {
     const std::size_t open = text->find_first_of("\"'", at),
@@ -63,9 +63,9 @@ Outcome check_indices(const Source& source) {
     if (close == std::string::npos || trim(std::string_view(*text).substr(at + 5, open - at - 5)) != "=") continue;
     const std::string word = text->substr(open + 1, close - open - 1);
     const auto index = parse_integer(trim(word));
-    if (!index || *index < 0 || *index >= kMostBlocks)
+    if (!index || *index < 0 || *index >= kMaxBlocks)
       return Error{fmt::format("{}: a block has the index {}, expected 0 to {}", source.display_name,
-                               sanitize_for_terminal(word.substr(0, 40)), kMostBlocks - 1)};
+                               sanitize_for_terminal(word.substr(0, 40)), kMaxBlocks - 1)};
   }
   return Done{};
 }
@@ -117,8 +117,8 @@ Result<ImportedData> open_cgns(const Source& source) {
 }
 
 Result<ImportedData> open_netcdf(const Source& source) {
-  if (const Outcome whole = check_netcdf_size(source.path); !whole)
-    return Error{one_line(source.display_name + ": " + whole.error().message)};
+  if (const Outcome complete = check_netcdf_size(source.path); !complete)
+    return Error{one_line(source.display_name + ": " + complete.error().message)};
   return read_with_reader(*make_netcdf_reader(source), source);
 }
 
@@ -138,7 +138,7 @@ Result<ImportedData> read_with_reader(vtkAlgorithm& algorithm, const Source& sou
   choose_netcdf_variables(reader, source, opened);
   // the data
   bool again = false;
-  const auto whole = read_checking_truncation(
+  const auto complete = read_checking_truncation(
       [&] {
         if (std::exchange(again, true)) reader->Modified();
         if (opened.times.empty())
@@ -148,23 +148,24 @@ Result<ImportedData> read_with_reader(vtkAlgorithm& algorithm, const Source& sou
       },
       [&] { return reader->GetOutputDataObject(0); });
   vtkDataObject* object = reader->GetOutputDataObject(0);
-  if (const std::string complaint = take_reader_errors(); !complaint.empty()) return failed("cannot be read (" + complaint + ")");
-  if (!whole) return failed(whole.error().message);
+  if (const std::string reader_errors = take_reader_errors(); !reader_errors.empty())
+    return failed("cannot be read (" + reader_errors + ")");
+  if (!complete) return failed(complete.error().message);
   if (auto* composite = vtkCompositeDataSet::SafeDownCast(object)) {
     const auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
     for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem()) add_block(each->GetCurrentDataObject(), opened);
   } else if (object != nullptr && vtkDataSet::SafeDownCast(object) == nullptr) {
-    return failed(fmt::format("holds a {}, expected grids, meshes, lines or points", object->GetClassName()));
+    return failed(fmt::format("contains a {}, expected grids, meshes, lines or points", object->GetClassName()));
   } else {
     add_block(object, opened);
   }
   if (opened.times.empty()) {
-    auto time = stated_time(object);
-    for (std::size_t b = 0; !time && b < opened.blocks.size(); ++b) time = stated_time(opened.blocks[b].data);
+    auto time = time_of_file(object);
+    for (std::size_t b = 0; !time && b < opened.blocks.size(); ++b) time = time_of_file(opened.blocks[b].data);
     if (time) opened.times.push_back(*time);
   }
   if (const auto finished = finish_netcdf(reader, opened); !finished) return failed(finished.error().message);
-  if (opened.blocks.empty()) return failed("holds nothing, or is not of the kind that its name says");
+  if (opened.blocks.empty()) return failed("is empty, or the contents do not match the file extension");
   return opened;
 }
 

@@ -40,9 +40,9 @@ class Cutter {
     if (!cut(ids)) to_->InsertNextCell(VTK_POLYHEDRON, ids);
   }
 
-  CellValues take(std::vector<vtkSmartPointer<vtkDataSet>>& keep) {
+  CellValues take(std::vector<vtkSmartPointer<vtkDataSet>>& owned) {
     to_->GetPointData()->AddArray(values_);
-    keep.push_back(to_.Get());
+    owned.push_back(to_.Get());
     return {to_, values_};
   }
 
@@ -91,7 +91,7 @@ class Cutter {
 
   /// Orients all faces the same way, whatever the order in the file: neighbors traverse their common edge in opposite directions. Returns
   /// false if the faces are not a closed surface.
-  static bool turn_alike(std::vector<Ids>& faces) {
+  static bool orient_faces(std::vector<Ids>& faces) {
     struct Side {
       std::size_t face;
       bool forward;  ///< starts at the edge's lower point index
@@ -106,31 +106,31 @@ class Cutter {
     std::vector<std::vector<std::pair<std::size_t, bool>>> neighbours(faces.size());
     for (const auto& [edge, sides] : edges) {
       if (sides.size() != 2) return false;
-      const bool alike = sides[0].forward != sides[1].forward;
-      neighbours[sides[0].face].emplace_back(sides[1].face, alike);
-      neighbours[sides[1].face].emplace_back(sides[0].face, alike);
+      const bool same_orientation = sides[0].forward != sides[1].forward;
+      neighbours[sides[0].face].emplace_back(sides[1].face, same_orientation);
+      neighbours[sides[1].face].emplace_back(sides[0].face, same_orientation);
     }
-    std::vector<int> turned(faces.size(), -1);
+    std::vector<int> orientation(faces.size(), -1);
     std::vector<std::size_t> next{0};
-    turned[0] = 0;
+    orientation[0] = 0;
     while (!next.empty()) {
       const std::size_t f = next.back();
       next.pop_back();
-      for (const auto& [other, alike] : neighbours[f]) {
-        if (turned[other] >= 0) continue;
-        turned[other] = alike ? turned[f] : 1 - turned[f];
+      for (const auto& [other, same_orientation] : neighbours[f]) {
+        if (orientation[other] >= 0) continue;
+        orientation[other] = same_orientation ? orientation[f] : 1 - orientation[f];
         next.push_back(other);
       }
     }
     for (std::size_t f = 0; f < faces.size(); ++f)
-      if (turned[f] == 1) std::reverse(faces[f].begin(), faces[f].end());
+      if (orientation[f] == 1) std::reverse(faces[f].begin(), faces[f].end());
     return true;
   }
 
   bool cut(vtkIdList* stream) {
     Ids all;
     std::vector<Ids> triangles, faces = faces_of(stream);
-    if (faces.empty() || !turn_alike(faces)) return false;
+    if (faces.empty() || !orient_faces(faces)) return false;
     for (const Ids& face : faces) {
       all.insert(all.end(), face.begin(), face.end());
       if (face.size() == 3) {
@@ -175,7 +175,7 @@ class Cutter {
 
 }  // namespace
 
-CellValues tetrahedralize_polyhedra(const CellValues& block, std::vector<vtkSmartPointer<vtkDataSet>>& keep) {
+CellValues tetrahedralize_polyhedra(const CellValues& block, std::vector<vtkSmartPointer<vtkDataSet>>& owned) {
   auto* grid = vtkUnstructuredGrid::SafeDownCast(block.data);
   if (grid == nullptr) return block;
   bool some = false;
@@ -183,7 +183,7 @@ CellValues tetrahedralize_polyhedra(const CellValues& block, std::vector<vtkSmar
   if (!some) return block;
   Cutter cutter(grid, block.values);
   for (vtkIdType i = 0; i < grid->GetNumberOfCells(); ++i) cutter.add(i);
-  return cutter.take(keep);
+  return cutter.take(owned);
 }
 
 }  // namespace catena::vtk

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The program catena-read-vtk: reads one file, or one folder, for catena, with VTK, ITK and similar libraries, into the shared memory file
-// that is its descriptor 3 (engine/io/protocol.h). It is sandboxed: it can only open files in the folder of the named file.
+// The program catena-read-vtk: reads one file, or one folder, for catena with VTK, ITK and similar libraries and writes the response into
+// the shared memory file with descriptor 3 (engine/io/protocol.h). The sandbox restricts it to the folder of the named file.
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,14 +22,14 @@ struct Place {
 
 Place place_of(const std::string& path) {
   std::error_code code;
-  const std::filesystem::path whole = std::filesystem::canonical(path, code);
+  const std::filesystem::path full_path = std::filesystem::canonical(path, code);
   if (code) return {};
-  if (std::filesystem::is_directory(whole, code)) return {whole, {}};
-  return {whole.parent_path(), whole.filename()};
+  if (std::filesystem::is_directory(full_path, code)) return {full_path, {}};
+  return {full_path.parent_path(), full_path.filename()};
 }
 
-/// A pipe, socket or device in a folder of images, at which GDCM's search would end silently; empty: none.
-std::string strange_in(const std::filesystem::path& folder) {
+/// Returns a pipe, socket or device in a folder of images, at which GDCM's search would end silently; empty: none.
+std::string find_special_file(const std::filesystem::path& folder) {
   std::error_code code;
   for (std::filesystem::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
     std::error_code ignored;
@@ -47,7 +47,7 @@ int main() {
   catena::sandbox::ResponseFile out(catena::sandbox::kResponseFd);
   const auto request = out.read_request();
   if (!request) {
-    static constexpr char kWho[] = "catena-read-vtk: a part of catena, which starts it\n";
+    static constexpr char kWho[] = "catena-read-vtk: reads files for catena, which starts this program\n";
     return ::write(STDERR_FILENO, kWho, sizeof kWho - 1) < 0 ? 1 : 2;
   }
   ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
@@ -68,7 +68,7 @@ int main() {
     reply = catena::vtk::handle_request(*request, (place.name.empty() ? folder : folder / place.name).string(), place.folder.string(), out);
   }
   catena::sandbox::OpenedFiles opened = catena::sandbox::opened_files();
-  if (images && confined && !place.folder.empty()) opened.refused_path = strange_in(root_changed ? "/" : place.folder);
+  if (images && confined && !place.folder.empty()) opened.refused_path = find_special_file(root_changed ? "/" : place.folder);
   if (!opened.refused_path.empty()) {
     reply = {};
     reply.error = request->load_request.path + ": cannot be read: " + catena::in_quotes(opened.refused_path) +

@@ -51,9 +51,9 @@ void continue_lattice(const ResampleGrid& lattice, std::size_t components, float
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j)
       for (int i = 0; i < n[0]; ++i) {
-        const std::size_t here = lattice.linear_index(i, j, k);
-        if (valid[here] != 0) continue;
-        double straight[3] = {0, 0, 0}, beside[3] = {0, 0, 0};
+        const std::size_t voxel = lattice.linear_index(i, j, k);
+        if (valid[voxel] != 0) continue;
+        double extrapolated[3] = {0, 0, 0}, neighbour_mean[3] = {0, 0, 0};
         int lines = 0, neighbours = 0;
         for (int d = 0; d < 27; ++d) {
           const int x = d % 3 - 1, y = d / 3 % 3 - 1, z = d / 9 - 1;
@@ -65,14 +65,14 @@ void continue_lattice(const ResampleGrid& lattice, std::size_t components, float
           lines += far ? 1 : 0;
           for (std::size_t c = 0; c < components; ++c) {
             const double v = static_cast<double>(values[first * components + c]);
-            beside[c] += v;
-            if (far) straight[c] += 2 * v - static_cast<double>(values[second * components + c]);
+            neighbour_mean[c] += v;
+            if (far) extrapolated[c] += 2 * v - static_cast<double>(values[second * components + c]);
           }
         }
         if (neighbours == 0) continue;
         for (std::size_t c = 0; c < components; ++c)
-          values[here * components + c] = static_cast<float>(lines > 0 ? straight[c] / lines : beside[c] / neighbours);
-        valid[here] = kNear;
+          values[voxel * components + c] = static_cast<float>(lines > 0 ? extrapolated[c] / lines : neighbour_mean[c] / neighbours);
+        valid[voxel] = kNear;
       }
 }
 
@@ -176,12 +176,12 @@ class Overlap {
     return some;
   }
 
-  /// Whether a position of the data's cell lies within the grid's cell, not on its faces.
+  /// Returns whether a position of the data's cell lies within the grid's cell, not on its faces.
   bool overlaps(CellSampler& work, const Vec3& lowest, Test test) const {
-    constexpr double kBeside = 0.01;  // of a voxel
-    const auto meets = [&](const Vec3& place) {
+    constexpr double kBeside = 0.01;  // fraction of a voxel
+    const auto overlaps_at = [&](const Vec3& position) {
       double distance2 = 0;
-      if (work.contains(lowest + place * lattice_.spacing, distance2)) return work.strictly_inside();
+      if (work.contains(lowest + position * lattice_.spacing, distance2)) return work.strictly_inside();
       bool in = true;
       for (int a = 0; a < 3; ++a) {
         const double at = (work.closest_point()[a] - lowest[a]) / lattice_.spacing[a];
@@ -189,9 +189,9 @@ class Overlap {
       }
       return in;
     };
-    if (test == Test::middles) return meets(Vec3(0.5));
+    if (test == Test::middles) return overlaps_at(Vec3(0.5));
     for (int c = 0; c < 8; ++c)
-      if (meets({(c & 1) != 0 ? 1 - kBeside : kBeside, (c & 2) != 0 ? 1 - kBeside : kBeside, (c & 4) != 0 ? 1 - kBeside : kBeside}))
+      if (overlaps_at({(c & 1) != 0 ? 1 - kBeside : kBeside, (c & 2) != 0 ? 1 - kBeside : kBeside, (c & 4) != 0 ? 1 - kBeside : kBeside}))
         return true;
     return false;
   }
@@ -219,12 +219,12 @@ void agree(const ResampleGrid& lattice, std::vector<std::uint8_t>& valid, std::v
 }
 
 /// Samples the grid at the positions of the lowest and the highest value.
-void find_extremes(const CellSamples& places, ResampleResult& made, std::size_t components) {
+void find_extremes(const CellSamples& cell_samples, ResampleResult& made, std::size_t components) {
   std::vector<double> read;
-  for (const CellSamples::Sample& place : places.extremes()) {
+  for (const CellSamples::Sample& sample : cell_samples.extremes()) {
     int base[3];
     double t[3], sum[3] = {0, 0, 0};
-    if (!CellSamples::locate_voxel_cell(made.grid, place.position, base, t)) continue;
+    if (!CellSamples::locate_voxel_cell(made.grid, sample.position, base, t)) continue;
     for (int k = 0; k < 8; ++k) {
       double weight = 1;
       for (int a = 0; a < 3; ++a) weight *= (k >> a & 1) != 0 ? t[a] : 1 - t[a];
@@ -238,13 +238,14 @@ void find_extremes(const CellSamples& places, ResampleResult& made, std::size_t 
   made.max_value = read.back();
 }
 
-ResampleError error_of(const CellSamples& places, const ResampleResult& made, std::size_t components) {
+ResampleError error_of(const CellSamples& cell_samples, const ResampleResult& made, std::size_t components) {
   const ResampleGrid& lattice = made.grid;
-  return places.measure_error(lattice, places.samples(), 1, [&](const CellSamples::Sample&, const int(&base)[3], int k, double* value) {
-    const std::size_t at = lattice.linear_index(base[0] + (k & 1), base[1] + (k >> 1 & 1), base[2] + (k >> 2));
-    for (std::size_t c = 0; c < components; ++c) value[c] = static_cast<double>(made.values[at * components + c]);
-    return made.valid[at] != 0;
-  });
+  return cell_samples.measure_error(
+      lattice, cell_samples.samples(), 1, [&](const CellSamples::Sample&, const int(&base)[3], int k, double* value) {
+        const std::size_t at = lattice.linear_index(base[0] + (k & 1), base[1] + (k >> 1 & 1), base[2] + (k >> 2));
+        for (std::size_t c = 0; c < components; ++c) value[c] = static_cast<double>(made.values[at * components + c]);
+        return made.valid[at] != 0;
+      });
 }
 
 ResampleGrid finer_than(const ResampleGrid& lattice, double factor) {
@@ -254,11 +255,11 @@ ResampleGrid finer_than(const ResampleGrid& lattice, double factor) {
 
 }  // namespace
 
-Result<ResampleResult> resample(const std::vector<CellValues>& blocks, const ResamplePlan& plan, double most_voxels) {
+Result<ResampleResult> resample(const std::vector<CellValues>& blocks, const ResamplePlan& plan, double max_voxels) {
   ResampleResult made;
   made.grid = plan.grid;
   const std::size_t components = component_count(blocks);
-  const CellSamples places(blocks, 2);
+  const CellSamples cell_samples(blocks, 2);
   CellFinder within(blocks);
   const Vec3 steps(plan.grid.size.x - 1, plan.grid.size.y - 1, plan.grid.size.z - 1);
   const BoxSamples box(within, plan.grid.origin, plan.grid.origin + plan.grid.spacing * steps, 4);
@@ -266,31 +267,31 @@ Result<ResampleResult> resample(const std::vector<CellValues>& blocks, const Res
     made.cells.assign(made.grid.voxel_count(), 0);
     Overlap(made.grid, made.cells).find(blocks);
     agree(made.grid, made.valid, made.cells);
-    made.range = places.range();
+    made.range = cell_samples.range();
     made.shares = box.shares(made.grid, made.cells);
-    find_extremes(places, made, components);
+    find_extremes(cell_samples, made, components);
     return std::move(made);
   };
-  constexpr int kMostTimes = 6;
-  double before = 1e300;
-  for (int time = 0; time < kMostTimes; ++time) {
+  constexpr int kMaxTimes = 6;
+  double last_error = 1e300;
+  for (int time = 0; time < kMaxTimes; ++time) {
     made.values.assign(made.grid.voxel_count() * components, 0.f);
     made.valid.assign(made.grid.voxel_count(), 0);
     fill(blocks, made.grid, made.values.data(), made.valid.data());
-    made.error = error_of(places, made, components);
+    made.error = error_of(cell_samples, made, components);
     if (made.error.p99 <= kTargetError) return finished();
-    made.refinement_stalled = made.error.p99 > kUsefulErrorRatio * before || plan.refinement_stalled;
+    made.refinement_stalled = made.error.p99 > kUsefulErrorRatio * last_error || plan.refinement_stalled;
     if ((made.refinement_stalled || !plan.meets_target) && time > 0) return finished();
-    before = made.error.p99;
-    constexpr double kLeastStep = 1.15, kMostStep = 1.6;
-    const double finer = std::clamp(std::sqrt(made.error.p99 / (0.8 * kTargetError)), kLeastStep, kMostStep);
+    last_error = made.error.p99;
+    constexpr double kMinStep = 1.15, kMaxStep = 1.6;
+    const double finer = std::clamp(std::sqrt(made.error.p99 / (0.8 * kTargetError)), kMinStep, kMaxStep);
     made.required_voxels = static_cast<double>(made.grid.voxel_count()) * std::pow(made.error.p99 / kTargetError, 1.5);
     ResampleGrid next = finer_than(made.grid, finer);
-    if (static_cast<double>(next.voxel_count()) > most_voxels) {
+    if (static_cast<double>(next.voxel_count()) > max_voxels) {
       made.required_voxels = std::max(made.required_voxels, static_cast<double>(next.voxel_count()));
       break;
     }
-    if (time + 1 < kMostTimes) made.grid = next;
+    if (time + 1 < kMaxTimes) made.grid = next;
   }
   return finished();
 }

@@ -14,7 +14,7 @@
 ///           fixed seed: 99th percentile and maximum, in % of the range of the values without outliers (vectors: of the largest length).
 ///           Predicted at other positions than those where it is measured; if the measured error is larger, the grid is refined again
 ///   shares  at random positions in the whole box: the fraction outside the data cells but in a valid cell of the grid, and the reverse
-/// One thread; deterministic for the same cells and the same `most_voxels`.
+/// One thread; deterministic for the same cells and the same `max_voxels`.
 #pragma once
 #include <vtkDataArray.h>
 #include <vtkDataSet.h>
@@ -69,7 +69,7 @@ struct ResamplePlan {
   ResampleGrid grid;
   double p99 = 0;                   ///< Predicted 99th percentile of the error, %.
   bool meets_target = true;         ///< The predicted error is at most kTargetError.
-  bool refinement_stalled = false;  ///< It is larger, and finer voxels did not reduce it.
+  bool refinement_stalled = false;  ///< The predicted error is larger, and finer voxels did not reduce it.
 };
 
 inline constexpr double kTargetError = 1;  ///< Target of the error, %.
@@ -79,9 +79,9 @@ inline constexpr double kNarrowGapVoxels = 4;  ///< Width of a narrow gap, voxel
 /// Maximum fraction of the box that may be filled narrow gaps, see above.
 inline constexpr double kMaxGapShare = 2e-4;
 
-/// Plans a grid with at most `most_voxels` voxels. Returns an Error with a message fragment when there are no cells with a volume, or
+/// Plans a grid with at most `max_voxels` voxels. Returns an Error with a message fragment when there are no cells with a volume, or
 /// values or points are not finite.
-Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, double most_voxels);
+Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, double max_voxels);
 
 /// A resampled grid.
 struct ResampleResult {
@@ -96,7 +96,7 @@ struct ResampleResult {
   double required_voxels = 0;           ///< If the error is too large: about the number of voxels that would suffice.
   bool refinement_stalled = false;      ///< The error is too large, and finer voxels did not reduce it.
 };
-/// Resamples to the planned grid, or to a finer one if the measured error requires it, with at most `most_voxels` voxels.
-Result<ResampleResult> resample(const std::vector<CellValues>& blocks, const ResamplePlan& plan, double most_voxels);
+/// Resamples to the planned grid, or to a finer one if the measured error requires it, with at most `max_voxels` voxels.
+Result<ResampleResult> resample(const std::vector<CellValues>& blocks, const ResamplePlan& plan, double max_voxels);
 
 }  // namespace catena::vtk

@@ -10,9 +10,9 @@ namespace catena::vtk {
 namespace {
 
 /// Predicts the error of a grid without resampling to it: the grid's nodes are evaluated one by one, directly in the blocks.
-class Foresight {
+class ErrorPredictor {
  public:
-  Foresight(const std::vector<CellValues>& blocks, CellFinder& within) : blocks_(blocks), within_(within), places_(blocks, 1) {
+  ErrorPredictor(const std::vector<CellValues>& blocks, CellFinder& within) : blocks_(blocks), within_(within), places_(blocks, 1) {
     for (const CellValues& block : blocks) others_.emplace_back(block);
   }
   bool empty() const { return places_.samples().empty(); }
@@ -25,18 +25,18 @@ class Foresight {
  private:
   static constexpr std::size_t kEvery = 4;
 
-  ResampleError on(const ResampleGrid& lattice, const std::vector<CellSamples::Sample>& places, std::size_t every) {
+  ResampleError on(const ResampleGrid& lattice, const std::vector<CellSamples::Sample>& samples, std::size_t every) {
     std::size_t last_block = blocks_.size();
-    std::optional<CellSampler> own;
+    std::optional<CellSampler> sampler;
     vtkIdType own_cell = -1;
-    const auto corner = [&](const CellSamples::Sample& place, const int(&base)[3], int k, double* value) {
-      if (place.block != last_block) {
-        own.emplace(blocks_[place.block]);
-        last_block = place.block;
+    const auto corner = [&](const CellSamples::Sample& sample, const int(&base)[3], int k, double* value) {
+      if (sample.block != last_block) {
+        sampler.emplace(blocks_[sample.block]);
+        last_block = sample.block;
         own_cell = -1;
       }
-      if (place.cell != own_cell && !own->set_cell(place.cell)) return false;
-      own_cell = place.cell;
+      if (sample.cell != own_cell && !sampler->set_cell(sample.cell)) return false;
+      own_cell = sample.cell;
       Vec3 p;
       for (int a = 0; a < 3; ++a) p[a] = lattice.origin[a] + lattice.spacing[a] * (base[a] + (k >> a & 1));
       double distance2 = 0;
@@ -45,10 +45,10 @@ class Foresight {
       if (cell >= 0 && other.set_cell(cell) && other.contains(p, distance2))
         other.interpolate(true, value);
       else
-        own->interpolate(own->contains(p, distance2), value);
+        sampler->interpolate(sampler->contains(p, distance2), value);
       return true;
     };
-    return places_.measure_error(lattice, places, every, corner);
+    return places_.measure_error(lattice, samples, every, corner);
   }
 
   const std::vector<CellValues>& blocks_;
@@ -57,8 +57,8 @@ class Foresight {
   std::deque<CellSampler> others_;  ///< by block
 };
 
-constexpr double kLeastSteps = 72;  ///< along the longest axis
-constexpr double kFewVoxels = 4e5;  ///< maximum number of voxels for reaching kLeastSteps
+constexpr double kMinSteps = 72;    ///< along the longest axis
+constexpr double kFewVoxels = 4e5;  ///< maximum number of voxels for reaching kMinSteps
 
 double middle(std::vector<double>& values) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -72,8 +72,8 @@ ResampleGrid make_resample_grid(const Vec3& lo, const Vec3& hi, const Vec3& edge
   ResampleGrid lattice;
   int n[3];
   for (int a = 0; a < 3; ++a) {
-    constexpr double kMostAxis = 1 << 14;
-    const double steps = std::clamp(std::ceil((hi[a] - lo[a]) / (edges[a] * factor) - 1e-9), 1.0, kMostAxis);
+    constexpr double kMaxAxis = 1 << 14;
+    const double steps = std::clamp(std::ceil((hi[a] - lo[a]) / (edges[a] * factor) - 1e-9), 1.0, kMaxAxis);
     n[a] = static_cast<int>(steps) + 1;
     lattice.spacing[a] = hi[a] > lo[a] ? (hi[a] - lo[a]) / steps : edges[a];
   }
@@ -82,7 +82,7 @@ ResampleGrid make_resample_grid(const Vec3& lo, const Vec3& hi, const Vec3& edge
   return lattice;
 }
 
-Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, double most_voxels) {
+Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, double max_voxels) {
   if (blocks.empty()) return Error{"has no cells with a volume"};
   Vec3 lo(1e300), hi(-1e300);
   std::vector<double> extents[3];
@@ -110,59 +110,59 @@ Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, doub
   // the finest grid that fits
   double factor = 1;
   const auto voxels = [&](double f) { return static_cast<double>(make_resample_grid(lo, hi, edges, f).voxel_count()); };
-  while (voxels(factor) > most_voxels) factor *= 1.1;
+  while (voxels(factor) > max_voxels) factor *= 1.1;
   // a few cells may be represented exactly by a few voxels, but their mask would be a coarse staircase
   const auto steps = [&](double f) {
     const field::Index3 size = make_resample_grid(lo, hi, edges, f).size;
     return std::max({size.x, size.y, size.z}) - 1;
   };
-  while (steps(factor) < kLeastSteps && voxels(factor / 1.1) <= std::min(most_voxels, kFewVoxels)) factor /= 1.1;
+  while (steps(factor) < kMinSteps && voxels(factor / 1.1) <= std::min(max_voxels, kFewVoxels)) factor /= 1.1;
   CellFinder within(blocks);
-  Foresight foresight(blocks, within);
-  if (foresight.empty()) return Error{"has no finite values inside its cells"};
+  ErrorPredictor predictor(blocks, within);
+  if (predictor.empty()) return Error{"has no finite values inside the cells"};
   ResamplePlan plan;
-  double before = 1e300;
+  double last_error = 1e300;
   int idle = 0;
   for (;;) {
     plan.grid = make_resample_grid(lo, hi, edges, factor);
-    plan.p99 = foresight.p99(plan.grid);
+    plan.p99 = predictor.p99(plan.grid);
     plan.meets_target = plan.p99 <= kTargetError * 0.9;  // the final error is measured at other positions
     if (plan.meets_target) break;
-    // the error decreases with the second order of the voxel size, at worst with the first
-    constexpr double kLeastStep = 1.2, kMostStep = 2;
+    // the error decreases with the square of the voxel size, at worst linearly
+    constexpr double kMinStep = 1.2, kMaxStep = 2;
     // values that jump from cell to cell do not improve with finer voxels
-    idle = plan.p99 > kUsefulErrorRatio * before ? idle + 1 : 0;
-    before = plan.p99;
+    idle = plan.p99 > kUsefulErrorRatio * last_error ? idle + 1 : 0;
+    last_error = plan.p99;
     constexpr int kIdle = 2;
     if (idle >= kIdle) break;
-    const double finer = factor / std::clamp(std::sqrt(plan.p99 / (0.8 * kTargetError)), kLeastStep, kMostStep);
-    if (voxels(finer) > most_voxels) break;
+    const double finer = factor / std::clamp(std::sqrt(plan.p99 / (0.8 * kTargetError)), kMinStep, kMaxStep);
+    if (voxels(finer) > max_voxels) break;
     factor = finer;
   }
   if (!plan.meets_target && idle == 0) {  // the finest grid that fits
-    while (voxels(factor / 1.1) <= most_voxels) factor /= 1.1;
+    while (voxels(factor / 1.1) <= max_voxels) factor /= 1.1;
     plan.grid = make_resample_grid(lo, hi, edges, factor);
-    plan.p99 = foresight.p99(plan.grid);
+    plan.p99 = predictor.p99(plan.grid);
   }
   // cells at the extremes that are small relative to voxels
-  if (foresight.at_extremes(plan.grid) > kTargetError) {
+  if (predictor.at_extremes(plan.grid) > kTargetError) {
     double smallest = 1e300;
-    for (const CellSamples::Sample& place : foresight.extremes()) {
+    for (const CellSamples::Sample& sample : predictor.extremes()) {
       double b[6];
-      blocks[place.block].data->GetCellBounds(place.cell, b);
+      blocks[sample.block].data->GetCellBounds(sample.cell, b);
       for (int a = 0; a < 3; ++a) smallest = std::min(smallest, (b[2 * a + 1] - b[2 * a]) / edges[a]);
     }
     for (const double part : {1.0, 2.0, 4.0}) {
       const double finer = smallest / part;
-      if (!(finer < factor) || voxels(finer) > most_voxels) continue;
+      if (!(finer < factor) || voxels(finer) > max_voxels) continue;
       factor = finer;
-      if (foresight.at_extremes(make_resample_grid(lo, hi, edges, factor)) <= kTargetError) break;
+      if (predictor.at_extremes(make_resample_grid(lo, hi, edges, factor)) <= kTargetError) break;
     }
   }
   // gaps narrower than voxels
   const BoxSamples box(within, lo, hi, 3);
   constexpr double kFinerInGaps = 1.25;
-  while (box.gap_fill_share(make_resample_grid(lo, hi, edges, factor)) > kMaxGapShare && voxels(factor / kFinerInGaps) <= most_voxels)
+  while (box.gap_fill_share(make_resample_grid(lo, hi, edges, factor)) > kMaxGapShare && voxels(factor / kFinerInGaps) <= max_voxels)
     factor /= kFinerInGaps;
   plan.grid = make_resample_grid(lo, hi, edges, factor);
   plan.meets_target = plan.meets_target || plan.p99 <= kTargetError;

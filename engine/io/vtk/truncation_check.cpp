@@ -27,7 +27,7 @@ constexpr unsigned char kFills[] = {0x5a, 0x3c};
 /// Fills new memory with `fill`, and freed memory with ~fill, which a reused block may still contain.
 void fill_new_memory(unsigned char fill) { ::mallopt(M_PERTURB, fill ^ 0xff); }
 
-/// Whether the first or the last byte of the last value has the fill pattern: with the other byte order the last byte comes first.
+/// Returns whether the first or the last byte of the last value has the fill pattern: with the other byte order the last byte comes first.
 bool ends_with(const std::byte* values, std::size_t bytes, std::size_t value_bytes, unsigned char fill) {
   const auto is_fill = [fill](std::byte b) { return b == std::byte{fill} || b == std::byte(fill ^ 0xff); };
   return bytes >= value_bytes && value_bytes > 0 && (is_fill(values[bytes - 1]) || is_fill(values[bytes - value_bytes]));

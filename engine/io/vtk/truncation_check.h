@@ -14,7 +14,7 @@
 namespace catena::vtk {
 
 /// Message for a truncated file; completes "PATH: ".
-inline constexpr const char* kTruncatedMessage = "ends before its data do: it was cut off, or is still being written";
+inline constexpr const char* kTruncatedMessage = "the file ends before the end of the data: it is truncated, or is still being written";
 
 /// Calls `read` once, or twice if the first time is inconclusive. `data`: returns what was read, null for nothing. Returns an Error when an
 /// array was not written to its end. From the first call on, new memory of this process is filled (mallopt, M_PERTURB).

@@ -20,13 +20,13 @@ namespace {
 
 constexpr int kHiddenCell = vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::REFINEDCELL;
 
-/// The named array with one number per point, or per cell; null if there is none of the right size.
+/// Returns the named array with one number per point, or per cell; null if there is none of the right size.
 vtkDataArray* numbers_named(vtkDataSetAttributes* arrays, const char* name, vtkIdType count) {
   vtkDataArray* array = arrays->GetArray(name);
   return array != nullptr && array->GetNumberOfTuples() == count && array->GetNumberOfComponents() == 1 ? array : nullptr;
 }
 
-constexpr const char* kGhostLevels = "vtkGhostLevels";  ///< of old files: above 0 means a duplicate
+constexpr const char* kGhostLevels = "vtkGhostLevels";  ///< array of old files: above 0 means a duplicate
 
 vtkDataArray* flags_of(vtkDataSetAttributes* arrays, vtkIdType count) {
   vtkDataArray* flags = numbers_named(arrays, vtkDataSetAttributes::GhostArrayName(), count);
@@ -92,16 +92,17 @@ std::set<Bounds6> owned_cells(const ImportedData& opened) {
   return owned;
 }
 
-/// Whether the data can have points that belong to no cell, and does.
+/// Returns whether the data are an unstructured grid with points that belong to no cell.
 bool has_loose_points(vtkDataSet* data) {
   if (vtkUnstructuredGrid::SafeDownCast(data) == nullptr || data->GetNumberOfCells() == 0) return false;
-  std::vector<bool> used(static_cast<std::size_t>(data->GetNumberOfPoints()), false);
+  std::vector<bool> is_used(static_cast<std::size_t>(data->GetNumberOfPoints()), false);
   Corners corners(data);
-  for (vtkIdType i = 0; i < data->GetNumberOfCells(); ++i) corners.each(i, [&](vtkIdType p) { used[static_cast<std::size_t>(p)] = true; });
-  return std::find(used.begin(), used.end(), false) != used.end();
+  for (vtkIdType i = 0; i < data->GetNumberOfCells(); ++i)
+    corners.each(i, [&](vtkIdType p) { is_used[static_cast<std::size_t>(p)] = true; });
+  return std::find(is_used.begin(), is_used.end(), false) != is_used.end();
 }
 
-ValidityMask seen_in(vtkDataSet* data, const std::string& mask, std::set<Bounds6>& owned) {
+ValidityMask mask_of_block(vtkDataSet* data, const std::string& mask, std::set<Bounds6>& owned) {
   const vtkIdType points = data->GetNumberOfPoints(), cells = data->GetNumberOfCells();
   const auto masks_of = [&](vtkDataSetAttributes* arrays, vtkIdType count) -> vtkDataArray* {
     if (mask.empty()) return nullptr;
@@ -110,44 +111,44 @@ ValidityMask seen_in(vtkDataSet* data, const std::string& mask, std::set<Bounds6
   };
   vtkDataArray *point_flags = flags_of(data->GetPointData(), points), *cell_flags = flags_of(data->GetCellData(), cells);
   vtkDataArray *point_mask = masks_of(data->GetPointData(), points), *cell_mask = masks_of(data->GetCellData(), cells);
-  ValidityMask seen;
+  ValidityMask result;
   const bool loose = has_loose_points(data);
-  if (point_flags == nullptr && cell_flags == nullptr && point_mask == nullptr && cell_mask == nullptr && !loose) return seen;
-  seen.points.assign(static_cast<std::size_t>(points), 1);
-  seen.cells.assign(static_cast<std::size_t>(cells), 1);
+  if (point_flags == nullptr && cell_flags == nullptr && point_mask == nullptr && cell_mask == nullptr && !loose) return result;
+  result.points.assign(static_cast<std::size_t>(points), 1);
+  result.cells.assign(static_cast<std::size_t>(cells), 1);
   bool all = true;
   for (vtkIdType i = 0; i < points; ++i) {
-    const bool good = (point_flags == nullptr || (flags_at(point_flags, i) & vtkDataSetAttributes::HIDDENPOINT) == 0) &&
-                      (point_mask == nullptr || point_mask->GetComponent(i, 0) != 0);
-    seen.points[static_cast<std::size_t>(i)] = good ? 1 : 0;
-    all = all && good;
+    const bool valid = (point_flags == nullptr || (flags_at(point_flags, i) & vtkDataSetAttributes::HIDDENPOINT) == 0) &&
+                       (point_mask == nullptr || point_mask->GetComponent(i, 0) != 0);
+    result.points[static_cast<std::size_t>(i)] = valid ? 1 : 0;
+    all = all && valid;
   }
   Corners corners(data);
   const bool all_points = all;
   for (vtkIdType i = 0; i < cells; ++i) {
     const int flags = cell_flags != nullptr ? flags_at(cell_flags, i) : 0;
-    bool good = (flags & kHiddenCell) == 0 && (cell_mask == nullptr || cell_mask->GetComponent(i, 0) != 0);
-    if (!all_points && good) corners.each(i, [&](vtkIdType p) { good = good && seen.is_valid_point(p); });
-    if (good && (flags & vtkDataSetAttributes::DUPLICATECELL) != 0) {
+    bool valid = (flags & kHiddenCell) == 0 && (cell_mask == nullptr || cell_mask->GetComponent(i, 0) != 0);
+    if (!all_points && valid) corners.each(i, [&](vtkIdType p) { valid = valid && result.is_valid_point(p); });
+    if (valid && (flags & vtkDataSetAttributes::DUPLICATECELL) != 0) {
       Bounds6 b;
       data->GetCellBounds(i, b.data());
-      good = owned.insert(b).second;
+      valid = owned.insert(b).second;
     }
-    seen.cells[static_cast<std::size_t>(i)] = good ? 1 : 0;
-    all = all && good;
+    result.cells[static_cast<std::size_t>(i)] = valid ? 1 : 0;
+    all = all && valid;
   }
   // points that no valid cell uses
   if (all && !loose) return {};
-  std::vector<std::uint8_t> touched(seen.points.size(), 0);  // 1: used by a cell; 2: used by a valid cell
+  std::vector<std::uint8_t> touched(result.points.size(), 0);  // 1: used by a cell; 2: used by a valid cell
   for (vtkIdType i = 0; i < cells; ++i)
-    corners.each(i, [&, by = static_cast<std::uint8_t>(seen.is_valid_cell(i) ? 2 : 1)](vtkIdType p) {
+    corners.each(i, [&, mark = static_cast<std::uint8_t>(result.is_valid_cell(i) ? 2 : 1)](vtkIdType p) {
       std::uint8_t& at = touched[static_cast<std::size_t>(p)];
-      at = std::max(at, by);
+      at = std::max(at, mark);
     });
   for (std::size_t p = 0; p < touched.size(); ++p)
-    if (touched[p] == 1 || (touched[p] == 0 && loose)) seen.points[p] = 0;
-  if (std::find(seen.cells.begin(), seen.cells.end(), 0) == seen.cells.end()) seen.cells.clear();
-  return seen;
+    if (touched[p] == 1 || (touched[p] == 0 && loose)) result.points[p] = 0;
+  if (std::find(result.cells.begin(), result.cells.end(), 0) == result.cells.end()) result.cells.clear();
+  return result;
 }
 
 }  // namespace
@@ -155,26 +156,26 @@ ValidityMask seen_in(vtkDataSet* data, const std::string& mask, std::set<Bounds6
 std::vector<ValidityMask> make_validity_masks(const ImportedData& opened, const std::string& mask) {
   std::set<Bounds6> owned = owned_cells(opened);
   std::vector<ValidityMask> all;
-  for (const Block& block : opened.blocks) all.push_back(seen_in(block.data, mask, owned));
+  for (const Block& block : opened.blocks) all.push_back(mask_of_block(block.data, mask, owned));
   return all;
 }
 
-vtkSmartPointer<vtkDataSet> extract_valid_cells(vtkDataSet* data, const ValidityMask& seen) {
+vtkSmartPointer<vtkDataSet> extract_valid_cells(vtkDataSet* data, const ValidityMask& mask) {
   const char* const names[] = {vtkDataSetAttributes::GhostArrayName(), kGhostLevels};
   bool flagged = false;
   for (const char* name : names) flagged = flagged || data->GetPointData()->HasArray(name) != 0 || data->GetCellData()->HasArray(name) != 0;
-  if (seen.cells.empty() && !flagged) return data;
-  // without the ghost flags, by which filters would omit more cells, or other ones
+  if (mask.cells.empty() && !flagged) return data;
+  // the ghost flags are removed, because filters would omit additional cells because of them
   vtkSmartPointer<vtkDataSet> plain = vtkSmartPointer<vtkDataSet>::Take(data->NewInstance());
   plain->ShallowCopy(data);
   for (const char* name : names) {
     plain->GetPointData()->RemoveArray(name);
     plain->GetCellData()->RemoveArray(name);
   }
-  if (seen.cells.empty()) return plain;
+  if (mask.cells.empty()) return plain;
   vtkNew<vtkIdList> ids;
   for (vtkIdType i = 0; i < data->GetNumberOfCells(); ++i)
-    if (seen.is_valid_cell(i)) ids->InsertNextId(i);
+    if (mask.is_valid_cell(i)) ids->InsertNextId(i);
   vtkNew<vtkExtractCells> extract;
   extract->SetInputData(plain);
   extract->SetCellList(ids);

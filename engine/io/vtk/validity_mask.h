@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Which points and cells of a file are valid data, by VTK's flags (the array vtkGhostType, of any number type) and by a mask array.
+/// Validity of the points and cells of a file, by VTK's flags (the array vtkGhostType, of any number type) and by a mask array.
 ///   cell    invalid if it is HIDDENCELL or REFINEDCELL, is a DUPLICATECELL that occurs elsewhere in the file, is masked, or has a point
 ///           that is HIDDENPOINT or masked: like IsCellVisible of vtkStructuredGrid and vtkImageData, for cells of every kind
 ///   point   invalid if it is HIDDENPOINT or masked, if all cells that use it are invalid, or if no cell of an unstructured grid uses it
@@ -24,9 +24,9 @@ struct ValidityMask {
 std::vector<ValidityMask> make_validity_masks(const ImportedData& opened, const std::string& mask);
 
 /// Returns the valid cells, without flag arrays; `data` itself if all cells are valid.
-vtkSmartPointer<vtkDataSet> extract_valid_cells(vtkDataSet* data, const ValidityMask& seen);
+vtkSmartPointer<vtkDataSet> extract_valid_cells(vtkDataSet* data, const ValidityMask& mask);
 
-/// Whether a grid needs a cell mask: some cell with eight valid corners is masked.
+/// Returns whether a grid needs a cell mask: some cell with eight valid corners is masked.
 bool needs_cell_mask(const field::Index3& size, const std::uint8_t* valid, const std::uint8_t* cells);
 
 }  // namespace catena::vtk

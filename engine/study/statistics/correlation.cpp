@@ -24,10 +24,10 @@ bool has_spread(double squares, std::span<const double> values) {
   return std::sqrt(squares / static_cast<double>(values.size())) > 16 * std::numeric_limits<double>::epsilon() * largest;
 }
 
-Result<Moments> moments(std::span<const double> x, std::span<const double> y, int least) {
+Result<Moments> compute_moments(std::span<const double> x, std::span<const double> y, int min_count) {
   CATENA_ASSERT(x.size() == y.size());
-  CATENA_CHECK(check_values(x, least));
-  CATENA_CHECK(check_values(y, least));
+  CATENA_CHECK(check_values(x, min_count));
+  CATENA_CHECK(check_values(y, min_count));
   CATENA_TRY(const Summary of_x, summarize(x));
   CATENA_TRY(const Summary of_y, summarize(y));
   Moments m{of_x.mean, of_y.mean};
@@ -37,16 +37,16 @@ Result<Moments> moments(std::span<const double> x, std::span<const double> y, in
     m.yy += dy * dy;
     m.xy += dx * dy;
   }
-  if (!std::isfinite(m.xx) || !std::isfinite(m.yy)) return Error{"the values are too large to be summed"};
+  if (!std::isfinite(m.xx) || !std::isfinite(m.yy)) return Error{"the values are too large to sum"};
   return m;
 }
 
-Result<double> r_of(std::span<const double> x, std::span<const double> y, int least) {
-  CATENA_TRY(const Moments m, moments(x, y, least));
+Result<double> r_of(std::span<const double> x, std::span<const double> y, int min_count) {
+  CATENA_TRY(const Moments m, compute_moments(x, y, min_count));
   if (!has_spread(m.xx, x) || !has_spread(m.yy, y))
-    return Error{fmt::format("all {} values of one measure are the same, so that nothing can vary with them", x.size())};
+    return Error{fmt::format("all {} values of one measure are equal, so that there is no correlation", x.size())};
   const double r = m.xy / (std::sqrt(m.xx) * std::sqrt(m.yy));
-  // points on a line give exactly 1 or -1 in spite of rounding
+  // collinear points give exactly 1 or -1 in spite of rounding
   return std::fabs(r) > 1 - 8 * std::numeric_limits<double>::epsilon() ? std::copysign(1.0, r) : r;
 }
 
@@ -58,39 +58,39 @@ Result<Correlation> pearson(std::span<const double> x, std::span<const double> y
   c.n = static_cast<int>(x.size());
   c.r = r;
   c.df = c.n - 2;
-  const double left = (1 - r) * (1 + r);
-  c.t = left > 0 ? r * std::sqrt(c.df / left) : std::copysign(std::numeric_limits<double>::infinity(), r);
+  const double unexplained = (1 - r) * (1 + r);
+  c.t = unexplained > 0 ? r * std::sqrt(c.df / unexplained) : std::copysign(std::numeric_limits<double>::infinity(), r);
   c.p = two_sided_p(c.t, c.df);
   if (c.n < 4) return c;
-  const double reach = normal_quantile(0.5 + 0.5 * confidence) / std::sqrt(c.n - 3.0);
-  c.low = left > 0 ? std::tanh(std::atanh(r) - reach) : r;
-  c.high = left > 0 ? std::tanh(std::atanh(r) + reach) : r;
+  const double half_width = normal_quantile(0.5 + 0.5 * confidence) / std::sqrt(c.n - 3.0);
+  c.low = unexplained > 0 ? std::tanh(std::atanh(r) - half_width) : r;
+  c.high = unexplained > 0 ? std::tanh(std::atanh(r) + half_width) : r;
   return c;
 }
 
 Result<CorrelationDifference> compare_correlations(std::span<const double> a, std::span<const double> b, std::span<const double> c,
                                                    std::span<const double> d) {
-  constexpr int kLeast = 10;
-  CATENA_TRY(const double ab, r_of(a, b, kLeast));
-  CATENA_TRY(const double cd, r_of(c, d, kLeast));
-  CATENA_TRY(const double ac, r_of(a, c, kLeast));
-  CATENA_TRY(const double ad, r_of(a, d, kLeast));
-  CATENA_TRY(const double bc, r_of(b, c, kLeast));
-  CATENA_TRY(const double bd, r_of(b, d, kLeast));
+  constexpr int kMinSubjects = 10;
+  CATENA_TRY(const double ab, r_of(a, b, kMinSubjects));
+  CATENA_TRY(const double cd, r_of(c, d, kMinSubjects));
+  CATENA_TRY(const double ac, r_of(a, c, kMinSubjects));
+  CATENA_TRY(const double ad, r_of(a, d, kMinSubjects));
+  CATENA_TRY(const double bc, r_of(b, c, kMinSubjects));
+  CATENA_TRY(const double bd, r_of(b, d, kMinSubjects));
   const double k =
       (ac - bc * ab) * (bd - bc * cd) + (ad - ac * cd) * (bc - ac * ab) + (ac - ad * cd) * (bd - ad * ab) + (ad - ab * bd) * (bc - bd * cd);
   const double scale = 2 * (1 - ab * ab) * (1 - cd * cd);
-  const double left = scale > 0 ? 1 - k / scale : 0;
-  if (!(left > 1e-12)) return Error{"the two correlations cannot be told apart: the measures depend on each other wholly"};
+  const double independent_part = scale > 0 ? 1 - k / scale : 0;
+  if (!(independent_part > 1e-12)) return Error{"the two correlations cannot be compared: the measures are linearly dependent"};
   CorrelationDifference difference{static_cast<int>(a.size()), ab, cd};
-  difference.z = std::sqrt((difference.n - 3) / 2.0) * (std::atanh(ab) - std::atanh(cd)) / std::sqrt(left);
+  difference.z = std::sqrt((difference.n - 3) / 2.0) * (std::atanh(ab) - std::atanh(cd)) / std::sqrt(independent_part);
   difference.p = two_sided_normal_p(difference.z);
   return difference;
 }
 
 Result<RegressionLine> regression(std::span<const double> x, std::span<const double> y) {
-  CATENA_TRY(const Moments m, moments(x, y, 2));
-  if (!has_spread(m.xx, x)) return Error{"all values of x are the same, so that there is no line through them"};
+  CATENA_TRY(const Moments m, compute_moments(x, y, 2));
+  if (!has_spread(m.xx, x)) return Error{"all values of x are equal, so that there is no regression line"};
   const double slope = m.xy / m.xx;
   return RegressionLine{slope, m.mean_y - slope * m.mean_x};
 }

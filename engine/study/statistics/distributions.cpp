@@ -58,9 +58,9 @@ double solve_noncentrality(double t, double df, double probability) {
 }
 
 Interval proportion_interval(double hits, double n, double confidence) {
-  const double tail = 0.5 * (1 - confidence);
-  return {hits > 0 ? bm::quantile(Beta(hits, n - hits + 1), tail) : 0.0,
-          hits < n ? bm::quantile(bm::complement(Beta(hits + 1, n - hits), tail)) : 1.0};
+  const double tail_probability = 0.5 * (1 - confidence);
+  return {hits > 0 ? bm::quantile(Beta(hits, n - hits + 1), tail_probability) : 0.0,
+          hits < n ? bm::quantile(bm::complement(Beta(hits + 1, n - hits), tail_probability)) : 1.0};
 }
 
 }  // namespace catena::statistics

@@ -27,33 +27,33 @@ std::vector<double> sorted_sums(std::span<const double> values) {
   return sums;
 }
 
-double exact_share(std::span<const double> values, double bound) {
+double exact_p(std::span<const double> values, double bound) {
   const std::vector<double> first = sorted_sums(values.subspan(0, values.size() / 2));
   const std::vector<double> second = sorted_sums(values.subspan(values.size() / 2));
-  // two-pointer search: the larger the sum of one half, the smaller the required sum of the other; sums are symmetric, so the upper tail
-  // is counted and doubled
-  double far = 0;
+  // two-pointer search: the larger the sum of one half, the smaller the required sum of the other; the sums are symmetric, so that the
+  // upper tail is counted and doubled
+  double extreme_count = 0;
   std::size_t j = second.size();
   for (const double x : first) {
     while (j > 0 && x + second[j - 1] >= bound) --j;
-    far += static_cast<double>(second.size() - j);
+    extreme_count += static_cast<double>(second.size() - j);
   }
-  return std::min(1.0, 2 * far / std::ldexp(1.0, static_cast<int>(values.size())));
+  return std::min(1.0, 2 * extreme_count / std::ldexp(1.0, static_cast<int>(values.size())));
 }
 
-double drawn_share(std::span<const double> values, double bound, std::uint64_t seed, int draws) {
+double sampled_p(std::span<const double> values, double bound, std::uint64_t seed, int samples) {
   std::mt19937_64 random(seed);
-  int far = 0;
-  for (int k = 0; k < draws; ++k) {
+  int extreme_count = 0;
+  for (int k = 0; k < samples; ++k) {
     double sum = 0;
     std::uint64_t bits = 0;
     for (std::size_t i = 0; i < values.size(); ++i, bits >>= 1) {
       if (i % 64 == 0) bits = random();
       sum += (bits & 1) != 0 ? values[i] : -values[i];
     }
-    if (std::fabs(sum) >= bound) ++far;
+    if (std::fabs(sum) >= bound) ++extreme_count;
   }
-  return (1.0 + far) / (1.0 + draws);
+  return (1.0 + extreme_count) / (1.0 + samples);
 }
 
 }  // namespace
@@ -62,14 +62,14 @@ Result<SignFlipTest> sign_flip_test(std::span<const double> differences, std::ui
   CATENA_CHECK(check_values(differences, 2));
   double size = 0;
   for (const double d : differences) size += std::fabs(d);
-  if (!std::isfinite(size)) return Error{"the values are too large to be summed"};
+  if (!std::isfinite(size)) return Error{"the values are too large to sum"};
   if (!(size > 0)) return SignFlipTest{1, true, std::ldexp(1.0, static_cast<int>(differences.size()))};
   const double bound = std::fabs(std::accumulate(differences.begin(), differences.end(), 0.0)) - 1e-12 * size;
   if (bound <= 0) return SignFlipTest{1, true, std::ldexp(1.0, static_cast<int>(differences.size()))};
   if (differences.size() <= kMaxExactFlips)
-    return SignFlipTest{exact_share(differences, bound), true, std::ldexp(1.0, static_cast<int>(differences.size()))};
-  const int draws = static_cast<int>(std::clamp<std::size_t>(20'000'000 / differences.size(), 100, 10'000));
-  return SignFlipTest{drawn_share(differences, bound, seed, draws), false, static_cast<double>(draws)};
+    return SignFlipTest{exact_p(differences, bound), true, std::ldexp(1.0, static_cast<int>(differences.size()))};
+  const int samples = static_cast<int>(std::clamp<std::size_t>(20'000'000 / differences.size(), 100, 10'000));
+  return SignFlipTest{sampled_p(differences, bound, seed, samples), false, static_cast<double>(samples)};
 }
 
 }  // namespace catena::statistics

@@ -12,11 +12,12 @@
 
 namespace catena::statistics {
 
-Outcome check_values(std::span<const double> values, int least) {
+Outcome check_values(std::span<const double> values, int min_count) {
   for (const double x : values)
     if (!std::isfinite(x)) return Error{"a value is not a finite number"};
-  if (values.size() < static_cast<std::size_t>(least))
-    return Error{fmt::format("at least {} values are needed, there {} {}", least, values.size() == 1 ? "is" : "are", values.size())};
+  if (values.size() < static_cast<std::size_t>(min_count))
+    return Error{
+        fmt::format("at least {} values are required, but there {} {}", min_count, values.size() == 1 ? "is" : "are", values.size())};
   return Done{};
 }
 
@@ -30,7 +31,7 @@ Result<Summary> summarize(std::span<const double> values, double confidence) {
   for (const double x : values) squares += (x - s.mean) * (x - s.mean);
   s.sd = std::sqrt(squares / (n - 1));
   s.half_width = t_quantile(0.5 + 0.5 * confidence, n - 1) * s.sd / std::sqrt(n);
-  if (!std::isfinite(s.mean) || !std::isfinite(s.half_width)) return Error{"the values are too large to be summed"};
+  if (!std::isfinite(s.mean) || !std::isfinite(s.half_width)) return Error{"the values are too large to sum"};
   return s;
 }
 
@@ -46,7 +47,7 @@ Result<PairedTest> paired_test(std::span<const double> a, std::span<const double
   }
   CATENA_TRY(const Summary s, summarize(differences, confidence));
   if (s.sd <= 16 * std::numeric_limits<double>::epsilon() * largest)
-    return Error{fmt::format("all {} differences are the same, so that there is no spread to measure with", s.n)};
+    return Error{fmt::format("all {} differences are equal, so that the spread is 0", s.n)};
   PairedTest test;
   test.n = s.n;
   test.difference = s.mean;
@@ -58,9 +59,9 @@ Result<PairedTest> paired_test(std::span<const double> a, std::span<const double
   test.effect = s.mean / s.sd;
   test.t = test.effect * root;
   test.p = two_sided_p(test.t, test.df);
-  const double tail = 0.5 * (1 - confidence);
-  test.effect_low = solve_noncentrality(test.t, test.df, 1 - tail) / root;
-  test.effect_high = solve_noncentrality(test.t, test.df, tail) / root;
+  const double tail_probability = 0.5 * (1 - confidence);
+  test.effect_low = solve_noncentrality(test.t, test.df, 1 - tail_probability) / root;
+  test.effect_high = solve_noncentrality(test.t, test.df, tail_probability) / root;
   return test;
 }
 
@@ -69,10 +70,10 @@ std::vector<double> holm_correction(std::span<const double> p) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return p[i] < p[j]; });
   std::vector<double> corrected(p.size());
-  double before = 0;
+  double last = 0;
   for (std::size_t k = 0; k < order.size(); ++k) {
-    before = std::clamp(static_cast<double>(p.size() - k) * p[order[k]], before, 1.0);
-    corrected[order[k]] = before;
+    last = std::clamp(static_cast<double>(p.size() - k) * p[order[k]], last, 1.0);
+    corrected[order[k]] = last;
   }
   return corrected;
 }

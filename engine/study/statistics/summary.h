@@ -44,7 +44,7 @@ Result<PairedTest> paired_test(std::span<const double> a, std::span<const double
 /// probability of any false positive in the family is at most alpha, whatever the dependence between the tests.
 std::vector<double> holm_correction(std::span<const double> p);
 
-/// Error if a value is not finite or there are fewer than `least` values.
-Outcome check_values(std::span<const double> values, int least);
+/// Error if a value is not finite or there are fewer than `min_count` values.
+Outcome check_values(std::span<const double> values, int min_count);
 
 }  // namespace catena::statistics

@@ -90,12 +90,13 @@ class ClosestPointBvh {
   }
 
   /// Resumes the search in progress or begins one, starting from the best element known. For a probe at rest one complete search is made,
-  /// then none. Visits at most `most_visits` nodes; the first search sees at least one leaf. Afterwards state.best_item is the closest
+  /// then none. Visits at most `max_visits` nodes; the first search sees at least one leaf. Afterwards state.best_item is the closest
   /// element seen, and state.in_progress tells whether nodes are left.
-  ///   place(k)             returns the closest point of element k to the probe
-  ///   each(leaf, see)      calls see(k) for every element k of a leaf
-  template <class Place, class Each>
-  void search(const Vec3& probe, int most_visits, SearchState& state, Place&& place, Each&& each) const noexcept {
+  ///   closest_point(k)            returns the closest point of element k to the probe
+  ///   for_each_in(leaf, visit)    calls visit(k) for every element k of a leaf
+  template <class ClosestPointOf, class ForEachIn>
+  void search(const Vec3& probe, int max_visits, SearchState& state, ClosestPointOf&& closest_point,
+              ForEachIn&& for_each_in) const noexcept {
     const DistanceKey key(probe, center_, radius_);
     const auto of_box = [&](std::uint32_t node) {
       const Box& box = nodes_[node];
@@ -115,16 +116,16 @@ class ClosestPointBvh {
       state.for_one_probe = false;
     }
     state.probe = probe;
-    double least = state.has_best ? key(place(state.best_item)) : std::numeric_limits<double>::infinity();
-    while (state.depth > 0 && state.visits < most_visits) {
+    double best_key = state.has_best ? key(closest_point(state.best_item)) : std::numeric_limits<double>::infinity();
+    while (state.depth > 0 && state.visits < max_visits) {
       ++state.visits;
       const std::uint32_t node = state.stack[static_cast<std::size_t>(--state.depth)];
-      if (!(of_box(node) < least)) continue;
+      if (!(of_box(node) < best_key)) continue;
       if (node >= first_leaf_) {
-        each(node - first_leaf_, [&](std::uint32_t k) {
-          const double here = key(place(k));
-          if (!(here < least)) return;
-          least = here;
+        for_each_in(node - first_leaf_, [&](std::uint32_t k) {
+          const double candidate_key = key(closest_point(k));
+          if (!(candidate_key < best_key)) return;
+          best_key = candidate_key;
           state.best_item = k;
           state.has_best = true;
         });

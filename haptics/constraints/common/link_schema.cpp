@@ -11,27 +11,27 @@
 namespace catena::haptics {
 namespace {
 
-Result<field::AnyField> require_field(const json::Node& link, std::string_view key, std::string_view who, bool vector,
+Result<field::AnyField> require_field(const json::Node& link, std::string_view key, std::string_view link_type, bool vector,
                                       const BuildContext& context) {
   CATENA_TRY(const std::string name, json::require_string(link, key));
   CATENA_TRY(field::AnyField field, context.field(*link.find(key), name));
   if ((field.vector != nullptr) != vector)
     return json::error_at(*link.find(key), fmt::format("field \"{}\" is a {} field; {} needs a {} field", name,
-                                                       vector ? "scalar" : "vector", who, vector ? "vector" : "scalar"));
+                                                       vector ? "scalar" : "vector", link_type, vector ? "vector" : "scalar"));
   return field;
 }
 
 }  // namespace
 
-Result<field::ScalarFieldPtr> require_scalar_field(const json::Node& link, std::string_view key, std::string_view who,
+Result<field::ScalarFieldPtr> require_scalar_field(const json::Node& link, std::string_view key, std::string_view link_type,
                                                    const BuildContext& context) {
-  CATENA_TRY(const field::AnyField field, require_field(link, key, who, false, context));
+  CATENA_TRY(const field::AnyField field, require_field(link, key, link_type, false, context));
   return field.scalar;
 }
 
-Result<field::VectorFieldPtr> require_vector_field(const json::Node& link, std::string_view key, std::string_view who,
+Result<field::VectorFieldPtr> require_vector_field(const json::Node& link, std::string_view key, std::string_view link_type,
                                                    const BuildContext& context) {
-  CATENA_TRY(const field::AnyField field, require_field(link, key, who, true, context));
+  CATENA_TRY(const field::AnyField field, require_field(link, key, link_type, true, context));
   return field.vector;
 }
 
@@ -39,16 +39,17 @@ Result<double> require_level(const json::Node& link, std::string_view key, const
   if (const std::string why = field::no_surface_hint(field, link.find(key)->string); !why.empty())
     return json::error_at(*link.find(key), why);
   CATENA_TRY(const double level, json::require_number(link, "level"));
-  const double least = field.min_value(), most = field.max_value();
-  if (!(level >= least && level <= most))
-    return json::error_at(*link.find("level"), fmt::format("level {} is not attained by field \"{}\"; expected a value within {} .. {}",
-                                                           level, link.find(key)->string, format_readable(least), format_readable(most)));
+  const double minimum = field.min_value(), maximum = field.max_value();
+  if (!(level >= minimum && level <= maximum))
+    return json::error_at(*link.find("level"),
+                          fmt::format("level {} is not attained by field \"{}\"; expected a value within {} .. {}", level,
+                                      link.find(key)->string, format_readable(minimum), format_readable(maximum)));
   return level;
 }
 
 namespace {
 
-/// Sets the values that `normalise` maps to 0 and 1.
+/// Sets the field values that `normalise` maps to 0 and 1.
 Outcome set_scale(const json::Node& node, const std::string& name, HapticTransferFunction& map) {
   if (map.quantity == HapticTransferFunction::Quantity::value) {
     const DisplayRange range = field::display_range(*map.field.scalar);
@@ -91,7 +92,7 @@ Result<Parameter> read_map(const json::Node& node, std::string_view key, json::N
     const json::Node& item = points->items[i];
     CATENA_TRY(const double output, json::as_number(item.items[1], key, range));
     if (i > 0 && !(rows[i][0] > rows[i - 1][0]))
-      return json::error_at(item, fmt::format("the values of \"map\" do not rise; a value > {} was expected", rows[i - 1][0]));
+      return json::error_at(item, fmt::format("the values of \"map\" do not increase; a value > {} was expected", rows[i - 1][0]));
     map->points.push_back({rows[i][0], output});
   }
   CATENA_TRY(map->outside, json::get_number(node, "outside", map->points.front().output, range));
@@ -126,15 +127,23 @@ using Table = schema::StructSchema<T, const Nothing>;
 const Table<ActivationSwitch>& switch_table() {
   static const auto table = [] {
     Table<ActivationSwitch> t;
-    t.bind(schema::integer("button", "", "The link is on while this button is held.", 1, 32).without_default(), &ActivationSwitch::button);
-    t.bind(schema::boolean("toggle", "Each press of the button turns the link on or off."), &ActivationSwitch::toggle);
-    t.bind(schema::number("force_above", "N", "Or: it goes on when the last tick's force is above this.").positive().without_default(),
+    t.bind(schema::integer("button", "",
+                           "Button of the switch, which is on while the button is held (see `toggle`); in place of `force_above`.", 1, 32)
+               .without_default(),
+           &ActivationSwitch::button);
+    t.bind(schema::boolean("toggle", "Each press of the button inverts the switch."), &ActivationSwitch::toggle);
+    t.bind(schema::number("force_above", "N", "Force of the last tick above which the switch goes on; in place of `button`.")
+               .positive()
+               .without_default(),
            &ActivationSwitch::force_above_n);
-    t.custom(schema::number("force_below", "N", "And off when the force is at most this.").non_negative().with_default("`force_above`"),
+    t.custom(schema::number("force_below", "N", "Force of the last tick at or below which the switch goes off.")
+                 .non_negative()
+                 .with_default("`force_above`"),
              [](const Nothing&, const json::Node& node, ActivationSwitch& on) -> Outcome {
                CATENA_TRY(on.force_below_n, json::get_number(node, "force_below", on.force_above_n, json::NumberRange::non_negative));
                if (on.force_below_n <= on.force_above_n) return Done{};
-               return json::error_at(*node.find("force_below"), "\"force_below\" is above \"force_above\"; a number up to it was expected");
+               return json::error_at(*node.find("force_below"),
+                                     "\"force_below\" is above \"force_above\"; a number up to \"force_above\" was expected");
              });
     return t;
   }();
@@ -144,13 +153,18 @@ const Table<ActivationSwitch>& switch_table() {
 const Table<ReleaseCue>& release_cue_table() {
   static const auto table = [] {
     Table<ReleaseCue> t;
-    t.bind(schema::choice("type", {"none", "detent", "vibration"}, "A detent is one pulse."), &ReleaseCue::type);
-    t.bind(schema::number("distance", "world", "The gap that counts as leaving.").positive().with_default("where it slips or lets go"),
+    t.bind(schema::choice(
+               "type", {"none", "detent", "vibration"},
+               "Kind of cue; `detent`: a pulse when the probe leaves the feature or returns; `vibration`: a vibration near release."),
+           &ReleaseCue::type);
+    t.bind(schema::number("distance", "world", "Distance between probe and proxy at which the probe has left the feature.")
+               .positive()
+               .with_default("the distance at which the link slips or releases"),
            &ReleaseCue::distance);
-    t.bind(schema::number("onset", "", "A vibration begins at this fraction of `distance`.").within(0, 1), &ReleaseCue::onset);
-    t.bind(schema::number("amplitude", "N", "Force of the cue.").non_negative(), &ReleaseCue::amplitude_n);
-    t.bind(schema::number("frequency", "Hz", "Of a vibration.").positive(), &ReleaseCue::frequency_hz);
-    t.bind(schema::number("duration", "s", "Of a detent.").positive(), &ReleaseCue::duration_s);
+    t.bind(schema::number("onset", "", "Fraction of `distance` from which a vibration acts.").within(0, 1), &ReleaseCue::onset);
+    t.bind(schema::number("amplitude", "N", "Amplitude of the force.").non_negative(), &ReleaseCue::amplitude_n);
+    t.bind(schema::number("frequency", "Hz", "Frequency of a vibration.").positive(), &ReleaseCue::frequency_hz);
+    t.bind(schema::number("duration", "s", "Duration of a detent.").positive(), &ReleaseCue::duration_s);
     return t;
   }();
   return table;
@@ -159,7 +173,7 @@ const Table<ReleaseCue>& release_cue_table() {
 const Table<Align>& align_table() {
   static const auto table = [] {
     Table<Align> t;
-    t.custom(schema::direction("axis", "The axis in the tool's frame.").with_default("[0, 0, 1]"),
+    t.custom(schema::direction("axis", "Axis of the tool that is aligned, in the tool's frame.").with_default("[0, 0, 1]"),
              [](const Nothing&, const json::Node& node, Align& align) -> Outcome {
                CATENA_TRY(const Vec3 axis, json::get_vec3(node, "axis", align.tool_axis));
                align.tool_axis = direction(axis);
@@ -167,9 +181,12 @@ const Table<Align>& align_table() {
                return json::error_at(*node.find("axis"),
                                      "\"axis\" is zero; a vector of the tool's frame, of non-zero length, was expected");
              });
-    t.bind(schema::number("stiffness", "N m/rad", "Of the turn.").non_negative().with_default("the coupling's"),
+    t.bind(schema::number("stiffness", "N m/rad", "Rotational stiffness of the alignment.")
+               .non_negative()
+               .with_default("`coupling.rotational_stiffness`"),
            &Align::stiffness_nm_per_rad);
-    t.bind(schema::choice("sign", {"either", "same"}, "`either`: the nearer of the axis's two ends; `same`: the direction counts."),
+    t.bind(schema::choice("sign", {"either", "same"},
+                          "Direction of the normal or tangent; `either`: both directions are equivalent; `same`: the direction matters."),
            &Align::sign);
     return t;
   }();
@@ -179,17 +196,20 @@ const Table<Align>& align_table() {
 }  // namespace
 
 schema::Key switch_key() {
-  return schema::object("active_when", switch_table().keys(), "Its switch: either `button` or `force_above`.").with_default("always on");
+  return schema::object("active_when", switch_table().keys(), "Switch of the link, with either `button` or `force_above`.")
+      .with_default("always on");
 }
 
 schema::Key release_cue_key() {
-  return schema::object("release_cue", release_cue_table().keys(), "How the hand is told that it leaves the feature.")
+  return schema::object("release_cue", release_cue_table().keys(),
+                        "Haptic cue when the probe leaves the feature of the link, is about to leave it, or returns.")
       .with_default("no cue");
 }
 
 schema::Key align_key() {
   return schema::object("align", align_table().keys(),
-                        "Turns the tool's axis onto a surface's normal or a curve's tangent; with `coupling.method` `chain` only.")
+                        "Alignment of an axis of the tool with a surface's normal or a curve's tangent; only with `\"method\": \"chain\"` "
+                        "of `coupling`.")
       .with_default("none");
 }
 
@@ -231,7 +251,7 @@ Result<Align> read_align(const json::Node& link, const Coupling& coupling, const
     return json::error_at(
         *node, "a \"" + type.type + "\" link has no axis to align with; a surface (its normal) or a curve (its tangent) was expected");
   if (coupling.method != CouplingMethod::chain)
-    return json::error_at(*node, "\"align\" needs a proxy of the link's own; \"method\": \"chain\" was expected in \"coupling\"");
+    return json::error_at(*node, "\"align\" needs a separate proxy for the link; \"method\": \"chain\" was expected in \"coupling\"");
   out.enabled = true;
   out.stiffness_nm_per_rad = coupling.rotational_stiffness_nm_per_rad;
   CATENA_CHECK(align_table().read_own_keys({}, *node, out));

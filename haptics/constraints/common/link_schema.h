@@ -9,12 +9,12 @@
 
 namespace catena::haptics {
 
-/// Returns the scalar field that the link names under `key`; an Error names the key's line. `who` names the link type in the message
+/// Returns the scalar field that the link names under `key`; an Error names the key's line. `link_type` names the link type in the message
 /// ("friction").
-CATENA_EXPORT Result<field::ScalarFieldPtr> require_scalar_field(const json::Node& link, std::string_view key, std::string_view who,
+CATENA_EXPORT Result<field::ScalarFieldPtr> require_scalar_field(const json::Node& link, std::string_view key, std::string_view link_type,
                                                                  const BuildContext& context);
 /// Returns the vector field that the link names under `key`; otherwise as require_scalar_field.
-CATENA_EXPORT Result<field::VectorFieldPtr> require_vector_field(const json::Node& link, std::string_view key, std::string_view who,
+CATENA_EXPORT Result<field::VectorFieldPtr> require_vector_field(const json::Node& link, std::string_view key, std::string_view link_type,
                                                                  const BuildContext& context);
 /// Returns the link's `level`; an Error where the field does not attain that value. `key` is the key that names the field.
 CATENA_EXPORT Result<double> require_level(const json::Node& link, std::string_view key, const field::ScalarField& field);

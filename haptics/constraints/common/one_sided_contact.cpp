@@ -9,19 +9,19 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kInFront = 1e-11;  // of L; round-off allowance for a probe in front of the sheet that holds the proxy
+constexpr double kInFront = 1e-11;  // fraction of L; round-off allowance for a probe in front of the sheet that holds the proxy
 
 bool is_free(const SideRules& rules, double value) {
   return rules.free == FreeSide::above ? value >= 0 : rules.free == FreeSide::below ? value <= 0 : false;
 }
 
-/// Signed distance of the probe from the held sheet, positive on its free side.
+/// Returns the signed distance of the probe from the held sheet, positive on its free side.
 double in_front(const ContactSurface& surface, const SideRules& rules, const Vec3& probe, const Vec3& proxy) {
   const double above = dot(surface.normal(), probe - proxy);
   return rules.free == FreeSide::above ? above : -above;
 }
 
-/// Whether the last probe step is too long for a user's motion (a teleport; see kMaxProbeSpeed).
+/// Returns whether the last probe step is too long for a user's motion (a teleport; see kMaxProbeSpeed).
 bool is_thrown(const ContactSurface& surface, const Vec3& probe, const SideMemory& memory, const LinkState& state) {
   return memory.initialized && norm(probe - memory.probe) > std::max(kLongStepFraction * surface.domain_length(), state.max_probe_step);
 }
@@ -87,8 +87,8 @@ bool glide(const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkSt
   return false;
 }
 
-/// For a one-sided link whose probe is on the free side or on an unknown side: the sheet that still holds the proxy, if any. If the link
-/// was in contact, that is the sheet through which the probe entered; otherwise a sheet that the last probe step crossed.
+/// Returns the sheet that still holds the proxy of a one-sided link whose probe is on the free side or on an unknown side. If the link was
+/// in contact, that is the sheet through which the probe entered; otherwise a sheet that the last probe step crossed.
 SurfaceHold hold_beyond(ContactSurface& surface, const SideRules& rules, const Vec3& probe, const SideMemory& memory,
                         const LinkState& state) {
   if (is_thrown(surface, probe, memory, state)) return {};
@@ -151,7 +151,7 @@ void advance_on_surface(ContactSurface& surface, const SideRules& rules, const V
     state.released = released;
   }
 
-  // side of the probe; whether a released link re-engages
+  // side of the probe, and re-engagement of a released link
   const bool one_sided = rules.free != FreeSide::none;
   SideValue side;
   if (one_sided || state.released) side = surface.evaluate_side(probe);

@@ -93,7 +93,7 @@ struct SideMemory {
   Vec3 probe{0.0};      ///< probe of the last tick
   Vec3 proxy{0.0};      ///< proxy as this link left it; another value in LinkState shows that something else moved it
   double value = 0;     ///< value - level at the last probe, if has_value
-  double residual = 0;  ///< of the proxy, world units
+  double residual = 0;  ///< distance of the proxy from the surface, world units
   bool has_value;       ///< `value` is valid
   bool initialized;     ///< `probe` and `proxy` are valid
   bool holding;         ///< the surface has a point to continue from

@@ -46,7 +46,7 @@ class Snap final : public Constraint {
       return stay_apart(memory, distances, probe, LinkStatus::released, state);
     }
 
-    // released: where the feature is, and whether it is within reach; a search out of budget has found nothing
+    // released: finds the feature, and whether it is within the snap distance; a search out of budget finds nothing
     state.released = false;
     state.proxy = memory.hidden;
     inner_->seek(probe, state, scratch);
@@ -80,14 +80,14 @@ class Snap final : public Constraint {
     return {spec_.has_snap ? std::fmin(snap, kMaxSnap * release) : kRearmFraction * release, release};
   }
 
-  /// Engaged: takes over the state of the inner constraint.
+  /// Engages the link: takes over the state of the inner constraint.
   static void hold(SnapMemory& memory, const Distances& distances, LinkState& state) noexcept {
     memory.apart = false;
     memory.hidden = state.proxy;
     state.released = state.status == LinkStatus::released;
     if (!(state.limit > 0 && state.limit < distances.release)) state.limit = distances.release;
   }
-  /// Released: the probe passes through; the proxy of the inner constraint is kept in the memory.
+  /// Keeps the link released: the probe passes through; the proxy of the inner constraint is kept in the memory.
   static void stay_apart(SnapMemory& memory, const Distances& distances, const Vec3& probe, LinkStatus status, LinkState& state) noexcept {
     memory.apart = true;
     memory.hidden = state.proxy;

@@ -19,7 +19,7 @@ class GradientForce final : public Constraint {
 
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     // sampled at the probe, not at the last proxy: a resting probe gets a constant force
-    const double most = displacement_.at(probe, scratch.parameter_cursor, state.evaluations);
+    const double maximum = displacement_.at(probe, scratch.parameter_cursor, state.evaluations);
     state.residual = 0;
     state.limit = 0;
     state.proxy = probe;
@@ -31,7 +31,7 @@ class GradientForce final : public Constraint {
     if (!known) return;
     state.status = LinkStatus::ok;
     const double part = largest_ > 0 ? std::fmin(1.0, slope / largest_) : 0;
-    const Vec3 shift = direction(sample.gradient) * (sign_ * most * part);
+    const Vec3 shift = direction(sample.gradient) * (sign_ * maximum * part);
     const Vec3 proxy = probe + shift;
     if (max_abs(shift) > 0 && is_finite(proxy)) state.proxy = proxy;
   }
@@ -43,7 +43,7 @@ class GradientForce final : public Constraint {
   field::ScalarFieldPtr field_;
   Parameter displacement_;
   double sign_;
-  double largest_;  ///< X: the largest magnitude
+  double largest_;  ///< X: the maximum magnitude
 };
 
 Result<std::shared_ptr<const Constraint>> build_gradient_force(const json::Node& link, const BuildContext& context) {
@@ -58,10 +58,12 @@ Result<std::shared_ptr<const Constraint>> build_gradient_force(const json::Node&
 
 ConstraintType gradient_force_constraint() {
   return {"gradient_force",
-          "Draws the hand up or down a scalar field.",
+          "Pulls the probe towards higher or lower values of a scalar field.",
           "not in the paper",
-          {scalar_field_key("field").required(), length_key("displacement", "Largest distance of the proxy from the probe.").required(),
-           schema::choice("direction", {"up_gradient", "down_gradient"}, "Towards higher or lower values.").required()},
+          {scalar_field_key("field").required(), length_key("displacement", "Maximum distance between proxy and probe.").required(),
+           schema::choice("direction", {"up_gradient", "down_gradient"},
+                          "Direction of the force: towards higher values (`up_gradient`) or lower values (`down_gradient`).")
+               .required()},
           build_gradient_force};
 }
 

@@ -58,14 +58,17 @@ Result<std::shared_ptr<const Constraint>> build_viscosity(const json::Node& link
 
 ConstraintType viscosity_constraint() {
   return {"viscosity",
-          "A fluid about the hand. It has either `time` or `coefficient`.",
+          "Viscous resistance to the motion of the probe. Exactly one of `time` and `coefficient` is required.",
           "not in the paper",
-          {schema::number("time", "s", "Relaxation time: the force is stiffness x time x velocity.")
+          {schema::number("time", "s", "Relaxation time; the force is stiffness x time x velocity.")
                .non_negative()
                .or_field()
                .with_initial_value("0.05")
                .recommended(),
-           schema::number("coefficient", "N s/m", "The damper itself.").non_negative().or_field().with_initial_value("2")},
+           schema::number("coefficient", "N s/m", "Damping coefficient; the force is coefficient x velocity.")
+               .non_negative()
+               .or_field()
+               .with_initial_value("2")},
           build_viscosity};
 }
 

@@ -30,8 +30,8 @@ ConstraintType drag_constraint() {
   return {"drag",
           "Isotropic friction: the proxy stays within `threshold` of the probe.",
           "section 3",
-          {length_key("threshold", "Distance at which the proxy slips.").with_initial_value("0.005 L").required(), surface_key(),
-           surface_level_key()},
+          {length_key("threshold", "Distance between probe and proxy at which the proxy slips.").with_initial_value("0.005 L").required(),
+           surface_key(), surface_level_key()},
           build_drag};
 }
 

@@ -10,24 +10,24 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kAlong = 1e-8, kLongest = 0.1, kShortest = 5e-7;  // of L: slack of e.d; longest and shortest step
+constexpr double kAlong = 1e-8, kLongest = 0.1, kShortest = 5e-7;  // fractions of L: slack of e.d; maximum and minimum length of a step
 constexpr double kTurn = 0.02, kBent = 0.3;                        // maximum turn of the tangent, and of the normal, over half a step
-constexpr double kCorner = 0.5, kCornerError = 1e-6;               // a sharp turn, taken if it costs less than kCornerError L
-constexpr double kShort = 1e-3;                                    // of L: a step so short that the surface may have a crease
-constexpr double kStraight = 1e-14;                                // of L: error so small that the step needs no midpoint
-constexpr double kThreshold = 0.005;                               // of L: default threshold
+constexpr double kCorner = 0.5, kCornerError = 1e-6;               // maximum turn at a corner of the line, and its maximum cost in L
+constexpr double kShort = 1e-3;                                    // fraction of L: a step so short that the surface may have a crease
+constexpr double kStraight = 1e-14;                                // fraction of L: error so small that the step needs no midpoint
+constexpr double kThreshold = 0.005;                               // fraction of L: default threshold
 constexpr int kTrials = 32, kSlipRounds = 8;
 constexpr int kForStep = 40;  // field samples that a step and a slide may need
 
 struct FrictionSpec {
   field::VectorFieldPtr field;
   bool line = false;
-  double largest = 0;  ///< X: the largest magnitude
+  double largest = 0;  ///< X: the maximum magnitude
   Parameter threshold;
   ContactSpec contact;
 };
 
-/// The tangential field at a point.
+/// Tangential field at a point.
 struct Heading {
   SafeDirection t;
   LinkStatus status = LinkStatus::ok;
@@ -42,10 +42,10 @@ struct FrictionMemory {
   double rate;      ///< -d(e.d)/ds of the last step: 1 - kappa N.e
   double bend;      ///< |dd/ds| of the last step, along the surface
   double arch;      ///< |dn/ds| of the last step
-  int blocked;      ///< sign of d in which the line ends here; 0: neither
+  int blocked;      ///< sign of d in which the line ends at the proxy; 0: in neither direction
 };
 
-/// One tick of one friction link.
+/// Tick of a friction link.
 class FrictionTick {
  public:
   FrictionTick(const FrictionSpec& spec, const Vec3& probe, LinkState& state, LinkScratch& scratch)
@@ -73,7 +73,7 @@ class FrictionTick {
   }
 
  private:
-  /// Slips along the streamline and across it, alternately, until neither moves the proxy.
+  /// Slips along the streamline and across it, alternately, until neither moves the proxy. Returns false if a slide fails.
   bool slip(double tau, bool& complete) noexcept {
     bool sliding = false;
     for (int round = 0; round < kSlipRounds; ++round) {
@@ -94,7 +94,7 @@ class FrictionTick {
     }
     return true;
   }
-  /// Amount by which e along the line exceeds what the threshold allows.
+  /// Returns the amount by which e along the line exceeds the threshold's part along it.
   double excess_along(double tau) const noexcept {
     const double f = memory_.heading.t.factor;
     return std::fabs(dot(contact_.gap(), memory_.heading.t.d)) - tau * (1 - f) / f;
@@ -120,7 +120,7 @@ class FrictionTick {
       const double even = memory_.bend > 0 ? std::max(1.8 * kTurn / memory_.bend, 4 * kShortest * length_) : reach.longest;
       const double size = std::min(std::min(excess / rate, even), reach.longest), h = g > 0 ? size : -size;
 
-      // the direction half way
+      // direction at the middle of the step
       Vec3 middle = d;
       const double bent = memory_.bend + memory_.arch;
       const bool straight = memory_.bend > 0 && bent * h * h <= 8 * kStraight * length_;
@@ -138,7 +138,7 @@ class FrictionTick {
         middle = half.t.d;
       }
 
-      // the step
+      // end of the step
       const LevelPoint to = contact_.sample_surface(p + middle * h, true);
       const Heading there = heading_at(to);
       const double turn = to.valid ? turn_to(to, there, size) : 2;
@@ -172,7 +172,7 @@ class FrictionTick {
     return moved;
   }
 
-  /// Maximum length of a step, world units, and where a corner of the line is known to lie ahead of the proxy.
+  /// Maximum length of a step, world units, and the known distance of a corner of the line ahead of the proxy.
   struct Reach {
     double longest = 0;
     double corner = 0;   ///< distance within which a corner lies; 0: none known
@@ -180,7 +180,7 @@ class FrictionTick {
     int overshoots = 0;  ///< number of steps past the closest point
   };
 
-  /// Angle by which the line turns from the proxy to `to`, as a chord length, seen along the surface; 2 if the line ends there.
+  /// Returns the chord length of the angle by which the line turns from the proxy to `to`, in the tangent plane; 2 if the line ends there.
   double turn_to(const LevelPoint& to, const Heading& there, double size) const noexcept {
     if (!there.known() || (size > kShort * length_ && norm(to.n - contact_.surface_point().n) > kBent)) return 2;
     const Vec3& here = memory_.heading.t.d;
@@ -188,7 +188,7 @@ class FrictionTick {
     const double size_of_it = norm(flat);
     return size_of_it > 0 ? norm(there.t.d - flat * (1 / size_of_it)) : 2;
   }
-  /// Maximum turn of a step: a corner is crossed where that costs little.
+  /// Returns the maximum turn of a step; a larger turn is allowed for a corner that costs little.
   double most_turn(double smooth, double size) const noexcept { return std::max(smooth, std::min(kCorner, kCornerError * length_ / size)); }
   /// Halves the step after a rejection; a turn that does not decrease with it is a corner. Returns false if the step is too short to go on.
   bool refuse(Reach& reach, double turn, double size) const noexcept {
@@ -205,7 +205,7 @@ class FrictionTick {
     if (reach.corner > kShortest * length_) reach.longest = std::min(reach.corner, std::max(0.5 * reach.corner, kCornerError * length_));
   }
 
-  /// The line ends here: the proxy stays.
+  /// Ends the line at the proxy.
   bool stop_at(const Heading& why, double step, bool& complete, bool moved) noexcept {
     memory_.blocked = step > 0 ? 1 : -1;
     complete = true;
@@ -238,7 +238,7 @@ class FrictionTick {
     return {safe_normalize(v.value, spec_.largest, at.n), LinkStatus::ok};
   }
 
-  /// Heading of a line that ends because the vector field or the surface ends.
+  /// Returns the heading of a line that ends because the vector field or the surface ends.
   Heading boundary_at(const Vec3& place, field::Cursor& cursor) const noexcept {
     const SampleStatus reason = spec_.field->status_outside(place, cursor);
     return {
@@ -251,13 +251,13 @@ class FrictionTick {
   FrictionMemory& memory_;
   Contact contact_;
   double length_;
-  /// The last step of this tick: its start and dd/ds. A short step starts from these.
+  /// Last step of this tick: its start and dd/ds. A short step starts from these values.
   struct {
     bool known = false;
     Vec3 from{0.0}, turn{0.0};
   } last_;
   int trials_ = 0;                      ///< trial steps along the line in this tick
-  LinkStatus ending_ = LinkStatus::ok;  ///< why the line ends, if it does
+  LinkStatus ending_ = LinkStatus::ok;  ///< status of the end of the line; ok: it has not ended
 };
 
 class Friction final : public Constraint {
@@ -296,11 +296,11 @@ Result<std::shared_ptr<const Constraint>> build_friction(const json::Node& link,
 
 ConstraintType friction_constraint() {
   return {"friction",
-          "Friction across a vector field; along the field the hand moves freely.",
+          "Friction across a vector field; along the field the probe moves freely.",
           "section 6.1",
           {vector_field_key("field").required(), schema::line_kind_key(),
-           length_key("threshold", "Distance at which the proxy slips across the field.").with_default("0.005 L"), surface_key(),
-           surface_level_key()},
+           length_key("threshold", "Distance between probe and proxy at which the proxy slips across the field.").with_default("0.005 L"),
+           surface_key(), surface_level_key()},
           build_friction};
 }
 

@@ -9,16 +9,16 @@
 namespace catena::haptics {
 namespace {
 
-// lengths, times L
+// fractions of L
 constexpr double kTouch = 1e-6, kOnLevel = 1e-12, kAccepted = 1e-9, kGapSlack = 1e-13, kNearLevel = 0.02;
 constexpr int kSlideRounds = 12, kPatient = 5, kNewton = 8;
 constexpr int kPatience = 8, kFade = 20;
 constexpr int kForLevel = 12;      // field samples reserved for the return to the level
-constexpr double kLevelled = 0.1;  // e.t / |e|; if smaller, sliding does not shorten the gap
+constexpr double kLevelled = 0.1;  // minimum e.t / |e| for which sliding shortens the gap
 
 bool usable(const LevelPoint& a) { return a.valid && !a.plateau; }
 
-/// LevelSetField::at with a single division, writing in place (a copy would stall on its stores); equal up to rounding.
+/// LevelSetField::at with a single division, written in place (a copy would stall on its stores); equal up to rounding.
 void fetch(LevelSetField& field, const Vec3& world, LevelPoint& out) noexcept {
   const Vec3 p = field.clamped(world);
   out = LevelPoint{};
@@ -49,10 +49,11 @@ void fetch(LevelSetField& field, const Vec3& world, LevelPoint& out) noexcept {
 }  // namespace
 
 schema::Key surface_key() {
-  return schema::reference("surface", schema::Role::scalar_field, "A scalar field: the friction acts on its level, tangentially.");
+  return schema::reference("surface", schema::Role::scalar_field,
+                           "Scalar field of a surface; the friction acts tangentially to the surface.");
 }
 
-schema::Key surface_level_key() { return level_key("The value of `surface` on which probe and proxy lie; the two come together."); }
+schema::Key surface_level_key() { return level_key("Level of `surface` on which the friction acts; given only with `surface`."); }
 
 Result<ContactSpec> read_contact(const json::Node& link, SurfaceRequirement rule, const BuildContext& context) {
   ContactSpec spec;
@@ -120,7 +121,7 @@ bool Contact::begin() noexcept {
     return true;
   }
 
-  // is the incoming probe on the level?
+  // tests whether the incoming probe is on the level
   LevelSetField near_probe(*spec_.surface, *spec_.level, probe_cursor_, state_);
   fetch(near_probe, probe_, probe_point_);
   if (!probe_point_.finite) {
@@ -137,18 +138,18 @@ bool Contact::begin() noexcept {
   return true;
 }
 
-LevelPoint Contact::sample_surface(const Vec3& wanted, bool on_level) noexcept {
+LevelPoint Contact::sample_surface(const Vec3& target, bool on_level) noexcept {
   LevelPoint a;
   if (!spec_.surface) {
-    a.p = wanted;
-    a.valid = a.finite = is_finite(wanted);
+    a.p = target;
+    a.valid = a.finite = is_finite(target);
     return a;
   }
-  fetch(*field_, wanted, a);
+  fetch(*field_, target, a);
   if (!spec_.level) {
-    a.p = wanted;
+    a.p = target;
     a.distance = 0;
-    a.valid = is_finite(wanted);
+    a.valid = is_finite(target);
   } else if (on_level && !(usable(a) && project_to_level(a))) {
     a.valid = false;
   } else {
@@ -198,7 +199,7 @@ bool Contact::slide_to(double distance) noexcept {
     }
     const Vec3 tangential = e - a.n * across;
     const double along = norm(tangential);
-    // solve |e + l n - b t| = r
+    // solves |e + l n - b t| = r for b
     double b = 0;
     if (along > kLevelled * gap) {
       const double level_gap = norm(e + a.n * a.distance), c = (level_gap - distance) * (level_gap + distance);
@@ -210,7 +211,7 @@ bool Contact::slide_to(double distance) noexcept {
     fetch(*field_, a.p + tangential * (along > 0 ? b / along : 0.0) - a.n * a.distance, a);
   }
 
-  // a crease, or a sheet that bends away: at least on the level, and no farther from the probe than before
+  // a crease, or a sheet that bends away: accepts any point on the level that is no farther from the probe than the previous one
   if (!usable(a) || !project_to_level(a) || norm(probe_ - a.p) > norm(e0)) return false;
   memory_.surface_point = a;
   return true;

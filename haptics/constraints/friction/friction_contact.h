@@ -57,14 +57,14 @@ enum class SurfaceRequirement { optional_with_level, optional, required };
 /// Reads `surface` and `level`; an Error names the offending key's line.
 Result<ContactSpec> read_contact(const json::Node& link, SurfaceRequirement rule, const BuildContext& context);
 schema::Key surface_key();        ///< optional key that names a scalar field
-schema::Key surface_level_key();  ///< its level, beside it
+schema::Key surface_level_key();  ///< key for the level of that field
 
 /// State of a friction contact between ticks. Zero bytes: not initialized.
 struct ContactMemory {
-  Vec3 probe, proxy;                    ///< of the last tick, world units
+  Vec3 probe, proxy;                    ///< probe and proxy of the last tick, world units
   LevelPoint surface_point;             ///< sample of the surface at the proxy
-  double residual, limit;               ///< of the last tick, world units
-  LinkStatus status;                    ///< of the last tick
+  double residual, limit;               ///< residual and limit of the last tick, world units
+  LinkStatus status;                    ///< status of the last tick
   bool initialized, settled, touching;  ///< valid; converged for `probe`; the probe is on the level (always true in space)
   std::int32_t consecutive_failures;    ///< ticks in a row in which the surface was lost
 };
@@ -99,8 +99,8 @@ class Contact {
   bool out_of_budget(int reserve) const noexcept { return state_.evaluations + reserve >= kMaxEvaluations || state_.exhausted(); }
   double length() const noexcept { return spec_.length; }
 
-  /// Samples the surface near `wanted`, projected back to the level if `on_level`. Not valid: there is none.
-  LevelPoint sample_surface(const Vec3& wanted, bool on_level) noexcept;
+  /// Samples the surface near `target`, projected back to the level if `on_level`. Not valid: there is none.
+  LevelPoint sample_surface(const Vec3& target, bool on_level) noexcept;
   void move_to(const LevelPoint& to) noexcept { memory_.surface_point = to; }
   /// Applies isotropic drag: |x - p| <= tau leaves p, bit for bit; else p slides to |x - p| = tau. False: the surface is lost.
   bool drag(double tau) noexcept;

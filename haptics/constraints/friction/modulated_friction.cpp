@@ -11,13 +11,13 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kLeast = 0.001, kMost = 0.01;  // of L; defaults of the least and largest threshold
+constexpr double kMinimum = 0.001, kMaximum = 0.01;  // fractions of L; defaults of the minimum and maximum threshold
 
 struct ModulatedFrictionSpec {
   field::VectorFieldPtr field;
   bool line = false, as_published = false;
-  double largest_speed = 0, largest_slope = 0;  ///< X of v and of grad s
-  Parameter least, most;                        ///< tau_min, tau_max
+  double largest_speed = 0, largest_slope = 0;  ///< X of v and of grad s: the maximum magnitudes
+  Parameter minimum, maximum;                   ///< tau_min, tau_max
   ContactSpec contact;
 };
 
@@ -40,10 +40,10 @@ class ModulatedFriction final : public Constraint {
     if (!contact.begin()) return;
     const Vec3 before = contact.proxy();
     if (contact.was_repositioned()) memory.angle = angle(contact.surface_point(), memory, state, scratch);
-    const double least = spec_.least.at(before, scratch.parameter_cursor, state.evaluations);
-    const double most = spec_.most.at(before, scratch.parameter_cursor, state.evaluations);
+    const double minimum = spec_.minimum.at(before, scratch.parameter_cursor, state.evaluations);
+    const double maximum = spec_.maximum.at(before, scratch.parameter_cursor, state.evaluations);
     const double u = memory.angle, hard = spec_.as_published ? 1 - u : std::fabs(u);
-    const double tau = safe_threshold(equation::drag_threshold(hard, least, most));
+    const double tau = safe_threshold(equation::drag_threshold(hard, minimum, maximum));
     if (norm(contact.gap()) > tau) {
       if (!contact.slide_to(tau)) return contact.handle_lost_surface();
       memory.angle = angle(contact.surface_point(), memory, state, scratch);
@@ -56,7 +56,7 @@ class ModulatedFriction final : public Constraint {
   double domain_length() const noexcept override { return spec_.contact.length; }
 
  private:
-  /// Angle u of Eqs. 8-9 at `at`.
+  /// Returns the angle u of Eqs. 8-9 at a point.
   double angle(const LevelPoint& at, ModulatedFrictionMemory& memory, LinkState& state, LinkScratch& scratch) const noexcept {
     if (state.evaluations + 2 >= kMaxEvaluations) return memory.angle;
     field::Cursor& cursor = scratch.cursors[1];
@@ -91,8 +91,8 @@ Result<std::shared_ptr<const Constraint>> build_modulated_friction(const json::N
   CATENA_CHECK(schema::read_value(law_key(""), link, spec.as_published));
   CATENA_TRY(spec.contact, read_contact(link, SurfaceRequirement::required, context));
   const double length = spec.contact.length;
-  CATENA_TRY(spec.least, get_parameter(link, "tau_min", kLeast * length, json::NumberRange::non_negative, context));
-  CATENA_TRY(spec.most, get_parameter(link, "tau_max", kMost * length, json::NumberRange::non_negative, context));
+  CATENA_TRY(spec.minimum, get_parameter(link, "tau_min", kMinimum * length, json::NumberRange::non_negative, context));
+  CATENA_TRY(spec.maximum, get_parameter(link, "tau_max", kMaximum * length, json::NumberRange::non_negative, context));
   spec.largest_speed = field::compute_max_magnitude(*field);
   spec.largest_slope = field::compute_max_gradient(*spec.contact.surface);
   return std::shared_ptr<const Constraint>(std::make_shared<ModulatedFriction>(std::move(spec)));
@@ -101,18 +101,18 @@ Result<std::shared_ptr<const Constraint>> build_modulated_friction(const json::N
 }  // namespace
 
 ConstraintType modulated_friction_constraint() {
-  return {
-      "modulated_friction",
-      "Friction that is harder the more normal the field is to the surface.",
-      "section 6.1, Eqs. 7-9",
-      {schema::reference("field", schema::Role::vector_field, "A vector field; its angle to the surface sets the threshold.").required(),
-       schema::line_kind_key(),
-       schema::reference("surface", schema::Role::scalar_field, "A scalar field; its gradient is the normal.").required(),
-       level_key("Keeps the proxy on this level of `surface`; without it the drag is in space."),
-       length_key("tau_min", "Threshold where the field is tangential.").with_default("0.001 L"),
-       length_key("tau_max", "Threshold where the field is normal.").with_default("0.01 L"),
-       law_key("`robust`: harder the closer the field is to the normal; `as_published`: Eq. 7 as printed in the paper.")},
-      build_modulated_friction};
+  return {"modulated_friction",
+          "Friction whose threshold depends on the angle between a vector field and a surface.",
+          "section 6.1, Eqs. 7-9",
+          {schema::reference("field", schema::Role::vector_field, "Vector field whose angle to the surface sets the threshold.").required(),
+           schema::line_kind_key(),
+           schema::reference("surface", schema::Role::scalar_field, "Scalar field whose gradient is the normal of the surface.").required(),
+           level_key("Level of `surface` on which the friction acts; without `level` the friction acts in space."),
+           length_key("tau_min", "Threshold where the field is tangential to the surface.").with_default("0.001 L"),
+           length_key("tau_max", "Threshold where the field is normal to the surface.").with_default("0.01 L"),
+           law_key("Law of the threshold; `robust`: the threshold increases as the field approaches the normal; `as_published`: Eq. 7 of "
+                   "the paper as printed.")},
+          build_modulated_friction};
 }
 
 }  // namespace catena::haptics

@@ -9,7 +9,7 @@
 namespace catena::haptics {
 namespace {
 
-/// Triangle wave: -1 at whole t, 1 halfway between.
+/// Returns a triangle wave: -1 at integer t, 1 halfway between integers.
 double triangle(double t) {
   const double part = t - std::floor(t);
   return std::isfinite(part) ? 1 - 4 * std::fabs(part - 0.5) : 0;
@@ -42,13 +42,14 @@ Result<std::shared_ptr<const Constraint>> build_texture(const json::Node& link, 
 }  // namespace
 
 ConstraintType texture_constraint() {
-  return {"texture",
-          "Drag with bumps of a wavelength.",
-          "section 3",
-          {length_key("threshold", "Mean distance at which the proxy slips.").with_initial_value("0.005 L").required(),
-           schema::number("amplitude", "", "Part of the threshold that varies.").within(0, 1).with_default("0.5"),
-           schema::number("wavelength", "world", "Of the variation.").positive().required(), surface_key(), surface_level_key()},
-          build_texture};
+  return {
+      "texture",
+      "Drag whose threshold varies periodically in space.",
+      "section 3",
+      {length_key("threshold", "Mean distance between probe and proxy at which the proxy slips.").with_initial_value("0.005 L").required(),
+       schema::number("amplitude", "", "Amplitude of the variation, as a fraction of `threshold`.").within(0, 1).with_default("0.5"),
+       schema::number("wavelength", "world", "Wavelength of the variation.").positive().required(), surface_key(), surface_level_key()},
+      build_texture};
 }
 
 }  // namespace catena::haptics

@@ -12,7 +12,7 @@ PieceFrame::PieceFrame(const field::Mapping& mapping, unsigned held_axes) noexce
     dimension = 3;
     return;
   }
-  // Gram-Schmidt
+  // Gram-Schmidt orthogonalization
   for (int a = 0; a < 3; ++a) {
     held[static_cast<std::size_t>(a)] = (held_axes >> a & 1u) != 0;
     if (held[static_cast<std::size_t>(a)]) continue;
@@ -49,7 +49,7 @@ PulledBackForce CellPiece::pull_back(const Vec3& f, const Vec3& probe, const Vec
   const double delta = dot(s.n, probe - world(f));
   const auto bent = [&](const Vec3& v) { return frame_.project(hessian_times(f, v)) * (1 / s.slope); };
   if (frame_.dimension == 3) return pull_back_on_surface(s.n, delta, bent, force);
-  // one direction is left: in the span, perpendicular to n
+  // one direction remains: in the span, perpendicular to n
   const Vec3 other = cross(frame_.basis[0], frame_.basis[1]), t = direction(cross(s.n, other));
   return pull_back_on_curve(t, 1 + delta * dot(t, bent(t)), force);
 }
@@ -57,8 +57,8 @@ PulledBackForce CellPiece::pull_back(const Vec3& f, const Vec3& probe, const Vec
 bool CellPiece::retract(const Vec3& f, const Vec3& step, const PieceSample& s, Vec3& out, double& along) const noexcept {
   const Vec3 d = frame_.index_step(mapping_, step), n = frame_.index_step(mapping_, s.n);
   const Vec3 start = f + d;
-  // Newton on the cubic along n
-  double w = along, best = 0, least = -1;
+  // Newton's method on the cubic along n
+  double w = along, best = 0, minimum = -1;
   for (int i = 0; i < 20; ++i) {
     double value;
     Vec3 g;
@@ -66,8 +66,8 @@ bool CellPiece::retract(const Vec3& f, const Vec3& step, const PieceSample& s, V
     cell_.value_and_gradient(start + n * w, value, g);
     const double sigma = value - level_, slope = dot(g, n);
     if (!std::isfinite(sigma)) return false;
-    if (least >= 0 && std::fabs(sigma) >= least) break;
-    least = std::fabs(sigma);
+    if (minimum >= 0 && std::fabs(sigma) >= minimum) break;
+    minimum = std::fabs(sigma);
     best = w;
     if (sigma == 0) break;
     if (!(slope > 0.05 * s.slope)) return false;
@@ -75,10 +75,10 @@ bool CellPiece::retract(const Vec3& f, const Vec3& step, const PieceSample& s, V
   }
   out = start + n * best;
   along = best;
-  // as accurate as the cell's values allow
+  // accepts the accuracy that the cell's values allow
   double largest = std::fabs(level_);
   for (const double c : cell_.corner) largest = std::max(largest, std::fabs(c));
-  return least <= 1e-14 * largest || least <= 1e-12 * s.slope * mapping_.min_voxel_edge();
+  return minimum <= 1e-14 * largest || minimum <= 1e-12 * s.slope * mapping_.min_voxel_edge();
 }
 
 double CellPiece::overshoot(const Vec3& f, int& axis) const noexcept {
@@ -94,10 +94,10 @@ double CellPiece::overshoot(const Vec3& f, int& axis) const noexcept {
 
 namespace {
 
-constexpr double kConverged = 1e-10;  // of L; convergence within a piece
+constexpr double kConverged = 1e-10;  // fraction of L; convergence within a piece
 constexpr double kNearFace = 1e-10;   // voxels; a step out of the cell that cannot be shortened into it starts on the face
-constexpr double kLeastSlope = 0.87;  // relative to the slope at the last point; less is a fold
-constexpr double kFlat = 0.25;        // voxels; how far off the level a straight path may end
+constexpr double kMinSlope = 0.87;    // minimum slope relative to the slope at the last point; a smaller one is a fold
+constexpr double kFlat = 0.25;        // voxels; maximum distance from the level at the end of a straight path
 
 }  // namespace
 
@@ -153,7 +153,7 @@ FollowResult follow_piece(const LevelSetField& field, const CellPiece& piece, co
         outer = g;
       }
       if (!inner) {
-        // off a face only by round-off, but not on it
+        // outside of a face only by round-off
         for (int a = axis, k = 0; k < 3; ++k, a = (a + 1) % 3) {
           const double face = f[a] < 0.5 ? 0.0 : 1.0;
           if (piece.frame().held[static_cast<std::size_t>(a)] || f[a] == face || std::fabs(f[a] - face) > kNearFace) continue;
@@ -186,7 +186,7 @@ FollowResult follow_piece(const LevelSetField& field, const CellPiece& piece, co
       }
       if (hurried && v_low > -kFaceTolerance) outer = within, v_high = 0;
       if (v_high > 1e-9) {
-        // a fold in between: go as far as the cell's level does
+        // a fold between the ends: goes as far as the cell's level does
         accepted = piece.gain(probe, f, within) >= 1e-4 * low * dot(t, u);
         if (accepted) f = within;
         continue;
@@ -220,7 +220,7 @@ bool cross_cell(const LevelSetField& field, const PieceFrames& frames, const Cel
   const PieceSample there = face.sample(exit);
   Vec3 g;
   int worst;
-  if (!there.usable || there.slope < kLeastSlope * s.slope || std::fabs(there.distance) > kFlat * field.voxel_edge()) return false;
+  if (!there.usable || there.slope < kMinSlope * s.slope || std::fabs(there.distance) > kFlat * field.voxel_edge()) return false;
   if (!face.retract(exit, Vec3(0.0), there, g) || face.overshoot(g, worst) > 0) return false;
   if (!(piece.gain(probe, f, g) > 0)) return false;
   f = g;

@@ -76,13 +76,13 @@ class CellPiece {
   }
   /// Returns which fraction of the index step d from f, a point in the cell, is in the cell; axis: that of the face that ends it, or -1.
   double fraction_inside(const Vec3& f, const Vec3& d, int& axis) const noexcept {
-    double part = 1;
+    double fraction = 1;
     axis = -1;
     for (int a = 0; a < 3; ++a) {
-      const double way = d[a] > 0 ? (1 - f[a]) / d[a] : d[a] < 0 ? -f[a] / d[a] : 1.0;
-      if (way < part) part = way, axis = a;
+      const double face_fraction = d[a] > 0 ? (1 - f[a]) / d[a] : d[a] < 0 ? -f[a] / d[a] : 1.0;
+      if (face_fraction < fraction) fraction = face_fraction, axis = a;
     }
-    return part;
+    return fraction;
   }
   /// Returns by how much |x - p|^2 / 2 decreases from one point of the cell to another, exact where they are close.
   double gain(const Vec3& probe, const Vec3& from, const Vec3& to) const noexcept {

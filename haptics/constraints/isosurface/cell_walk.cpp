@@ -10,15 +10,15 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kStill = 1e-13;     // of L; a shorter move counts as none
-constexpr double kAccepted = 1e-6;   // of L; allowed residual where no piece can move any more
-constexpr double kWalkEnded = 3e-8;  // of L; residual at which a walk has ended
+constexpr double kStill = 1e-13;     // fraction of L; a shorter move counts as none
+constexpr double kAccepted = 1e-6;   // fraction of L; allowed residual where no piece can move further
+constexpr double kWalkEnded = 3e-8;  // fraction of L; residual at which a walk has ended
 constexpr int kWalkRounds = 600;
 constexpr double kFarAway = 2;        // voxels
 constexpr int kHalvings = 24;         // bisections to find where a path exceeds its limit
 constexpr double kSmoothTurn = 0.95;  // cosine; a larger turn of the normal from step to step means that the surface is not smooth
 
-/// The cell faces through a point: their axes, and the cells on either side.
+/// Cell faces through a point: their axes, and the cells on either side.
 struct Corner {
   unsigned flat = 0, faces = 0;  // bit masks of axes
   CellPoint at;
@@ -31,7 +31,7 @@ struct Corner {
         faces |= 1u << a;
     }
   }
-  /// The point seen from one of its cells. Bit a of `upper`: the cell that has the point on its lower face a (f = 0).
+  /// Returns the point relative to one of its cells. Bit a of `upper`: the cell that has the point on its lower face a (f = 0).
   CellPoint seen_from(unsigned upper) const {
     CellPoint out = at;
     std::array<std::int32_t*, 3> base{&out.base.x, &out.base.y, &out.base.z};
@@ -52,7 +52,7 @@ struct Corner {
   }
 };
 
-/// Visits the empty set first, then every other subset of `mask`, in rising order.
+/// Visits the empty set first, then each other subset of `mask` in ascending order.
 template <class Visit>
 void for_subsets(unsigned mask, const Visit& visit) {
   unsigned subset = 0;
@@ -62,23 +62,23 @@ void for_subsets(unsigned mask, const Visit& visit) {
   } while (subset != 0);
 }
 
-/// Last point of the path from..to over one piece that stays within `limit` and is no farther from the probe than `from`.
+/// Returns the last point of the path from..to on a piece that stays within `limit` and is no farther from the probe than `from`.
 Vec3 cut_short(const LevelSetField& field, const CellPiece& piece, const Vec3& probe, const TravelLimit& limit, const PieceSample& s,
                const Vec3& from, const Vec3& to) {
   const Vec3 chord = field.trilinear_grid()->mapping().world_from_index_linear * (to - from),
              along = equation::tangential_component(chord, s.n);
-  const double most = norm(probe - piece.world(from));
-  Vec3 kept = from, g;
+  const double maximum = norm(probe - piece.world(from));
+  Vec3 last_valid = from, g;
   double low = 0, high = 1;
   for (int i = 0; i < kHalvings && !field.exhausted(); ++i) {
     const double mid = 0.5 * (low + high);
     int axis;
     const bool fits = piece.retract(from, along * mid, s, g) && piece.overshoot(g, axis) <= 0 && !limit.is_exceeded_by(piece.world(g)) &&
-                      norm(probe - piece.world(g)) <= most;
+                      norm(probe - piece.world(g)) <= maximum;
     (fits ? low : high) = mid;
-    if (fits) kept = g;
+    if (fits) last_valid = g;
   }
-  return kept;
+  return last_valid;
 }
 
 }  // namespace
@@ -151,7 +151,7 @@ WalkResult walk_cells(LevelSetField& field, const PieceFrames& frames, const Vec
   };
 
   for (int round = 0; round < kWalkRounds; ++round) {
-    // of all pieces that meet the point, the one with the steepest feasible descent
+    // the piece with the steepest feasible descent among all pieces that meet the point
     const Corner corner(grid.index_box(), at);
     const unsigned own = corner.upper();
     struct {
@@ -220,7 +220,7 @@ WalkResult walk_cells(LevelSetField& field, const PieceFrames& frames, const Vec
       return result;
     }
 
-    // follow that piece
+    // follows that piece
     CellPoint next = corner.seen_from(best.upper);
     best.cell = cells.fetch(next.base);  // other fetches of this round may have evicted the cell
     if (!best.cell) {
@@ -241,7 +241,7 @@ WalkResult walk_cells(LevelSetField& field, const PieceFrames& frames, const Vec
     }
     const unsigned faces = Corner(grid.index_box(), next).faces;
     if (how == FollowResult::converged && faces == 0 && norm(best.t) <= kMinDescent * length) {
-      // within the cell no other piece meets the point
+      // inside the cell no other piece meets the point
       at = next;
       turn_to(best.s.n);
       result.status = LinkStatus::ok;

@@ -96,8 +96,8 @@ struct CellPoint {
 /// Validates a point from a file (Constraint::is_sane): indices far from integer overflow, f finite. To the walk, cells outside the grid
 /// are walls.
 inline bool is_sane(const CellPoint& at) noexcept {
-  constexpr std::int32_t most = 1 << 30;
-  const auto near = [](std::int32_t base) { return base > -most && base < most; };
+  constexpr std::int32_t limit = 1 << 30;
+  const auto near = [](std::int32_t base) { return base > -limit && base < limit; };
   return near(at.base.x) && near(at.base.y) && near(at.base.z) && is_finite(at.f);
 }
 
@@ -134,7 +134,7 @@ WalkResult walk_cells(LevelSetField& field, const PieceFrames& frames, const Vec
                       TravelLimit* limit = nullptr) noexcept;
 
 /// Returns J^T f of the projection at `at`, where a walk has ended: by the cell's exact Hessian, in the span of the axes that are not held.
-/// Of the pieces that meet the point, the one counts on which it is a closest point, with the fewest axes held.
+/// The piece that counts is the one on which the point is a closest point, with the fewest axes held.
 PulledBackForce pull_back_cells(LevelSetField& field, const PieceFrames& frames, const Vec3& probe, const CellPoint& at,
                                 const Vec3& f) noexcept;
 

@@ -23,8 +23,8 @@ void update_curvature(const LevelPoint& from, const LevelPoint& to, double lengt
   b.yz += r.y * r.z / rs;
   b.xz += r.x * r.z / rs;
   b.xy += r.x * r.y / rs;
-  const double most = std::max(max_abs({b.xx, b.yy, b.zz}), max_abs({b.yz, b.xz, b.xy}));
-  if (!(most <= 1e4 / length)) b = Curvature{};
+  const double maximum = std::max(max_abs({b.xx, b.yy, b.zz}), max_abs({b.yz, b.xz, b.xy}));
+  if (!(maximum <= 1e4 / length)) b = Curvature{};
 }
 
 Curvature measure_curvature(LevelSetField& field, const LevelPoint& at) noexcept {
@@ -39,11 +39,11 @@ Curvature measure_curvature(LevelSetField& field, const LevelPoint& at) noexcept
   return {entry(0, 0), entry(1, 1), entry(2, 2), entry(1, 2), entry(0, 2), entry(0, 1)};
 }
 
-void solve_tangent(double m11, double m12, double m22, double t1, double t2, double least, double& u1, double& u2) noexcept {
+void solve_tangent(double m11, double m12, double m22, double t1, double t2, double min_size, double& u1, double& u2) noexcept {
   // eigenvalues of [m11 m12; m12 m22] and the eigenvector (c, s) of the first
   const double mean = 0.5 * (m11 + m22), half = 0.5 * (m11 - m22);
   const double radius = std::sqrt(half * half + m12 * m12);
-  const auto safe = [least](double v) { return std::max(std::fabs(v), least); };
+  const auto safe = [min_size](double v) { return std::max(std::fabs(v), min_size); };
   double c = half + (half >= 0 ? radius : -radius), s = m12;
   const double size = std::sqrt(c * c + s * s);
   if (!(size > 0))
@@ -64,12 +64,12 @@ ClosestPointResult closest_point(LevelSetField& field, const Vec3& probe, const 
   const std::int32_t first = field.evaluations();
   LevelPoint a = at;
   ClosestPointResult answer = ClosestPointResult::out_of_budget;
-  double least = 0.1;
+  double min_size = 0.1;
   for (int step_count = 0;; ++step_count) {
     // slow: the surface is nearly a sphere around the probe, and the step depends on the last digits of the curvature
     if (step_count >= kSlow && (step_count - kSlow) % 6 == 0) {
       curvature = measure_curvature(field, a);
-      least = std::max(0.1 * least, 1e-4);
+      min_size = std::max(0.1 * min_size, 1e-4);
     }
     const Vec3 e = probe - a.p;
     const double delta = dot(a.n, e);
@@ -89,14 +89,14 @@ ClosestPointResult closest_point(LevelSetField& field, const Vec3& probe, const 
       if (!(tangential > 0)) return Vec3(0.0);
       const Vec3 b1 = curvature.times(t1), b2 = curvature.times(t2);
       double u1, u2;
-      solve_tangent(1 + delta * dot(t1, b1), delta * dot(t1, b2), 1 + delta * dot(t2, b2), dot(t, t1), dot(t, t2), least, u1, u2);
+      solve_tangent(1 + delta * dot(t1, b1), delta * dot(t1, b2), 1 + delta * dot(t2, b2), dot(t, t1), dot(t, t2), min_size, u1, u2);
       const Vec3 step = t1 * u1 + t2 * u2;
       const double size = norm(step);
       return size > trust ? step * (trust / size) : step;
     };
     Vec3 u = newton();
 
-    // shrink the step until it is accepted
+    // shrinks the step until it is accepted
     bool accepted = false;
     double pull = 1;
     LevelPoint c;
@@ -109,7 +109,7 @@ ClosestPointResult closest_point(LevelSetField& field, const Vec3& probe, const 
       c = field.at(a.p + u + a.n * w);
       const double loosest = std::max(std::fabs(a.distance), 0.5 * norm(u));
       if (c.valid && !c.plateau && dot(a.n, c.n) > 0.3 && std::fabs(c.distance) <= loosest) {
-        // change of the merit function, by differences so that it stays exact near convergence
+        // change of the merit function, from differences, so that it stays exact near convergence
         const Vec3 e2 = probe - c.p;
         const Vec3 change = (a.p - c.p) + c.n * c.distance - a.n * a.distance;
         const Vec3 sum = e + e2 + a.n * a.distance + c.n * c.distance;

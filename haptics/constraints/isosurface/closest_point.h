@@ -40,8 +40,8 @@ void update_curvature(const LevelPoint& from, const LevelPoint& to, double lengt
 /// Returns the finite-difference curvature at a point, with two more field samples, where SR1 updates converge too slowly.
 Curvature measure_curvature(LevelSetField& field, const LevelPoint& at) noexcept;
 
-/// Solves M u = t in two dimensions, with the eigenvalues of M taken as max(|.|, least): always a descent direction.
-void solve_tangent(double m11, double m12, double m22, double t1, double t2, double least, double& u1, double& u2) noexcept;
+/// Solves M u = t in two dimensions, with the eigenvalues of M taken as max(|.|, min_size): always a descent direction.
+void solve_tangent(double m11, double m12, double m22, double t1, double t2, double min_size, double& u1, double& u2) noexcept;
 
 /// Returns J^T f of the closest point of a surface with the unit normal n (common/pull_back.h); `times(v)` returns B v.
 template <class Times>
@@ -50,9 +50,9 @@ PulledBackForce pull_back_on_surface(const Vec3& n, double delta, const Times& t
   make_tangent_basis(n, a, b);
   const Vec3 ba = times(a), bb = times(b);
   const double m11 = 1 + delta * dot(a, ba), m12 = 0.5 * delta * (dot(a, bb) + dot(b, ba)), m22 = 1 + delta * dot(b, bb);
-  const auto solved = [&](double least) {
+  const auto solved = [&](double min_size) {
     double u1, u2;
-    solve_tangent(m11, m12, m22, dot(a, f), dot(b, f), least, u1, u2);
+    solve_tangent(m11, m12, m22, dot(a, f), dot(b, f), min_size, u1, u2);
     return a * u1 + b * u2;
   };
   const Vec3 force = solved(kMinFactor);

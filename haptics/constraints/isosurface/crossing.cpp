@@ -7,12 +7,12 @@
 namespace catena::haptics {
 namespace {
 
-constexpr int kMostCells = 160, kSegmentSteps = 64, kDipTrials = 12, kRootHalvings = 60;
+constexpr int kMaxCells = 160, kSegmentSteps = 64, kDipTrials = 12, kRootHalvings = 60;
 constexpr int kForTheRest = 48;  // field samples reserved for the work after a crossing
 
 bool other_side(double a, double b) { return (a < 0) != (b < 0); }
 
-/// Cubic through the values g at 0, 1/3, 2/3, 1.
+/// Cubic through the values g at 0, 1/3, 2/3 and 1.
 struct Cubic {
   double c0, c1, c2, c3;
 
@@ -23,9 +23,9 @@ struct Cubic {
         c3(-4.5 * g[0] + 13.5 * g[1] - 13.5 * g[2] + 4.5 * g[3]) {}
   double at(double t) const { return c0 + t * (c1 + t * (c2 + t * c3)); }
 
-  /// First point in 0..1 where the sign differs from that of `side`; more than 1 if there is none.
+  /// Returns the first point in 0..1 where the sign differs from that of `side`; a value above 1 if there is none.
   double leaves(double side) const {
-    // the extrema in rising order, and the end
+    // the extrema in ascending order, and the end
     std::array<double, 3> stops{2, 2, 1};
     const double root = c2 * c2 - 3 * c1 * c3;
     if (root > 0) {
@@ -54,7 +54,7 @@ struct Cubic {
   }
 };
 
-/// Part of a + t d, t in 0..1, inside the box of a grid.
+/// Part of a + t d, 0 <= t <= 1, inside the box of a grid.
 struct Part {
   double first = 0, last = 1;
 
@@ -72,7 +72,7 @@ struct Part {
   }
 };
 
-/// Next t at which a + t d, from t on, crosses a cell face.
+/// Returns the next t at which a + t d crosses a cell face; 2: none.
 double next_face(const Vec3& a, const Vec3& d, double t) {
   double next = 2;
   for (int k = 0; k < 3; ++k) {
@@ -92,7 +92,7 @@ LevelSetHit cross_cells(LevelSetField& field, const Vec3& from, const LevelPoint
   CellCache cells(field);
   double side = 0;
   double t = part.first;
-  for (int i = 0; i < kMostCells && t < part.last && !field.out_of_budget(kForTheRest); ++i) {
+  for (int i = 0; i < kMaxCells && t < part.last && !field.out_of_budget(kForTheRest); ++i) {
     const double end = std::min(std::max(next_face(a, d, t), t + 1e-12), part.last);
     const field::ScalarCell* cell = cells.fetch(grid.cell_base(a + d * (0.5 * (t + end))));
     if (cell == nullptr) {
@@ -100,8 +100,8 @@ LevelSetHit cross_cells(LevelSetField& field, const Vec3& from, const LevelPoint
       t = end;
       continue;
     }
-    const auto [least, most] = std::minmax_element(cell->corner.begin(), cell->corner.end());
-    if (!(*least - field.level() > 0) && !(*most - field.level() < 0)) {
+    const auto [minimum, maximum] = std::minmax_element(cell->corner.begin(), cell->corner.end());
+    if (!(*minimum - field.level() > 0) && !(*maximum - field.level() < 0)) {
       std::array<double, 4> g;
       const Vec3 base(cell->base.x, cell->base.y, cell->base.z);
       for (int k = 0; k < 4; ++k) g[static_cast<std::size_t>(k)] = cell->value(a + d * (t + (end - t) * k / 3) - base) - field.level();
@@ -113,7 +113,7 @@ LevelSetHit cross_cells(LevelSetField& field, const Vec3& from, const LevelPoint
         return {at.valid && !at.plateau, at};
       }
     } else {
-      side = *least > field.level() ? 1 : -1;
+      side = *minimum > field.level() ? 1 : -1;
     }
     t = end;
   }
@@ -157,7 +157,7 @@ LevelSetHit cross_steps(LevelSetField& field, const Vec3& from, const LevelPoint
 }  // namespace
 
 LevelSetHit find_first_crossing(LevelSetField& field, const Vec3& from, const LevelPoint& to, const LevelPoint* known) noexcept {
-  const bool in_cells = field.trilinear_grid() != nullptr && norm(to.p - from) <= kMostCells / 3 * field.voxel_edge();
+  const bool in_cells = field.trilinear_grid() != nullptr && norm(to.p - from) <= kMaxCells / 3 * field.voxel_edge();
   return in_cells ? cross_cells(field, from, to) : cross_steps(field, from, to, known);
 }
 

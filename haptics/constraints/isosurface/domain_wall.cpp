@@ -7,16 +7,17 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kBefore = 1e-9;      // voxels; distance from the wall of an invalid cell, on the valid side, at which the proxy is held
-constexpr double kLevelSlack = 1e-9;  // of L; as good as on the level
-constexpr double kSomeWay = 1e-6;     // of L; least progress toward the probe in a tick
+constexpr double kBefore = 1e-9;      // voxels; the proxy is held at this distance from the wall of an invalid cell, on the valid side
+constexpr double kLevelSlack = 1e-9;  // fraction of L; tolerance for a point on the level
+constexpr double kSomeWay = 1e-6;     // fraction of L; minimum progress toward the probe in a tick
 constexpr int kOntoLinear = 5;        // Newton steps
 constexpr int kKept = 4;              // field samples reserved for checking the result
 
-/// Cell point of `place`, moved onto the level of the cell's trilinear polynomial, or as close to it as the cell reaches.
-CellPoint on_linear_level(LevelSetField& field, const Vec3& place) noexcept {
+/// Returns the cell point of `position`, moved onto the level of the cell's trilinear polynomial, or as close to it as possible within the
+/// cell.
+CellPoint on_linear_level(LevelSetField& field, const Vec3& position) noexcept {
   const field::Mapping& mapping = field.grid()->mapping();
-  CellPoint at = to_cell_point(*field.grid(), place);
+  CellPoint at = to_cell_point(*field.grid(), position);
   field.count_fetch();
   const field::ScalarCell cell = field.grid()->cell(at.base, field.cursor());
   for (int k = 0; k < kOntoLinear; ++k) {
@@ -39,16 +40,16 @@ WallResult onto_level(LevelSetField& field, const Vec3& probe, const ClosestPoin
   const field::ScalarGrid& grid = *field.grid();
   const field::Mapping& mapping = grid.mapping();
   const field::Box& box = grid.index_box();
-  const Vec3 corner(walked.base.x, walked.base.y, walked.base.z), place = corner + f;
-  Vec3 index = place;
+  const Vec3 corner(walked.base.x, walked.base.y, walked.base.z), position = corner + f;
+  Vec3 index = position;
   unsigned held = 0;
   for (int a = 0; a < 3; ++a) {
     if (!(box.hi[a] > box.lo[a]) || (f[a] != 0 && f[a] != 1)) continue;
     // stay in the cell in which the walk ended
-    const bool end = place[a] <= box.lo[a] || place[a] >= box.hi[a];
+    const bool end = position[a] <= box.lo[a] || position[a] >= box.hi[a];
     if (!end) index[a] += f[a] == 0 ? kBefore : -kBefore;
     Vec3 beyond = corner + glm::clamp(f, Vec3(1e-3), Vec3(1 - 1e-3));
-    beyond[a] = place[a] + (f[a] == 0 ? -0.5 : 0.5);
+    beyond[a] = position[a] + (f[a] == 0 ? -0.5 : 0.5);
     field.count_fetch();
     if (end || grid.status_outside(mapping.world_from_index(beyond), field.cursor()) != SampleStatus::ok) held |= 1u << a;
   }
@@ -76,11 +77,11 @@ WallResult onto_level(LevelSetField& field, const Vec3& probe, const ClosestPoin
 }  // namespace
 
 WallResult closest_point_at_walls(LevelSetField& field, const PieceFrames& frames, const Vec3& probe, const ClosestPointCriteria& goal,
-                                  const LevelPoint& at, const AllowedTravel& way) noexcept {
+                                  const LevelPoint& at, const AllowedTravel& travel) noexcept {
   LevelSetField linear = field.with_trilinear_cells();
   linear.reserve_fetches(kWallFetches);
   CellPoint cell = on_linear_level(field, at.p);
-  TravelLimit limit{way.from, way.max_distance, false, {}, Vec3(0.0)};
+  TravelLimit limit{travel.from, travel.max_distance, false, {}, Vec3(0.0)};
   WalkResult walk = walk_cells(linear, frames, probe, cell, &limit);
   if (limit.is_exceeded_by(world_position(*field.grid(), cell))) {
     cell = limit.last_within;

@@ -16,7 +16,7 @@ inline constexpr int kWallFetches = 24;  ///< field samples needed besides those
 /// Result of closest_point_at_walls.
 struct WallResult {
   bool found = false;
-  LevelPoint point;                          ///< its n is the normal of the level set itself, not of its intersection with the wall
+  LevelPoint point;                          ///< held point; n is the normal of the level set itself, not of its intersection with the wall
   LinkStatus status = LinkStatus::boundary;  ///< boundary, or budget: the walk resumes in the next tick
   SampleStatus reason = SampleStatus::ok;
 };
@@ -30,6 +30,6 @@ struct AllowedTravel {
 
 /// Searches from `at`, on the level to 1e-9 L. Not found: no wall holds the probe, or the point found is not nearer to the probe.
 WallResult closest_point_at_walls(LevelSetField& field, const PieceFrames& frames, const Vec3& probe, const ClosestPointCriteria& goal,
-                                  const LevelPoint& at, const AllowedTravel& way) noexcept;
+                                  const LevelPoint& at, const AllowedTravel& travel) noexcept;
 
 }  // namespace catena::haptics

@@ -14,24 +14,24 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kSearchRadius = 2;  // of L
+constexpr double kSearchRadius = 2;  // in units of L
 constexpr int kThrownWork = 1536;    // work units of a tick with a teleported probe, and of the ticks that finish its search
 constexpr int kQuick = 200;          // field samples before a formula switches to the descent
-constexpr int kQuickOfGrids = 60;    // likewise for cubic grids, whose samples cost more and where walls may be the cause
-constexpr int kThrownQuick = 20;     // likewise, in a tick limited to kThrownWork
-constexpr int kQuickRefusals = 8;    // rejected steps in a row, likewise
+constexpr int kQuickOfGrids = 60;    // field samples before a cubic grid switches; its samples cost more, and walls may be the cause
+constexpr int kThrownQuick = 20;     // field samples before the switch of a cubic grid in a tick limited to kThrownWork
+constexpr int kQuickRefusals = 8;    // consecutive rejected steps before the switch
 constexpr int kSight = 16;           // field samples along the line of sight
 constexpr int kForLevel = 12;        // field samples reserved for the return to the level
-constexpr double kOnLevel = 1e-9;    // of L; as good as on the level, to continue from
+constexpr double kOnLevel = 1e-9;    // fraction of L; tolerance for a point on the level to continue from
 constexpr int kStepsAlong = 16;      // steps along a surface that decide whether two of its points are connected
-constexpr double kThere = 1e-4;      // of L; distance that the last of these steps must reach
+constexpr double kThere = 1e-4;      // fraction of L; distance that the last of these steps must reach
 
 /// Memory of the link: the part of the side rules, the held point, the updated curvature.
 struct IsosurfaceMemory {
   SideMemory side;
   LevelPoint at;        // formulas and cubic grids: the held point
   LevelPoint seen;      // the last probe whose side was evaluated
-  Curvature curvature;  // of formulas
+  Curvature curvature;  // curvature of a formula's level at the held point
   CellPoint cell;       // linear grids: the held point
   Vec3 normal;
   SurfaceScan scan;
@@ -98,18 +98,18 @@ class LevelSurface final : public ContactSurface {
  private:
   LevelPoint look(const Vec3& probe) noexcept { return have_here_ && bitwise_equal(asked_, probe) ? here_ : field_.at(probe); }
 
-  /// Whether the closest point itself has moved beyond the travel limit, as deep inside a concave surface, so that it overrides the limit:
-  /// the point met now was no nearer to the last probe than the held point.
+  /// Returns whether the closest point itself has moved beyond the travel limit, as it does deep inside a concave surface, so that it
+  /// overrides the limit: the new point was no nearer to the last probe than the held point.
   bool has_moved(const Vec3& held, const Vec3& met) const noexcept {
     const Vec3& before = memory_.side.probe;
     return norm(before - met) >= norm(before - held) - kOnLevel * field_.length();
   }
 
-  /// Whether the probe step is slow enough for a user's motion (not a teleport), so that the proxy must not change to another surface
+  /// Returns whether the probe step is slow enough for a user's motion (no teleport), so that the proxy must not change to another surface
   /// component.
   bool is_of_a_hand(const Vec3& probe) const noexcept { return norm(probe - memory_.side.probe) <= field_.state().max_probe_step; }
 
-  /// Whether steps along the surface lead from `at` to `to`.
+  /// Returns whether steps along the surface lead from `at` to `to`.
   bool leads_to(LevelPoint at, const LevelPoint& to) noexcept {
     for (int i = 0; i < kStepsAlong && !field_.out_of_budget(kForLevel); ++i) {
       const Vec3 way = to.p - at.p;
@@ -154,7 +154,7 @@ class LevelSurface final : public ContactSurface {
     memory_.at = from;
     if (SurfaceHold wall; hold_along(from, probe, wall)) return wall;
 
-    // go down the surface as far as allowed
+    // moves down the surface as far as allowed
     const Vec3 e = probe - from.p, way = direction(equation::tangential_component(e, from.n));
     LevelPoint at = from;
     for (double step = travel; step > 0.1 * travel && !field_.out_of_budget(kForLevel); step *= 0.5) {
@@ -206,7 +206,7 @@ class LevelSurface final : public ContactSurface {
     if (reached.found && goes_on) return met_late(start.p, reached);
     return reached.found ? closed(reached) : reached;
   }
-  /// Result of a scan that took more than one tick: it is not repeated for a probe at rest.
+  /// Stores the result of a scan that took more than one tick, so that it is not repeated for a probe at rest.
   LevelSetHit met_late(const Vec3& probe, const LevelSetHit& reached) noexcept {
     memory_.scan = SurfaceScan{};
     memory_.scan.probe = probe;
@@ -297,14 +297,14 @@ class LevelSurface final : public ContactSurface {
   }
 
   int quick_of_grid() const noexcept { return field_.state().max_work <= kThrownWork ? kThrownQuick : kQuickOfGrids; }
-  ClosestPointCriteria goal(int most) noexcept {
-    return {tolerance_ * field_.length(), 1e-12 * field_.length(), std::min(most, kMaxEvaluations - field_.evaluations() - kForLevel),
+  ClosestPointCriteria goal(int maximum) noexcept {
+    return {tolerance_ * field_.length(), 1e-12 * field_.length(), std::min(maximum, kMaxEvaluations - field_.evaluations() - kForLevel),
             kQuickRefusals};
   }
   bool usable(const LevelPoint& a) const noexcept { return a.valid && !a.plateau && std::fabs(a.distance) <= kOnLevel * field_.length(); }
-  /// Whether the level is unusable here: no gradient, not finite, or so flat that the level is lost in round-off.
+  /// Returns whether the level is unusable here: no gradient, not finite, or so flat that the level is lost in round-off.
   bool degenerate(const LevelPoint& a) const noexcept { return !a.valid || a.plateau || a.round_off > kOnLevel * field_.length(); }
-  /// Whether the normal jumps within 2e-9 L, on the path to the probe or across the point (then it is no surface).
+  /// Returns whether the normal jumps within 2e-9 L, on the path to the probe or across the point (then it is no surface).
   bool kink(const LevelPoint& a, const Vec3& probe) noexcept {
     const Vec3 e = probe - a.p;
     return jumps(a.p, direction(equation::tangential_component(e, a.n))) || jumps(a.p, a.n);
@@ -334,7 +334,7 @@ class LevelSurface final : public ContactSurface {
       Curvature curvature;
       closest_point(field_, probe, {1.5 * voxel, 0.1 * voxel, 48}, at, curvature);
       const LevelSetHit reached = search_along_gradient(field_, at, at.n, 2 * voxel);
-      // a probe behind a sheet must not be in front of the new one
+      // the probe must lie on the same side of the new sheet as of the old one
       const bool same_sheet = !one_sided_ || dot(reached.point.n, probe - reached.point.p) * dot(start.n, e) > 0;
       if (reached.found && reached.point.valid && same_sheet && norm(probe - reached.point.p) < norm(e))
         return to_cell_point(*field_.trilinear_grid(), reached.point.p);
@@ -342,7 +342,7 @@ class LevelSurface final : public ContactSurface {
     return cell;
   }
 
-  /// Goes far along the surface first, then exactly, cell by cell.
+  /// Moves a long way along the surface first, then exactly, cell by cell.
   SurfaceHold settle_grid(CellPoint cell, const LevelPoint& start, const Vec3& probe) noexcept {
     cell = leap(cell, start, probe);
     const WalkResult walk = walk_cells(field_, frames_, probe, cell);
@@ -375,7 +375,7 @@ class Isosurface final : public Constraint {
     memory_as<IsosurfaceMemory>(state).scan = SurfaceScan{};
     seek(probe, state, scratch);
   }
-  /// As start, but a search that ran out of budget resumes.
+  /// Like start, but a search that ran out of budget is continued.
   void seek(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     IsosurfaceMemory& memory = memory_as<IsosurfaceMemory>(state);
     const SurfaceScan scan = memory.scan;
@@ -404,7 +404,7 @@ class Isosurface final : public Constraint {
     if (!memory.side.holding) return {f};
     LevelSetField field(*field_, level_, scratch.cursors[0], state);
     if (field.trilinear_grid()) return pull_back_cells(field, frames_, probe, memory.cell, f);
-    if (memory.walled) return {};  // at the end of the domain
+    if (memory.walled) return {};  // the proxy is at the end of the domain
     const LevelPoint& at = memory.at;
     const double h = 1e-5 * field.length();
     const auto bent = [&](const Vec3& v) {
@@ -414,7 +414,7 @@ class Isosurface final : public Constraint {
     return pull_back_on_surface(at.n, dot(at.n, probe - at.p), bent, f);
   }
   bool has_primitive() const noexcept override { return true; }
-  /// Tangent plane of the level by the value and gradient at `at` (Eq. 6): one field sample.
+  /// Returns the tangent plane of the level by the value and gradient at `at` (Eq. 6), from one field sample.
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
     const LevelPoint here = LevelSetField(*field_, level_, scratch.cursors[0], state).at(at);
     if (!here.valid || here.plateau) {
@@ -448,9 +448,10 @@ Result<std::shared_ptr<const Constraint>> build_isosurface(const json::Node& lin
 
 ConstraintType isosurface_constraint() {
   return {"isosurface",
-          "Holds the proxy on a level of a scalar field.",
+          "Holds the proxy on an isosurface of a scalar field.",
           "Eqs. 5-6",
-          {scalar_field_key("field").required(), level_key("The value on the surface.").required(), free_key("where values are larger")},
+          {scalar_field_key("field").required(), level_key("Value of the field on the isosurface.").required(),
+           free_key("the side of larger values")},
           build_isosurface,
           true,
           true,

@@ -56,12 +56,12 @@ Vec3 LevelSetField::project_to_wall(const Vec3& world) const noexcept {
   Vec3 off = wall_ - mapping.index_from_world(world);
   for (int a = 0; a < 3; ++a)
     if ((held_axes_ >> a & 1) == 0) off[a] = 0;
-  // along the wall's normal, or perpendicular to the edge: the nearest point, not the one along an oblique axis
+  // along the wall's normal, or perpendicular to the edge: the nearest point, not the point along an oblique axis
   const Vec3 there = world + mapping.world_from_index_linear * off;
   return there + wall_component(world - there);
 }
 
-/// Component of a vector along the held axes.
+/// Returns the component of a vector along the held axes.
 Vec3 LevelSetField::wall_component(const Vec3& v) const noexcept {
   if (std::popcount(held_axes_) == 1) return v - wall_direction_ * dot(wall_direction_, v);
   return std::popcount(held_axes_) == 2 ? wall_direction_ * dot(wall_direction_, v) : Vec3(0.0);

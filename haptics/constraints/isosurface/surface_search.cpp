@@ -10,10 +10,10 @@ namespace {
 
 constexpr int kRetractions = 6;
 
-/// Moves from a along u and back to the level along a's normal, to |distance| <= slack. Returns false if the level is not found nearby.
+/// Moves from a along u and back to the level along a's normal, until |distance| <= slack. Returns false if the level is not found nearby.
 bool retract(LevelSetField& field, const LevelPoint& a, const Vec3& u, double first, double slack, LevelPoint& c) noexcept {
-  const double size = norm(u), most = 2 * size + 2 * std::fabs(a.distance);
-  double w = std::min(std::max(first, -most), most);
+  const double size = norm(u), maximum = 2 * size + 2 * std::fabs(a.distance);
+  double w = std::min(std::max(first, -maximum), maximum);
   double below = 0, above = 0;  // offsets at which sigma has these signs
   bool has_below = false, has_above = false;
   for (int i = 0; i < kRetractions && !field.out_of_budget(); ++i) {
@@ -26,7 +26,7 @@ bool retract(LevelSetField& field, const LevelPoint& a, const Vec3& u, double fi
     double next = along > 0.05 ? w - c.distance / along : c.sigma > 0 ? w - size : w + size;
     const double lo = std::min(below, above), hi = std::max(below, above);
     if (has_below && has_above && !(next > lo && next < hi)) next = 0.5 * (lo + hi);
-    next = std::min(std::max(next, -most), most);
+    next = std::min(std::max(next, -maximum), maximum);
     if (next == w) return false;
     w = next;
   }
@@ -71,7 +71,7 @@ ClosestPointResult descend_on_surface(LevelSetField& field, const Vec3& probe, c
     const double promised = slope - 0.5 * (m11 * u1 * u1 + 2 * m12 * u1 * u2 + m22 * u2 * u2);
     const bool convex = m11 > 0 && m11 * m22 > m12 * m12;
 
-    // does the step achieve it?
+    // tests whether the step achieves the predicted decrease
     LevelPoint c;
     const double slack = std::max(level_goal, 1e-3 * size);
     bool accepted = false;
@@ -93,7 +93,7 @@ ClosestPointResult descend_on_surface(LevelSetField& field, const Vec3& probe, c
       if (ratio < 0.2) trust = 0.4 * size;
       measured = false;
       at = c;
-      // far from the prediction: the curvature has changed
+      // the decrease is far from the prediction: the curvature has changed
       if (ratio < 0.5 || ratio > 2) curvature = measure_curvature(field, at), measured = true;
       continue;
     }
@@ -116,7 +116,7 @@ ClosestPointResult descend_on_surface(LevelSetField& field, const Vec3& probe, c
 namespace {
 
 constexpr int kMarchSteps = 64;
-constexpr int kReserve = 32;  // field samples that a scan leaves for what follows
+constexpr int kReserve = 32;  // field samples that a scan leaves for later work in the tick
 
 bool opposite(double a, double b) { return (a <= 0 && b >= 0) || (a >= 0 && b <= 0); }
 
@@ -133,7 +133,7 @@ LevelSetHit find_root_between(LevelSetField& field, LevelPoint a, LevelPoint b) 
   double fa = a.sigma, fb = b.sigma;
   int same_side = 0;
   for (int i = 0; i < 80 && !field.out_of_budget(); ++i) {
-    // Illinois; plain bisection where it is slow on a steep profile
+    // false position with the Illinois rule; bisection where it is slow on a steep profile
     double w = fa / (fa - fb);
     if (i % 4 == 3) w = 0.5;
     if (!(w > 0 && w < 1)) w = 0.5;
@@ -197,14 +197,14 @@ LevelSetHit search_by_scan(LevelSetField& field, const LevelPoint& centre, bool 
     if (k == 13 || (axes_only && dot(towards, towards) > 1)) continue;
     const Vec3 d = direction(towards);
     const auto on_ring = [&](int r) { return centre.p + d * (kRadii[static_cast<std::size_t>(r)] * field.length()); };
-    const Vec3 wanted = on_ring(ring);
-    if (max_abs(field.clamped(wanted) - wanted) > 0) continue;
+    const Vec3 candidate = on_ring(ring);
+    if (max_abs(field.clamped(candidate) - candidate) > 0) continue;
     if (field.out_of_budget(kReserve)) break;
     LevelPoint& before = last[static_cast<std::size_t>(k)];
-    // where a scan resumes, sample the previous ring first
+    // if a scan resumes, the previous ring is sampled first
     if (!known[static_cast<std::size_t>(k)]) before = ring == 0 ? centre : field.at(on_ring(ring - 1));
     known[static_cast<std::size_t>(k)] = true;
-    const LevelPoint here = field.at(wanted);
+    const LevelPoint here = field.at(candidate);
     if (here.valid && before.valid && opposite(here.sigma, before.sigma)) {
       const LevelSetHit root = find_root_between(field, before, here);
       if (root.found) return root;

@@ -6,12 +6,12 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kAtRest = 1e-14;              // shorter moves count as none
+constexpr double kAtRest = 1e-14;              // a shorter move counts as none
 constexpr double kSlack = 2e-14;               // tolerance of a face's outline; closes the seams between faces
 constexpr double kBehind = 4 * kGodObjectGap;  // distance behind a face up to which it still holds: tolerates round-off
 // tolerance in height and outline within which a face is touched; shorter moves leave no face
 constexpr double kTouching = 8 * kGodObjectGap;
-constexpr double kSlip = 1e-9;  // least move past a vertex
+constexpr double kSlip = 1e-9;  // minimum move past a vertex
 constexpr double kAtVertex = 64 * kGodObjectGap;
 constexpr std::size_t kMaxFan = 12;  // maximum number of faces tried at a vertex
 constexpr double kReach = 31;        // maximum travel in a tick; the mesh has size 1
@@ -108,7 +108,7 @@ class Mover {
   double height(std::uint32_t f, const Vec3& p) const { return outside_ * mesh_.face(f).signed_distance(p); }
   GodObjectMove done(bool complete) const { return {false, complete}; }
 
-  /// Moves a distant p to the point where the path to x enters the box around the mesh. Returns false, with p at x, if it never does.
+  /// Moves a distant p to the point where the path to x enters the box around the mesh. Returns false, with p at x, if it does not enter.
   bool enter_box(const Vec3& x) noexcept {
     if (max_abs(god_.p) <= 1) return true;
     double in = 0, out = 1;
@@ -137,7 +137,7 @@ class Mover {
       if (!touches(god_.faces[static_cast<std::size_t>(i)])) return false;
     return true;
   }
-  /// Drops the faces that p has left. Those met since the last real move are kept: around a corner they all count.
+  /// Drops the faces that p has left. Faces met since the last real move are kept, because all of them count around a corner.
   void drop_left() noexcept {
     int kept = 0;
     for (int i = 0; i < god_.count; ++i) {
@@ -175,8 +175,8 @@ class Mover {
           outside_ * mesh_.face(god_.faces[static_cast<std::size_t>(to.binding[static_cast<std::size_t>(i)])]).normal;
   }
 
-  /// Whether the face lies wholly behind a touched face: a point in front of that one never meets it. So convex edges do not stop the
-  /// slide.
+  /// Returns whether the face lies wholly behind a touched face: a point in front of that face never meets it. So convex edges do not stop
+  /// the slide.
   bool is_covered(std::uint32_t f) const noexcept {
     for (int i = 0; i < god_.count; ++i) {
       const std::uint32_t a = god_.faces[static_cast<std::size_t>(i)];
@@ -188,7 +188,7 @@ class Mover {
     return false;
   }
 
-  /// First face on the path to q that is met from its outer side. If the nodes run out, a shorter path (part < 1, no face).
+  /// Returns the first face on the path to q that is met from its outer side; if the nodes run out, a shorter path (part < 1, no face).
   Hit sweep(const Vec3& q) noexcept {
     double reach = 1;
     for (int attempt = 0; attempt < 3; ++attempt) {
@@ -216,7 +216,7 @@ class Mover {
       hit = {part, f};
       to = at;
     };
-    // the neighbors of the face just left are the likely next ones: tested first, they shorten the path
+    // the neighbors of the face just left are likely the next ones: they are tested first, to shorten the path
     for (int k = 0; left_ != kNone && k < 3; ++k) meet(mesh_.adjacent_face(left_, k));
     int nodes = nodes_ / 2;
     nodes_ -= nodes;

@@ -20,7 +20,7 @@ inline constexpr int kMaxGodObjectMoves = 32, kMaxGodObjectNodes = 3072;  ///< m
 /// State of the god-object, mesh frame. Zero bytes are a valid state: at the origin, touching nothing.
 struct GodObject {
   static constexpr int kMaxFaces = 6;
-  Vec3 p;                                      ///< its position
+  Vec3 p;                                      ///< position of the god-object
   std::array<std::uint32_t, kMaxFaces> faces;  ///< indices of the touched faces
   std::array<Vec3, 3> normals;                 ///< outward normals of the active faces
   std::int32_t count, binding;                 ///< number of touched faces; number of active ones

@@ -9,23 +9,23 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kFarthest = 1e6;  // in the mesh's local frame; a probe beyond is moved in, toward the mesh
+constexpr double kFarthest = 1e6;  // in the mesh's local frame; a probe beyond is moved toward the mesh, to this distance
 constexpr double kReachOfWalk = 32;
 constexpr double kMeshSearchRadius = 4e6;
 
 Vec3 own_of(const mesh::TriangleMesh& mesh, const Vec3& probe, double farthest) {
-  // halves, so that no difference overflows
+  // halved values, so that no difference overflows
   const Vec3 half = probe * 0.5 - mesh.world_from_local(Vec3(0.0)) * 0.5;
-  const double m = max_abs(half), most = 0.5 * farthest * mesh.scale();
-  if (m > most) return Vec3(half.x / m, half.y / m, half.z / m) * farthest;
+  const double m = max_abs(half), maximum = 0.5 * farthest * mesh.scale();
+  if (m > maximum) return Vec3(half.x / m, half.y / m, half.z / m) * farthest;
   return mesh.local_from_world(probe);
 }
 
 mesh::NearestResult nearest_to(const mesh::TriangleMesh& mesh, const Vec3& x, double radius, std::uint32_t hint, LinkState& state) {
-  const int most = state.affordable_steps(kMaxGodObjectNodes);
-  int nodes = most;
+  const int maximum = state.affordable_steps(kMaxGodObjectNodes);
+  int nodes = maximum;
   const mesh::NearestResult nearest = mesh::nearest_point(mesh, x, radius, nodes, hint);
-  state.other_work += most - std::max(nodes, 0);
+  state.other_work += maximum - std::max(nodes, 0);
   return nearest;
 }
 
@@ -54,8 +54,8 @@ class MeshSurface final : public ContactSurface {
     double part = 2;
     std::uint32_t face = 0;
     Vec3 to = b;
-    const int most = state_.affordable_steps(kMaxGodObjectNodes);
-    int nodes = most;
+    const int maximum = state_.affordable_steps(kMaxGodObjectNodes);
+    int nodes = maximum;
     const bool complete = mesh_.bvh().visit_segment(a, to, kGodObjectGap, nodes, [&](std::uint32_t f) {
       const double ha = mesh_.face(f).signed_distance(a), hb = mesh_.face(f).signed_distance(b);
       if ((ha < 0) == (hb < 0)) return;
@@ -65,7 +65,7 @@ class MeshSurface final : public ContactSurface {
       face = f;
       to = a + at * (b - a);
     });
-    state_.other_work += most - std::max(nodes, 0);
+    state_.other_work += maximum - std::max(nodes, 0);
     if (part > 1 || !complete) return {};
     return hold(walk_mesh(mesh_, face, own(probe)));
   }
@@ -113,7 +113,7 @@ class TwoSidedMesh final : public Constraint {
     out = {Primitive::Kind::plane, state.proxy, mesh_->face(memory.at.face).normal};
     return true;
   }
-  /// Pull-back on the face, edge or corner on which the proxy lies.
+  /// Returns the force pulled back on the face, edge or corner that holds the proxy.
   PulledBackForce pull_back(const Vec3&, const Vec3& f, LinkState& state, LinkScratch&) const noexcept override {
     const auto& memory = memory_as<WalkMemory>(state);
     const mesh::ClosestPoint& at = memory.at;
@@ -273,10 +273,10 @@ Result<std::shared_ptr<const Constraint>> build_mesh(const json::Node& link, con
 
 ConstraintType mesh_constraint() {
   return {"mesh",
-          "Holds the proxy on a triangle mesh: from both sides, or as a god object.",
+          "Holds the proxy on a triangle mesh, from both sides or as a god object.",
           "section 3; god-object",
-          {schema::reference("mesh", schema::Role::mesh, "One of the scene's `meshes`.").required(),
-           free_key("where the normals point, outside")},
+          {schema::reference("mesh", schema::Role::mesh, "Name of an item of `meshes`.").required(),
+           free_key("the side to which the face normals point")},
           build_mesh,
           true,
           true,

@@ -9,15 +9,16 @@ namespace {
 ModePreset anisotropic_friction() {
   return {
       "anisotropic_friction",
-      "Three links in one word: on the isosurface, easy along the field, hard across it. `stiffness`, `on` and `enabled` go to all three, "
-      "the "
-      "other common keys to the first.",
+      "Three links in one: an isosurface, friction across a vector field, and friction along the field that depends on the angle between "
+      "field and surface. `stiffness`, `active_when` and `enabled` apply to all three links, the other common keys to the first.",
       "section 6.1, Eqs. 7-9",
-      {scalar_field_key("surface").required(), level_key("The value on the surface.").required(), vector_field_key("field").required(),
-       schema::line_kind_key(), length_key("threshold", "Slip across the field.").with_default("0.005 L"),
-       length_key("tau_min", "Slip along the field where it is tangential.").with_default("0.001 L"),
-       length_key("tau_max", "Slip along the field where it is normal.").with_default("0.01 L"), law_key("As of `modulated_friction`."),
-       free_key("where values are larger")},
+      {scalar_field_key("surface").required(), level_key("Level of `surface` that holds the proxy.").required(),
+       vector_field_key("field").required(), schema::line_kind_key(),
+       length_key("threshold", "Distance between probe and proxy at which the proxy slips across the field.").with_default("0.005 L"),
+       length_key("tau_min", "Threshold of the friction along the field, where the field is tangential to the surface.")
+           .with_default("0.001 L"),
+       length_key("tau_max", "Threshold of the friction along the field, where the field is normal to the surface.").with_default("0.01 L"),
+       law_key("Law of the threshold, as for `modulated_friction`."), free_key("the side of larger values")},
       {{"surface", "isosurface", {{"surface", "field"}, {"level", "level"}, {"free", "free"}}},
        {"direction",
         "friction",
@@ -61,7 +62,7 @@ Result<std::vector<json::Node>> expand_link(const json::Node& item) {
   const ModePreset* mode = type != nullptr && type->kind == json::Kind::string ? find_mode_preset(type->string) : nullptr;
   if (mode == nullptr) return std::vector<json::Node>{item};
 
-  // the mode's own keys
+  // keys of the mode
   CATENA_TRY(const std::string name, json::require_string(item, "name"));
   CATENA_CHECK(json::check_known_keys(item, schema::key_names(common_keys(), mode->keys)));
   for (const schema::Key& key : mode->keys) {

@@ -3,7 +3,7 @@
 ///   anisotropic_friction   NAME_surface    isosurface: the probe on a level of a scalar field (p_s)
 ///                          NAME_direction  friction across the tangential component of a vector field (p_c)
 ///                          NAME_friction   friction modulated by the field's angle to the surface, Eqs. 7-9 (p_f)
-/// A mode is a table entry: which of its keys go to which link, under which name. Of the common keys, stiffness, on and enabled go to
+/// A mode is a table entry: which of its keys go to which link, under which name. Of the common keys, stiffness, active_when and enabled go to
 /// all links, the others to the first. Values keep their file and line, so that errors name the line in the scene.
 /// Off the tick.
 #pragma once
@@ -25,7 +25,7 @@ struct ModePreset {
   std::string type;   ///< value of "type" in the scene file
   std::string help;   ///< one sentence for docs/reference/scene.md
   std::string paper;  ///< equations and sections of the paper that it implements
-  schema::Keys keys;  ///< its own keys, besides the common ones
+  schema::Keys keys;  ///< keys of the mode, besides the common ones
   std::vector<LinkTemplate> link_templates;
 };
 

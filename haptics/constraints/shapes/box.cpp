@@ -12,10 +12,10 @@ struct BoxShape {
   Vec3 center;
   Vec3 half;
   Mat3 world_from_box;  // orthonormal
-  bool catches;         // free side above: a thin box must not be tunneled through
+  bool catches;         // free side above: the proxy must not tunnel through a thin box
 };
 
-/// A face of the box: axis 0..2, sign -1 or +1; sign 0 means none.
+/// Face of the box: axis 0..2, sign -1 or +1; sign 0: no face.
 struct Face {
   std::int32_t axis, sign;
 };
@@ -66,7 +66,7 @@ class BoxSurface final : public ContactSurface {
   bool may_tunnel() const noexcept override { return true; }
   double domain_length() const noexcept override { return std::max(kDefaultDomainLength, 2 * max_abs(shape_.half)); }
 
-  /// Plane of the held face; from outside, line of the edge or point of the corner.
+  /// Computes the plane of the held face; from outside, the line of the edge or the point of the corner.
   bool primitive(const Vec3& at, Primitive& out) noexcept {
     const Vec3 y = to_box(at);
     const SurfaceHold held = slide(at);
@@ -106,7 +106,8 @@ class BoxSurface final : public ContactSurface {
   }
   static int sign_of(double v) { return v < 0 ? -1 : 1; }
 
-  /// The face of largest |y_i| - h_i: from inside the nearest face, from outside the one of whose plane the point is farthest in front.
+  /// Returns the face with the largest |y_i| - h_i: from inside the nearest face, from outside the face whose plane the point is farthest
+  /// in front of.
   Face nearest_face(const Vec3& y) const {
     int axis = 0;
     for (int i = 1; i < 3; ++i)
@@ -114,7 +115,7 @@ class BoxSurface final : public ContactSurface {
     return {axis, sign_of(y[axis])};
   }
 
-  /// First face on the path out of the box, sign 0 if there is none.
+  /// Returns the face through which the segment a-b leaves the box; sign 0 if there is none.
   Face exit_face(const Vec3& a, const Vec3& b) const {
     Face face{0, 0};
     double first = 2;
@@ -126,7 +127,7 @@ class BoxSurface final : public ContactSurface {
     return face;
   }
 
-  /// The face through which a segment from outside, or from the surface, enters; sign 0 if it does not.
+  /// Returns the face through which a segment from outside, or from the surface, enters the box; sign 0 if there is none.
   Face entry_face(const Vec3& a, const Vec3& b) const {
     Face face{0, 0};
     double in = -1, out = 1;
@@ -144,7 +145,7 @@ class BoxSurface final : public ContactSurface {
     return in <= out ? face : Face{0, 0};
   }
 
-  /// Closest point that is reachable from the held face; y in the axes of the box.
+  /// Returns the closest point that is reachable from the held face; y in the axes of the box.
   SurfaceHold hold(const Vec3& y) noexcept {
     Face& face = memory_.face;
     Vec3 lateral = beyond(y);
@@ -194,9 +195,10 @@ ConstraintType box_constraint() {
   return {"box",
           "Holds the proxy on the surface of a box, or on one side of it.",
           "section 3",
-          {schema::vec3("center", "world", "Its centre.").required(),
-           schema::vec3("size", "world", "Its three edges.").positive().with_initial_value("0.2 L").required(),
-           schema::rotation("rotation", "World from box, written as in `workspace`.").with_default("none"), free_key("outside")},
+          {schema::vec3("center", "world", "Centre of the box.").required(),
+           schema::vec3("size", "world", "Edge lengths of the box.").positive().with_initial_value("0.2 L").required(),
+           schema::rotation("rotation", "Rotation from box axes to world axes, written as `rotation` of `workspace`.").with_default("none"),
+           free_key("outside")},
           build_box,
           true};
 }

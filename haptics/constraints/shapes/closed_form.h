@@ -11,7 +11,7 @@ namespace catena::haptics {
 
 /// A line segment. Plain data.
 struct LineSegment {
-  Vec3 a{0.0}, b{0.0};  ///< its ends, world units
+  Vec3 a{0.0}, b{0.0};  ///< ends of the segment, world units
   Vec3 d{0.0};          ///< unit direction from a to b
   double length = 0;    ///< |b - a|; finite and > 0, or the segment is not usable
 

@@ -11,7 +11,7 @@ namespace catena::haptics {
 namespace {
 
 constexpr std::uint32_t kRun = 8;  // segments per leaf
-constexpr double kLeastLength = 1e-30;
+constexpr double kMinLength = 1e-30;
 constexpr std::size_t kNoLine = ~std::size_t{0};
 
 /// Lines with the BVH that finds the closest one. Segment k leads from point k to the next one.
@@ -33,7 +33,7 @@ struct LineTree {
     tree = Tree(boxes);
   }
 
-  /// Upper bound of the memory that a set takes, bytes.
+  /// Returns an upper bound of the memory of a set's tree, bytes.
   static double bytes_for(const curves::CurveSet& set) {
     const double most_runs = static_cast<double>(set.points.size()) / kRun + static_cast<double>(set.line_count());
     return most_runs * (4 * sizeof(Tree::Box) + sizeof(Tree::Box) + 2 * sizeof(std::pair<std::uint64_t, std::uint32_t>)) +
@@ -67,25 +67,25 @@ struct LineTree {
 using LineTreePtr = std::shared_ptr<const LineTree>;
 
 struct FileLines {
-  static constexpr int kFirstVisits = 512, kVisits = 256, kVisitWork = 6, kMostPieces = 1024;
+  static constexpr int kFirstVisits = 512, kVisits = 256, kVisitWork = 6, kMaxPieces = 1024;
   static constexpr int walk_work(int) { return 2; }
 
   LineTreePtr lines;
 
   bool has(std::uint32_t k) const { return k < lines->is_last.size() && !lines->is_last[k]; }
   LineSegment piece(std::uint32_t k) const { return {Vec3(lines->set->points[k]), Vec3(lines->set->points[k + 1])}; }
-  std::uint32_t neighbour(std::uint32_t k, int way) const {
-    if (way > 0) return lines->is_last[k + 1] ? k : k + 1;
+  std::uint32_t neighbour(std::uint32_t k, int step_sign) const {
+    if (step_sign > 0) return lines->is_last[k + 1] ? k : k + 1;
     return k == 0 || lines->is_last[k - 1] ? k : k - 1;
   }
-  /// Index of the line that contains segment k, in the order of the file.
+  /// Returns the index of the line that contains segment k, in the order of the file.
   int line_of(std::uint32_t k) const noexcept {
     const auto& first = lines->set->line_offsets;
     return static_cast<int>(std::upper_bound(first.begin(), first.end(), k) - first.begin()) - 1;
   }
-  void search(const Vec3& probe, int most_visits, SearchState& state) const noexcept {
+  void search(const Vec3& probe, int max_visits, SearchState& state) const noexcept {
     lines->tree.search(
-        probe, most_visits, state,
+        probe, max_visits, state,
         [&](std::uint32_t k) {
           const LineSegment straight = piece(k);
           return straight.at(straight.along(probe));
@@ -109,29 +109,30 @@ Result<std::shared_ptr<const Constraint>> build_curves(const json::Node& link, c
     line = static_cast<std::size_t>(index);
   }
   CATENA_TRY(const SideSpec rules, read_side_rules(link, false, context));
-  if (const auto enough = check_memory_available(fmt::format("feeling curves \"{}\"", name), LineTree::bytes_for(*set)); !enough)
+  if (const auto enough = check_memory_available(fmt::format("haptics of curves \"{}\"", name), LineTree::bytes_for(*set)); !enough)
     return with_cause(json::error_at(*link.find("curves"), enough.error().message), enough.error());
   FileLines shape{cached_bvh<LineTree>(set->version, line, [&] { return std::make_shared<const LineTree>(set, line); })};
-  if (!(shape.extent() >= kLeastLength))
+  if (!(shape.extent() >= kMinLength))
     return json::error_at(*link.find("curves"),
-                          fmt::format("the lines span {}; an extent of at least {} was expected", shape.extent(), kLeastLength));
+                          fmt::format("the lines span {}; an extent of at least {} was expected", shape.extent(), kMinLength));
   return make_closed_form<PolylineTracker<FileLines>>(std::move(shape), rules);
 }
 
 }  // namespace
 
 ConstraintType curves_constraint() {
-  return {"curves",
-          "Holds the proxy on a line of curves from a file.",
-          "section 3",
-          {schema::reference("curves", schema::Role::curves, "Some of the scene's `curves`.").required(),
-           schema::integer("line", "", "Only this line, counted from 0.", 0, std::numeric_limits<int>::max())
-               .with_range_text("an index")
-               .with_default("all, the closest where the link takes hold")},
-          build_curves,
-          true,
-          true,
-          "curves"};
+  return {
+      "curves",
+      "Holds the proxy on a line of a curve set.",
+      "section 3",
+      {schema::reference("curves", schema::Role::curves, "Name of an item of `curves`.").required(),
+       schema::integer("line", "", "Index of the only line that can hold the proxy, counted from 0.", 0, std::numeric_limits<int>::max())
+           .with_range_text("an index")
+           .with_default("all lines; the link engages with the closest")},
+      build_curves,
+      true,
+      true,
+      "curves"};
 }
 
 }  // namespace catena::haptics

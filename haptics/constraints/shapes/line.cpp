@@ -7,7 +7,7 @@ namespace catena::haptics {
 namespace {
 
 struct LineShape {
-  Vec3 point, axis;  // axis: unit length
+  Vec3 point, axis;  // axis: unit vector
 
   SurfaceHold closest(const Vec3& probe) const noexcept {
     const double s = dot(axis, probe - point);
@@ -34,8 +34,8 @@ ConstraintType line_constraint() {
   return {"line",
           "Holds the proxy on an infinite line.",
           "section 3",
-          {schema::vec3("point", "world", "A point of the line.").required(),
-           schema::direction("direction", "Its direction, of any length.").with_initial_value("[1, 0, 0]").required()},
+          {schema::vec3("point", "world", "Point on the line.").required(),
+           schema::direction("direction", "Direction of the line, of any length.").with_initial_value("[1, 0, 0]").required()},
           build_line,
           true};
 }

@@ -22,9 +22,10 @@ Result<std::shared_ptr<const Constraint>> build_point(const json::Node& link, co
 }  // namespace
 
 ConstraintType point_constraint() {
-  return {
-      "point", "Holds the proxy at a point.", "section 3", {schema::vec3("position", "world", "The point.").required()}, build_point, true,
-      false};
+  return {"point",     "Holds the proxy at a point.",
+          "section 3", {schema::vec3("position", "world", "Position of the point.").required()},
+          build_point, true,
+          false};
 }
 
 }  // namespace catena::haptics

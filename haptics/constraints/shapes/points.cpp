@@ -33,7 +33,7 @@ struct PointTree {
     for (std::size_t i = 0; i < points.size(); ++i) boxes[i / kPointsOfLeaf].add(points[i], points[i]);
     tree = Tree(boxes);
   }
-  /// Upper bound of the memory that a set takes, bytes.
+  /// Returns an upper bound of the memory of a set's tree, bytes.
   static double bytes_for(const curves::PointSet& set) {
     return static_cast<double>(set.points.size()) * (sizeof(glm::vec3) + 16 + 5.0 * sizeof(Tree::Box) / kPointsOfLeaf);
   }
@@ -102,7 +102,7 @@ Result<std::shared_ptr<const Constraint>> build_points(const json::Node& link, c
   CATENA_TRY(const std::string name, json::require_string(link, "points"));
   CATENA_TRY(const curves::PointSetPtr set, context.points(*link.find("points"), name));
   CATENA_TRY(const SideSpec rules, read_side_rules(link, false, context));
-  if (const auto enough = check_memory_available(fmt::format("feeling points \"{}\"", name), PointTree::bytes_for(*set)); !enough)
+  if (const auto enough = check_memory_available(fmt::format("haptics of points \"{}\"", name), PointTree::bytes_for(*set)); !enough)
     return with_cause(json::error_at(*link.find("points"), enough.error().message), enough.error());
   return make_closed_form<NearestPoint>(cached_bvh<PointTree>(set->version, 0, [&] { return std::make_shared<const PointTree>(*set); }),
                                         rules);
@@ -111,8 +111,8 @@ Result<std::shared_ptr<const Constraint>> build_points(const json::Node& link, c
 }  // namespace
 
 ConstraintType points_constraint() {
-  return {"points",     "Holds the proxy at a point of a table.",
-          "section 3",  {schema::reference("points", schema::Role::points, "Some of the scene's `points`.").required()},
+  return {"points",     "Holds the proxy at a point of a point set.",
+          "section 3",  {schema::reference("points", schema::Role::points, "Name of an item of `points`.").required()},
           build_points, true,
           false,        "points"};
 }

@@ -9,11 +9,11 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kLeastExtent = 1e-300, kMaxExtent = 1e300;
+constexpr double kMinExtent = 1e-300, kMaxExtent = 1e300;
 
 struct PolylineShape {
-  static constexpr int kFirstVisits = 1024, kVisits = 128, kVisitWork = 3, kMostPieces = 4096;
-  /// Work units for the n-th segment visited by a walk: two segments cost one.
+  static constexpr int kFirstVisits = 1024, kVisits = 128, kVisitWork = 3, kMaxPieces = 4096;
+  /// Returns the work units for the n-th segment visited by a walk: two segments cost one.
   static constexpr int walk_work(int n) { return n % 2; }
 
   std::vector<LineSegment> pieces;
@@ -22,12 +22,12 @@ struct PolylineShape {
 
   bool has(std::uint32_t k) const { return k < pieces.size(); }
   const LineSegment& piece(std::uint32_t k) const { return pieces[k]; }
-  std::uint32_t neighbour(std::uint32_t k, int way) const {
+  std::uint32_t neighbour(std::uint32_t k, int step_sign) const {
     const auto last = static_cast<std::uint32_t>(pieces.size() - 1);
-    if (way > 0) return k < last ? k + 1 : closed ? 0 : k;
+    if (step_sign > 0) return k < last ? k + 1 : closed ? 0 : k;
     return k > 0 ? k - 1 : closed ? last : k;
   }
-  void search(const Vec3& probe, int most_visits, SearchState& state) const noexcept { tree.search(pieces, probe, most_visits, state); }
+  void search(const Vec3& probe, int max_visits, SearchState& state) const noexcept { tree.search(pieces, probe, max_visits, state); }
   bool is_sane(const SearchState& state) const noexcept { return tree.is_sane(state); }
   double extent() const noexcept { return tree.extent(); }
 };
@@ -49,10 +49,10 @@ Result<std::shared_ptr<const Constraint>> build_polyline(const json::Node& link,
   CATENA_TRY(const auto rows, json::as_rows(*node, "points", 3));
   CATENA_TRY(const bool closed, json::get_boolean(link, "closed", false));
   const std::vector<Vec3> points = merged(rows, closed);
-  const std::size_t least = closed ? 3 : 2;
-  if (points.size() < least)
+  const std::size_t minimum = closed ? 3 : 2;
+  if (points.size() < minimum)
     return json::error_at(*node, fmt::format("\"points\" holds {} different point{} in a row; at least {} were expected{}", points.size(),
-                                             points.size() == 1 ? "" : "s", least, closed ? " of a closed polyline" : ""));
+                                             points.size() == 1 ? "" : "s", minimum, closed ? " of a closed polyline" : ""));
   CATENA_TRY(const SideSpec rules, read_side_rules(link, false, context));
 
   PolylineShape shape;
@@ -61,9 +61,8 @@ Result<std::shared_ptr<const Constraint>> build_polyline(const json::Node& link,
   if (closed) shape.pieces.emplace_back(points.back(), points.front());
   shape.tree = PolylineBvh(shape.pieces);
   const double extent = shape.tree.extent();
-  if (!(extent >= kLeastExtent && extent <= kMaxExtent))
-    return json::error_at(*node,
-                          fmt::format("\"points\" spans {}; an extent from {} to {} was expected", extent, kLeastExtent, kMaxExtent));
+  if (!(extent >= kMinExtent && extent <= kMaxExtent))
+    return json::error_at(*node, fmt::format("\"points\" spans {}; an extent from {} to {} was expected", extent, kMinExtent, kMaxExtent));
   return make_closed_form<PolylineTracker<PolylineShape>>(std::move(shape), rules);
 }
 
@@ -73,8 +72,8 @@ ConstraintType polyline_constraint() {
   return {"polyline",
           "Holds the proxy on a polyline.",
           "section 3",
-          {schema::points("points", "world", "Its corners in order.").with_size(2, 0).required(),
-           schema::boolean("closed", "The last point joins the first; three points or more.").with_default("false")},
+          {schema::points("points", "world", "Vertices of the polyline, in order.").with_size(2, 0).required(),
+           schema::boolean("closed", "Connects the last vertex to the first; at least three vertices are required.").with_default("false")},
           build_polyline,
           true};
 }

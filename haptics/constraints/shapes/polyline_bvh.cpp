@@ -17,9 +17,9 @@ std::vector<ClosestPointBvh<Vec3>::Box> boxes_of(const std::vector<LineSegment>&
 
 PolylineBvh::PolylineBvh(const std::vector<LineSegment>& pieces) : ClosestPointBvh(boxes_of(pieces)) {}
 
-void PolylineBvh::search(const std::vector<LineSegment>& pieces, const Vec3& probe, int most_visits, SearchState& state) const noexcept {
+void PolylineBvh::search(const std::vector<LineSegment>& pieces, const Vec3& probe, int max_visits, SearchState& state) const noexcept {
   ClosestPointBvh::search(
-      probe, most_visits, state, [&](std::uint32_t k) { return pieces[k].at(pieces[k].along(probe)); },
+      probe, max_visits, state, [&](std::uint32_t k) { return pieces[k].at(pieces[k].along(probe)); },
       [&](std::size_t leaf, const auto& see) {
         const std::size_t last = std::min((leaf + 1) * kLeaf, pieces.size());
         for (std::size_t k = leaf * kLeaf; k < last; ++k) see(static_cast<std::uint32_t>(k));

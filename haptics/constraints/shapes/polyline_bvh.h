@@ -14,8 +14,8 @@ class PolylineBvh : public ClosestPointBvh<Vec3> {
   PolylineBvh() = default;
   /// Builds it over at least one segment, all finite, with an extent whose reciprocal is finite. Off the tick.
   explicit PolylineBvh(const std::vector<LineSegment>& pieces);
-  /// Runs ClosestPointBvh::search with the same `pieces`; visits at most `most_visits` nodes. Haptic thread.
-  void search(const std::vector<LineSegment>& pieces, const Vec3& probe, int most_visits, SearchState& state) const noexcept;
+  /// Runs ClosestPointBvh::search with the same `pieces`; visits at most `max_visits` nodes. Haptic thread.
+  void search(const std::vector<LineSegment>& pieces, const Vec3& probe, int max_visits, SearchState& state) const noexcept;
 };
 
 }  // namespace catena::haptics

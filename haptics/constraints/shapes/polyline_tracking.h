@@ -2,10 +2,11 @@
 /// The proxy on connected line segments, at the local minimum of the distance to the probe that lies downhill from the proxy (shapes.h,
 /// polyline_constraint). Start, `seek` and re-engagement: the globally closest point (common/closest_point_bvh.h); the probe passes,
 /// BUDGET, until that search has ended.
-///   Pieces   has(k): whether segment k exists, true for k = 0; piece(k): the LineSegment; neighbour(k, way): the segment after (way 1) or
-///            before (way -1) it, or k itself at an open end;
+///   Pieces   has(k): whether segment k exists, true for k = 0; piece(k): the LineSegment; neighbour(k, step_sign): the segment after
+///   (step_sign 1) or
+///            before (step_sign -1) it, or k itself at an open end;
 ///            search, is_sane, extent as those of ClosestPointBvh; kFirstVisits, kVisits: nodes of the first tick's search and of a later
-///            one's; line_of(k), if it has lines: index of the line of segment k; kVisitWork, walk_work(n), kMostPieces: work units of a
+///            one's; line_of(k), if it has lines: index of the line of segment k; kVisitWork, walk_work(n), kMaxPieces: work units of a
 ///            visited node and of the n-th segment walked, and the maximum number of segments walked per tick
 /// Haptic thread: no allocation, lock, or throw. Lengths in world units.
 #pragma once
@@ -42,16 +43,16 @@ class PolylineTracker final : public ContactSurface {
 
   SurfaceHold slide(const Vec3& probe) noexcept override {
     std::uint32_t k = memory_.piece;
-    int way = memory_.end == 0 ? 0 : leave_corner(k, probe);
-    for (int visited = 0; visited < Shape::kMostPieces; ++visited, work_ += Shape::walk_work(visited)) {
+    int walk_direction = memory_.end == 0 ? 0 : leave_corner(k, probe);
+    for (int visited = 0; visited < Shape::kMaxPieces; ++visited, work_ += Shape::walk_work(visited)) {
       const int end = shape_.piece(k).end_of(shape_.piece(k).along(probe));
-      if (way == 0) way = end;
-      if (end == 0 || end != way) return hold(k, probe, LinkStatus::ok);
-      const std::uint32_t next = shape_.neighbour(k, way);
+      if (walk_direction == 0) walk_direction = end;
+      if (end == 0 || end != walk_direction) return hold(k, probe, LinkStatus::ok);
+      const std::uint32_t next = shape_.neighbour(k, walk_direction);
       if (next == k) return hold(k, probe, LinkStatus::ok);
       k = next;
     }
-    return hold_end(k, -way);
+    return hold_end(k, -walk_direction);
   }
 
   SurfaceHold find_crossing(const Vec3&, const Vec3&) noexcept override { return {}; }

@@ -36,10 +36,10 @@ Result<std::shared_ptr<const Constraint>> build_segment(const json::Node& link, 
 
 ConstraintType segment_constraint() {
   return {"segment",
-          "Holds the proxy on a piece of a line.",
+          "Holds the proxy on a line segment.",
           "section 3",
-          {schema::vec3("from", "world", "Its first end.").required(),
-           schema::vec3("to", "world", "Its other end.").with_initial_value("hand + 0.1 L").required()},
+          {schema::vec3("from", "world", "First end of the segment.").required(),
+           schema::vec3("to", "world", "Second end of the segment, different from `from`.").with_initial_value("hand + 0.1 L").required()},
           build_segment,
           true};
 }

@@ -16,13 +16,14 @@ Result<std::shared_ptr<const Constraint>> build_sphere(const json::Node& link, c
 }  // namespace
 
 ConstraintType sphere_constraint() {
-  return {"sphere",
-          "Holds the proxy on a sphere, or on one side of it.",
-          "section 3",
-          {schema::vec3("center", "world", "Its centre.").required(),
-           schema::number("radius", "world", "Its radius.").positive().with_initial_value("0.1 L").required(), free_key("outside")},
-          build_sphere,
-          true};
+  return {
+      "sphere",
+      "Holds the proxy on a sphere, or on one side of it.",
+      "section 3",
+      {schema::vec3("center", "world", "Centre of the sphere.").required(),
+       schema::number("radius", "world", "Radius of the sphere.").positive().with_initial_value("0.1 L").required(), free_key("outside")},
+      build_sphere,
+      true};
 }
 
 }  // namespace catena::haptics

@@ -98,13 +98,13 @@ class SphereSurface final : public ContactSurface {
     if (before < 0 || after <= 0 || (before == 0 && !prevents_tunneling_)) return project_probe(probe);
 
     // both outside: the point where the segment enters
-    const Vec3 u = from - center_, way = direction(probe - from);
-    const double middle = -dot(u, way), apart = norm(u + way * middle);
-    if (!(apart < radius_)) return {};
-    const double s = middle - std::sqrt((radius_ - apart) * (radius_ + apart));
+    const Vec3 u = from - center_, travel_direction = direction(probe - from);
+    const double middle = -dot(u, travel_direction), distance_to_axis = norm(u + travel_direction * middle);
+    if (!(distance_to_axis < radius_)) return {};
+    const double s = middle - std::sqrt((radius_ - distance_to_axis) * (radius_ + distance_to_axis));
     if (!(s >= -1e-9 * radius_ && s <= norm(probe - from))) return {};
     if (!prevents_tunneling_) return project_probe(probe);
-    memory_.normal = -way;
+    memory_.normal = -travel_direction;
     return near_side(probe);
   }
 
@@ -135,9 +135,9 @@ class SphereSurface final : public ContactSurface {
 
   SurfaceHold near_side(const Vec3& probe) noexcept {
     const Vec3 w = probe - center_, q = w - memory_.normal * dot(w, memory_.normal);
-    const double apart = norm(q);
-    if (!(apart < radius_)) return {};
-    const Vec3 proxy = center_ + q + memory_.normal * std::sqrt((radius_ - apart) * (radius_ + apart));
+    const double distance_to_axis = norm(q);
+    if (!(distance_to_axis < radius_)) return {};
+    const Vec3 proxy = center_ + q + memory_.normal * std::sqrt((radius_ - distance_to_axis) * (radius_ + distance_to_axis));
     normal_ = direction(proxy - center_);
     return on_sphere(proxy);
   }

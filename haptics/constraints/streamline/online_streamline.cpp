@@ -13,12 +13,12 @@ namespace {
 using flow::StopReason;
 using OnlineMode = OnlineStreamlineMemory::Mode;
 
-// lengths, times L
+// fractions of L
 constexpr double kConverged = 1e-12, kLongestStep = 0.1, kFirstTrust = 0.02;
 constexpr double kCritical = 1e-7, kCapture = 1e-4, kBoundary = 1e-9, kSmallest = 1e-15, kCalm = 1e-3, kNear = 0.02;
-/// times the coordinates of a point: rounding error of positions far from the origin
+/// Rounding error of a position, relative to its coordinates.
 constexpr double kRounding = 4 * 2.220446049250313e-16;
-constexpr int kSearches = 2;  ///< searches for a zero in a tick
+constexpr int kSearches = 2;  ///< maximum searches for a zero per tick
 constexpr int kHalvings = 4;  ///< halvings of a step toward a boundary before the full remaining step is tried
 
 /// One tick of one online streamline.
@@ -53,7 +53,7 @@ class OnlineTick {
   void run() noexcept {
     state_.residual = 0;
     if (memory_.mode == OnlineMode::seeking) {
-      // no line through the last point: pass the probe through until there is one
+      // there is no line through the last point: the probe passes through until there is one
       if (state_.evaluations == 0) begin(probe_);
       state_.proxy = probe_;
       if (memory_.mode == OnlineMode::seeking) return;
@@ -87,7 +87,7 @@ class OnlineTick {
     memory_.t = u;
   }
 
-  /// Whether the proxy is still held at a zero or at the boundary. Releases it when the probe has turned back.
+  /// Returns whether the proxy is still held at a zero or at the boundary. Releases it when the probe has turned back.
   bool held() noexcept {
     if (memory_.mode == OnlineMode::following) return false;
     if (dot(x_ - memory_.hold_point, memory_.hold_direction) >= 0) {
@@ -102,11 +102,11 @@ class OnlineTick {
     return false;
   }
 
-  void hold_at(OnlineMode mode, const Vec3& place, double way) noexcept {
-    if (!has_entry_) remember_entry(way);
+  void hold_at(OnlineMode mode, const Vec3& place, double direction_sign) noexcept {
+    if (!has_entry_) remember_entry(direction_sign);
     const Vec3 approach = place - memory_.last_smooth;
     if (mode == OnlineMode::at_zero && max_abs(approach) > 0 && norm(approach) <= kNear * length_) {
-      // resume on the branch by which the proxy came, not on one to which it has turned
+      // resumes on the branch by which the proxy came, not on one that it has turned to
       memory_.p_resume = memory_.last_smooth;
       memory_.t_resume = memory_.t_last_smooth;
       memory_.hold_direction = dot(approach, memory_.t_last_smooth) < 0 ? -memory_.t_last_smooth : memory_.t_last_smooth;
@@ -118,18 +118,18 @@ class OnlineTick {
     set_link_status(state_, mode == OnlineMode::at_boundary ? LinkStatus::boundary : LinkStatus::critical, memory_.reason);
   }
 
-  void remember_entry(double way) noexcept {
+  void remember_entry(double direction_sign) noexcept {
     has_entry_ = true;
     memory_.p_resume = state_.proxy;
     memory_.t_resume = memory_.t;
-    memory_.hold_direction = way * memory_.t;
+    memory_.hold_direction = direction_sign * memory_.t;
   }
 
-  /// f_V of Eq. 3 in arc length: advances from the proxy by way * h. On a grid of line fields h may become shorter.
-  flow::Step advect(double way, double& h) noexcept {
+  /// Computes f_V of Eq. 3 in arc length: a step from the proxy by direction_sign * h. On a grid of line fields h may become shorter.
+  flow::Step advect(double direction_sign, double& h) noexcept {
     if (flow_.is_line_field && flow_.field->is_grid()) {
       if (!cells_) cells_.emplace(flow_, cursor_);
-      const flow::Step step = cells_->step(tableau_, state_.proxy, memory_.t, way, h);
+      const flow::Step step = cells_->step(tableau_, state_.proxy, memory_.t, direction_sign, h);
       state_.evaluations += step.evaluations;
       return step;
     }
@@ -137,12 +137,12 @@ class OnlineTick {
       const StopReason stop = flow::direction_at(flow_, q, memory_.t, cursor_, u);
       return stop == StopReason::none && dot(u, memory_.t) < 0.5 ? StopReason::turned : stop;
     };
-    const flow::Step step = flow::runge_kutta_step(tableau_, state_.proxy, memory_.t, way * h, true, rate);
+    const flow::Step step = flow::runge_kutta_step(tableau_, state_.proxy, memory_.t, direction_sign * h, true, rate);
     state_.evaluations += step.evaluations;
     return step;
   }
 
-  /// Rounding error of the proxy's position, in world coordinates or relative to the grid's origin, whichever is larger.
+  /// Returns the rounding error of the proxy's position: by world coordinates or relative to the grid's origin, whichever is larger.
   double rounding() const noexcept {
     return kRounding * std::max(max_abs(state_.proxy), max_abs(state_.proxy - spec_.field->mapping().origin));
   }
@@ -153,57 +153,59 @@ class OnlineTick {
     return false;
   }
 
-  /// Item 5: ends the march at a nearby zero if that is nearer to the probe.
-  bool capture(double way) noexcept {
+  /// Ends the march at a nearby zero if that is nearer to the probe (item 5).
+  bool capture(double direction_sign) noexcept {
     if (spec_.min_speed > 0 || memory_.zero_searches >= kSearches) return false;
     ++memory_.zero_searches;
     const int budget = std::min(kMaxEvaluations - state_.evaluations, 57);
     const auto zero = flow::find_zero(flow_, state_.proxy, memory_.t, kCapture * length_, cursor_, budget - 1, state_.evaluations);
     if (!zero || norm(x_ - *zero) > norm(x_ - state_.proxy)) return false;
     const Vec3 ahead = *zero - state_.proxy;
-    const bool forward = way * dot(ahead, memory_.t) >= 0.2 * norm(ahead);
-    if (!forward && dot(ahead, memory_.curvature) > 0) return false;  // around a center; past a saddle a line bends away from it
-    hold_at(OnlineMode::at_zero, *zero, way);
+    const bool forward = direction_sign * dot(ahead, memory_.t) >= 0.2 * norm(ahead);
+    if (!forward && dot(ahead, memory_.curvature) > 0) return false;  // around a center; past a saddle, a line bends away from it
+    hold_at(OnlineMode::at_zero, *zero, direction_sign);
     return true;
   }
 
   /// Iterates Eq. 3 until the residual of Eq. 2 vanishes, safeguarded: Newton with the curvature, trust radius, bracket, descent.
   void march() noexcept {
     double limit = memory_.trust_radius;  // longest step from here that may still succeed
-    double bad = -1;                      // distance ahead at which a step failed; valid while > 0
-    double bad_way = 0;
+    double failed_distance = -1;          // distance ahead at which a step failed; valid while > 0
+    double failed_sign = 0;
     int halvings = 0;  // steps taken since a step failed outside the domain
     for (int i = 0; i < 2 * kMaxEvaluations; ++i) {
       const Vec3 e = x_ - state_.proxy;
-      const double g = equation::distance_to_foot(e, memory_.t), way = g < 0 ? -1.0 : 1.0;
+      const double g = equation::distance_to_foot(e, memory_.t), direction_sign = g < 0 ? -1.0 : 1.0;
       state_.residual = std::fabs(g);
       if (!(std::fabs(g) > std::max(kConverged * length_, rounding()))) return;
-      if (way != bad_way) bad = -1;
+      if (direction_sign != failed_sign) failed_distance = -1;
 
       // the step: Newton with the curvature, within the trust radius and the bracket
       double h = std::fabs(g) / std::max(std::fabs(1 - dot(memory_.curvature, e)), 0.1);
       h = std::min(std::min(h, limit), kLongestStep * length_);
-      if (bad > 0) h = std::min(h, halvings >= kHalvings ? bad : std::max(0.5 * bad, kSmallest * length_));
+      if (failed_distance > 0)
+        h = std::min(h, halvings >= kHalvings ? failed_distance : std::max(0.5 * failed_distance, kSmallest * length_));
       if (!affordable()) return;
-      flow::Step step = advect(way, h);
+      flow::Step step = advect(direction_sign, h);
 
       if (step.stop == StopReason::outside) {
-        if (!has_entry_) remember_entry(way);
-        if (h <= kBoundary * length_) return hold_on_boundary(way, h);
+        if (!has_entry_) remember_entry(direction_sign);
+        if (h <= kBoundary * length_) return hold_on_boundary(direction_sign, h);
         limit = 0.5 * h;
-        bad = h;
-        bad_way = way;
+        failed_distance = h;
+        failed_sign = direction_sign;
         halvings = 1;
         continue;
       }
       if (step.stop != StopReason::none) {
-        if (!has_entry_) remember_entry(way);
+        if (!has_entry_) remember_entry(direction_sign);
         const bool incoherent = step.stop == StopReason::incoherent;
-        if (!incoherent && h <= 4 * kCapture * length_ && capture(way)) return;
-        if (h <= kCritical * length_) return hold_at(incoherent ? OnlineMode::at_incoherent : OnlineMode::at_zero, state_.proxy, way);
+        if (!incoherent && h <= 4 * kCapture * length_ && capture(direction_sign)) return;
+        if (h <= kCritical * length_)
+          return hold_at(incoherent ? OnlineMode::at_incoherent : OnlineMode::at_zero, state_.proxy, direction_sign);
         limit = 0.5 * h;
-        bad = h;
-        bad_way = way;
+        failed_distance = h;
+        failed_sign = direction_sign;
         halvings = 0;
         continue;
       }
@@ -211,52 +213,52 @@ class OnlineTick {
       // embedded error
       const double tolerance = spec_.tolerance * length_, error = norm(step.error);
       if (tableau_.embedded && !(error <= tolerance)) {
-        if (h <= kCritical * length_ * 1e-3) return hold_at(OnlineMode::at_zero, state_.proxy, way);
+        if (h <= kCritical * length_ * 1e-3) return hold_at(OnlineMode::at_zero, state_.proxy, direction_sign);
         limit = h * flow::step_factor(error, tolerance, 0.1, 0.8);
         memory_.trust_radius = limit;
         continue;
       }
       const double grown = tableau_.embedded ? h * flow::step_factor(error, tolerance, 0.5, 4.0) : 2 * h;
 
-      // past the foot: root on the Hermite interpolant, then one exact step onto it
+      // beyond the foot: root of the Hermite interpolant, then one exact step onto it
       const double g_end = dot(e - step.displacement, step.end_rate);
-      if (way * g_end < 0) {
+      if (direction_sign * g_end < 0) {
         if (!affordable()) return;
-        const flow::Hermite piece(state_.proxy, step.displacement, way * h, memory_.t, step.end_rate);
-        const double theta = piece.foot(x_, way * h * g, way * h * g_end);
+        const flow::Hermite piece(state_.proxy, step.displacement, direction_sign * h, memory_.t, step.end_rate);
+        const double theta = piece.foot(x_, direction_sign * h * g, direction_sign * h * g_end);
         h *= theta;
-        step = advect(way, h);
+        step = advect(direction_sign, h);
         if (step.stop != StopReason::none) {
           limit = 0.5 * h;
           continue;
         }
       }
 
-      // Armijo, without cancellation
+      // Armijo condition, without cancellation
       const double change = -dot(step.displacement, e - 0.5 * step.displacement);
       if (!(change <= -1e-4 * std::fabs(g) * h)) {
         limit = 0.5 * h;
         if (h <= kSmallest * length_) return;
         continue;
       }
-      accept(step, way * h, grown);
+      accept(step, direction_sign * h, grown);
       limit = memory_.trust_radius;
-      // a stage may lie outside although the line does not: every few steps the full remaining step is tried
+      // a stage may lie outside although the line does not: the full remaining step is tried every few steps
       if (halvings > 0) halvings = halvings >= kHalvings ? 0 : halvings + 1;
-      if (bad > 0) bad = bad > h ? std::max(bad - h, kSmallest * length_) : -1;
-      if (norm(memory_.curvature) * kCapture * length_ > 1 && capture(way)) return;
+      if (failed_distance > 0) failed_distance = failed_distance > h ? std::max(failed_distance - h, kSmallest * length_) : -1;
+      if (norm(memory_.curvature) * kCapture * length_ > 1 && capture(direction_sign)) return;
     }
     state_.status = LinkStatus::budget;
   }
 
   /// Holds the proxy at the boundary. `step`: a length that leads out of the domain.
-  void hold_on_boundary(double way, double step) noexcept {
+  void hold_on_boundary(double direction_sign, double step) noexcept {
     memory_.p_resume = state_.proxy;
     memory_.t_resume = memory_.t;
-    memory_.hold_direction = way * memory_.t;
+    memory_.hold_direction = direction_sign * memory_.t;
     memory_.reason = spec_.field->status_outside(state_.proxy + step * memory_.hold_direction, cursor_);
     if (memory_.reason == SampleStatus::ok) memory_.reason = SampleStatus::outside_box;  // a stage beside the line lay outside
-    hold_at(OnlineMode::at_boundary, state_.proxy, way);
+    hold_at(OnlineMode::at_boundary, state_.proxy, direction_sign);
   }
 
   void accept(const flow::Step& step, double h, double grown) noexcept {
@@ -279,7 +281,7 @@ class OnlineTick {
   field::Cursor& cursor_;
   double length_;
   std::optional<CellStepper> cells_;
-  bool has_entry_ = false;  ///< p_resume, t_resume and way belong to this approach
+  bool has_entry_ = false;  ///< p_resume, t_resume and direction_sign belong to this approach
 };
 
 class OnlineStreamline final : public Constraint {
@@ -304,8 +306,8 @@ class OnlineStreamline final : public Constraint {
            memory.zero_searches >= 0 && memory.zero_searches <= kMaxEvaluations;
   }
   bool has_primitive() const noexcept override { return true; }
-  /// Tangent at the foot of `at`; a point where the line is held at an end. At the proxy itself the direction is sampled again, since the
-  /// proxy may have been moved from outside.
+  /// Returns the tangent at the foot of `at`; a point where the line is held at an end. At the proxy itself the direction is sampled once
+  /// more, because the proxy may have been moved from outside.
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
     if (bitwise_equal(at, state.proxy)) return here(at, state, scratch, out);
     LinkState foot = state;

@@ -18,10 +18,11 @@ class CellStepper {
  public:
   CellStepper(const flow::Flow& flow, field::Cursor& cursor) : medium_(flow, &cursor), domain_(flow.field->domain_length()) {}
 
-  /// Makes one step from p over the length h > 0 in the direction way * t (way +1 or -1); h is reduced where the step ends on a face.
-  /// World coordinates; the returned end_rate has the orientation of t. StopReason::outside: there is no cell in that direction.
-  flow::Step step(const flow::Tableau& tableau, const Vec3& p, const Vec3& t, double way, double& h) noexcept {
-    const Vec3 motion = way * t;
+  /// Makes one step from p over the length h > 0 in the direction direction_sign * t (direction_sign +1 or -1); h is reduced where the step
+  /// ends on a face. World coordinates; the returned end_rate has the orientation of t. StopReason::outside: there is no cell in that
+  /// direction.
+  flow::Step step(const flow::Tableau& tableau, const Vec3& p, const Vec3& t, double direction_sign, double& h) noexcept {
+    const Vec3 motion = direction_sign * t;
     int evaluations = 0;
     const auto rate = [&](const Vec3& q, Vec3& w) {
       Vec3 u;
@@ -48,7 +49,7 @@ class CellStepper {
     }
     step.evaluations = evaluations;
     step.displacement = medium_.world_difference(step.displacement);
-    step.end_rate = way * direction(medium_.world_difference(step.end_rate));
+    step.end_rate = direction_sign * direction(medium_.world_difference(step.end_rate));
     step.error = medium_.world_difference(step.error);
     return step;
   }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int32_t kKnotCap = 4096, kKnotsAStep = 2;
 constexpr double kFarSquared = 1e100;
-constexpr double kHugeDistance = 1e280;  ///< beyond it only the probe's direction counts, since products would overflow
+constexpr double kHugeDistance = 1e280;  ///< beyond this distance only the probe's direction counts, because products would overflow
 
 class SelectedStreamline final : public Constraint {
  public:
@@ -34,11 +34,11 @@ class SelectedStreamline final : public Constraint {
     std::size_t k = memory.interval;
     double below = slope_at_knot(k, probe), above = slope_at_knot(k + 1, probe);
 
-    // all points here are equally near (center of a circle): stay
+    // all points here are equally near (center of a circle): the proxy stays
     const double flat = 1e-13 * curve_->domain_length();
     if (std::fabs(below) <= flat && std::fabs(above) <= flat) return place(memory, k, memory.s, state);
 
-    // downhill: up the curve, down it, or a foot in this interval
+    // downhill direction: up the curve, down it, or a foot in this interval
     int way = 0;
     if (below > 0 && above > 0)
       way = 1;
@@ -67,7 +67,7 @@ class SelectedStreamline final : public Constraint {
       }
     }
 
-    // the foot, from the interval's own knots
+    // foot in the interval, from its own knots
     const flow::Knot &a = curve_->knots()[k], &b = curve_->knots()[k + 1];
     const double h = b.s - a.s;
     const flow::Hermite piece(a.p, a.vector_to(b), h, a.t, b.t);
@@ -86,7 +86,7 @@ class SelectedStreamline final : public Constraint {
 
   bool is_sane(const LinkState& state) const noexcept override { return memory_as<SelectedStreamlineMemory>(state).interval < intervals_; }
   bool has_primitive() const noexcept override { return true; }
-  /// Tangent at the foot of `at`; a point at an open end.
+  /// Returns the tangent at the foot of `at`; a point at an open end.
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
     LinkState foot = state;
     advance(at, foot, scratch);

@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::string_view, 7> kMethods{"linear", "euler", "rk2", "rk3", "rk4", "rkf34", "dp54"};
 constexpr std::array<std::string_view, 2> kFollow{"selected", "online"};
 
-/// Checks that an online line has a direction at its seed.
+/// Checks that the field has a direction at the seed of an online streamline.
 Outcome check_seed(const json::Node& where, const OnlineStreamlineSpec& spec, const std::string& name) {
   field::Cursor cursor;
   Vec3 u;
@@ -25,10 +25,12 @@ Outcome check_seed(const json::Node& where, const OnlineStreamlineSpec& spec, co
     case flow::StopReason::none:
       return Done{};
     case flow::StopReason::outside:
-      return json::error_at(where, fmt::format("\"seed\" lies outside the domain of field \"{}\"; a place within it was expected", name));
+      return json::error_at(
+          where, fmt::format("\"seed\" lies outside the domain of field \"{}\"; a position within the domain was expected", name));
     default:
-      return json::error_at(where, fmt::format("\"seed\" lies where field \"{}\" is zero{}; a place with a direction was expected", name,
-                                               spec.min_speed > 0 ? " or not faster than \"min_speed\"" : ""));
+      return json::error_at(
+          where, fmt::format("\"seed\" lies where field \"{}\" is zero{}; a position where the field has a direction was expected", name,
+                             spec.min_speed > 0 ? " or not faster than \"min_speed\"" : ""));
   }
 }
 
@@ -36,12 +38,11 @@ Result<std::shared_ptr<const Constraint>> build_streamline(const json::Node& lin
   CATENA_TRY(const std::string name, json::require_string(link, "field"));
   CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "a streamline", context));
 
-  // keys
   OnlineStreamlineSpec spec;
   spec.field = field;
   CATENA_CHECK(schema::read_value(schema::line_kind_key(), link, spec.is_line_field));
   CATENA_TRY(spec.min_speed, json::get_number(link, "min_speed", 0, json::NumberRange::non_negative));
-  // neighboring fibers of noisy data diverge quickly: the defaults are such that online and selected agree to 1e-6 L
+  // neighboring fibers of noisy data diverge quickly: with these defaults, online and selected agree to 1e-6 L
   const bool cells = spec.is_line_field && field->is_grid();
   CATENA_TRY(spec.tolerance, json::get_number(link, "tolerance", cells ? 1e-13 : 1e-9, json::NumberRange::positive));
   if (!(spec.tolerance < 1))
@@ -73,30 +74,30 @@ Result<std::shared_ptr<const Constraint>> build_streamline(const json::Node& lin
 }  // namespace
 
 ConstraintType streamline_constraint() {
-  return {
-      "streamline",
-      "Holds the proxy on a streamline: one that is traced once, or one that is integrated in every tick.",
-      "section 4, Eqs. 1-4",
-      {vector_field_key("field").required(),
-       schema::vec3("seed", "world", "A place on the line.")
-           .with_default("the probe where the link is switched on")
-           .or_widget()
-           .recommended(),
-       schema::choice("follow", {kFollow.begin(), kFollow.end()},
-                      "`selected`: on the traced curve, with a seed; `online`: integrated every tick.")
-           .with_default("`selected` with a seed"),
-       schema::choice("method", {kMethods.begin(), kMethods.end()},
-                      "Integrator of online following, which it implies; `linear` is Eqs. 1-2 as printed.")
-           .with_default("`rkf34`; sampled line fields `dp54`"),
-       schema::number("tolerance", "L", "Embedded error of one online step.")
-           .with_limits({0.0, 1.0, true, true})
-           .with_initial_value("1e-4")
-           .with_default("1e-9; sampled line fields 1e-13"),
-       schema::line_kind_key(), schema::number("min_speed", "value", "Speeds up to this count as zero.").non_negative().with_default("0")},
-      build_streamline,
-      false,
-      true,
-      "streamlines"};
+  return {"streamline",
+          "Holds the proxy on a streamline, traced once or integrated in every tick.",
+          "section 4, Eqs. 1-4",
+          {vector_field_key("field").required(),
+           schema::vec3("seed", "world", "Seed position of the streamline.")
+               .with_default("the probe's position when the link is switched on")
+               .or_widget()
+               .recommended(),
+           schema::choice("follow", {kFollow.begin(), kFollow.end()},
+                          "`selected`: the streamline is traced once from `seed`; `online`: the streamline is integrated in every tick.")
+               .with_default("`selected` with `seed` and without `method`, otherwise `online`"),
+           schema::choice("method", {kMethods.begin(), kMethods.end()},
+                          "Integrator of `online`; a stated method implies `online`. `linear`: Eqs. 1-2 of the paper as printed.")
+               .with_default("`rkf34`; sampled line fields `dp54`"),
+           schema::number("tolerance", "L", "Maximum embedded error of one step of `online`.")
+               .with_limits({0.0, 1.0, true, true})
+               .with_initial_value("1e-4")
+               .with_default("1e-9; sampled line fields 1e-13"),
+           schema::line_kind_key(),
+           schema::number("min_speed", "value", "Speed at or below which the field counts as zero.").non_negative().with_default("0")},
+          build_streamline,
+          false,
+          true,
+          "streamlines"};
 }
 
 }  // namespace catena::haptics

@@ -11,7 +11,7 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kFarthestProbe = 1e100;  // beyond it squares lose precision
+constexpr double kFarthestProbe = 1e100;  // beyond this distance squares lose precision
 constexpr double kNearer = 0.7;           // fraction of the distance to the held core below which a nearer core replaces it
 
 struct CoreMemory {
@@ -91,7 +91,7 @@ class VortexCore final : public Constraint {
   double domain_length() const noexcept override { return length_; }
 
  private:
-  /// Passes the probe through: there is no core here, every point is one, or the held core was released for another one.
+  /// Passes the probe through: there is no core here, the core condition holds everywhere, or the held core was released for another one.
   void pass(const Vec3& probe, LinkState& state) const noexcept {
     state.proxy = probe;
     state.residual = 0;
@@ -102,7 +102,7 @@ class VortexCore final : public Constraint {
                       cores_->holds_everywhere ? SampleStatus::parallel : SampleStatus::ok);
   }
 
-  /// Nearest point of one core.
+  /// Returns the nearest point of one core.
   flow::NearestPoint on_line(std::uint32_t line, const Vec3& probe) const noexcept {
     return (by_line_.empty() ? *nearest_ : by_line_[line]).find(probe, search_);
   }
@@ -135,7 +135,7 @@ class VortexCore final : public Constraint {
     return true;
   }
 
-  /// Inside the tube the probe moves freely; outside, the proxy is held on the tube's wall.
+  /// Sets the proxy: inside the tube the probe moves freely; outside, the proxy is held on the tube's wall.
   void leave_tube(const Vec3& probe, LinkState& state) const noexcept {
     if (!(radius_ > 0)) return;
     const Vec3 e = probe - state.proxy;
@@ -178,14 +178,14 @@ ConstraintType vortex_core_constraint() {
           "Holds the proxy in a tube about the core line of a vortex.",
           "not in the paper",
           {vector_field_key("field").required(),
-           schema::number("radius", "world", "Radius of the tube in which the hand moves freely; 0: on the core.")
+           schema::number("radius", "world", "Radius of the tube in which the probe moves freely; 0: the proxy lies on the core line.")
                .non_negative()
                .with_initial_value("0.1 L")
                .with_default("0"),
-           schema::number("search_radius", "world", "Longest distance of the core from the probe.")
+           schema::number("search_radius", "world", "Maximum distance between probe and core line.")
                .positive()
                .with_initial_value("0.2 L")
-               .with_default("0.1 L or 2 `radius`, the larger"),
+               .with_default("0.1 L or 2 `radius`, whichever is larger"),
            schema::core_criterion_key(), schema::core_length_key(), schema::core_swirl_key()},
           build_vortex_core};
 }

@@ -17,8 +17,8 @@ BootStreamReader::State BootStreamReader::feed(std::uint8_t byte) {
 }
 
 BootStreamReader::State BootStreamReader::consume_word(std::uint16_t word) {
-  if (words_++ < kHeaderWords) return words_ == 1 && word != 0x08AA ? State::bad : State::reading;
-  // a block: its size, two words of address, its data
+  if (words_++ < kHeaderWords) return words_ == 1 && word != 0x08AA ? State::invalid : State::reading;
+  // a block: its size, two words of address, then its data
   if (in_block_ == 0) {
     if (word == 0) return State::complete;
     block_words_ = std::size_t{2} + word;
@@ -34,7 +34,7 @@ void EmulatedBootRom::reset() {
   received_.clear();
 }
 
-void EmulatedBootRom::receive(std::uint8_t byte, std::uint16_t baud, bool dtr, std::vector<std::uint8_t>& answer) {
+void EmulatedBootRom::receive(std::uint8_t byte, std::uint16_t baud, bool dtr, std::vector<std::uint8_t>& response) {
   if (state_ == State::asleep) {
     if (baud != kBaud9600) return;
     received_.push_back(byte);
@@ -45,12 +45,12 @@ void EmulatedBootRom::receive(std::uint8_t byte, std::uint16_t baud, bool dtr, s
       --faults_.ignored_handshakes;
       return;
     }
-    if (faults_.leading_zero) answer.push_back(0x00);
-    answer.insert(answer.end(), {0x0A, 0x44, 0x2C, 0x0D});
+    if (faults_.leading_zero) response.push_back(0x00);
+    response.insert(response.end(), {0x0A, 0x44, 0x2C, 0x0D});
     state_ = State::awake;
   } else if (state_ == State::awake) {
     if (baud != kBaudBoot || dtr || byte != 0x41) return;
-    answer.push_back(0x41);
+    response.push_back(0x41);
     state_ = State::loading;
     stream_ = {};
     image_bytes_ = 0;
@@ -65,9 +65,9 @@ void EmulatedBootRom::receive(std::uint8_t byte, std::uint16_t baud, bool dtr, s
     if (baud != kBaudBoot) return;
     const bool wrong = image_bytes_++ == error_at_;
     damaged_ = damaged_ || wrong;
-    answer.push_back(wrong ? static_cast<std::uint8_t>(byte ^ 0x10) : byte);
+    response.push_back(wrong ? static_cast<std::uint8_t>(byte ^ 0x10) : byte);
     const auto stream = stream_.feed(byte);
-    if (stream == BootStreamReader::State::bad) state_ = State::dead;
+    if (stream == BootStreamReader::State::invalid) state_ = State::dead;
     if (stream == BootStreamReader::State::complete) state_ = damaged_ ? State::dead : State::started;
   }
 }
@@ -101,7 +101,7 @@ EmulatedFalcon::EmulatedFalcon(const EmulatedFalconOptions& options)
   if (options.homed) mechanism_.set_homed();
 }
 
-void EmulatedFalcon::plug(bool power_kept) {
+void EmulatedFalcon::plug(bool stays_powered) {
   plugged_ = true;
   to_host_.clear();
   pending_reply_.clear();
@@ -110,7 +110,7 @@ void EmulatedFalcon::plug(bool power_kept) {
   latency_ms_ = 16;
   dtr_ = true;
   halted_[0] = halted_[1] = false;
-  if (power_kept) return;
+  if (stays_powered) return;
   running_ = false;
   boot_rom_.reset();
   mechanism_.power_off(options_.power_on_offset);
@@ -131,7 +131,7 @@ bool EmulatedFalcon::control(const UsbControl& request) {
     case 1:
       if ((request.value & 0x0100) != 0) {
         const bool dtr = (request.value & 1) != 0;
-        // a rising DTR resets the processor into its boot ROM
+        // a rising edge of DTR resets the processor into its boot ROM
         if (dtr && !dtr_) {
           running_ = false;
           boot_rom_.reset();
@@ -158,7 +158,7 @@ bool EmulatedFalcon::control(const UsbControl& request) {
 }
 
 void EmulatedFalcon::bulk_out(std::span<const std::uint8_t> bytes) {
-  std::vector<std::uint8_t> answer;  // bytes that the boot ROM sends back
+  std::vector<std::uint8_t> response;  // bytes that the boot ROM sends back
   for (const std::uint8_t byte : bytes) {
     if (!plugged_) return;
     ++out_bytes_;
@@ -171,10 +171,10 @@ void EmulatedFalcon::bulk_out(std::span<const std::uint8_t> bytes) {
       receive(byte);
       continue;
     }
-    boot_rom_.receive(byte, baud_, dtr_, answer);
+    boot_rom_.receive(byte, baud_, dtr_, response);
     running_ = boot_rom_.started();
   }
-  send(answer);
+  send(response);
 }
 
 void EmulatedFalcon::receive(std::uint8_t byte) {
@@ -193,7 +193,7 @@ void EmulatedFalcon::receive(std::uint8_t byte) {
     frame_.clear();
     return;
   }
-  // out of sync: start again at the next framing byte
+  // out of sync: restarts at the next framing byte
   const auto next = std::find(frame_.begin() + 1, frame_.end(), '<');
   bad_bytes_ += static_cast<std::uint64_t>(next - frame_.begin());
   frame_.erase(frame_.begin(), next);
@@ -251,7 +251,7 @@ void EmulatedFalcon::answer_frame() {
 
 void EmulatedFalcon::send(const std::vector<std::uint8_t>& bytes) {
   if (faults_.silent || bytes.empty()) return;
-  // a host that does not read loses what the chip cannot buffer
+  // data that the chip cannot buffer is lost if the host does not read
   std::size_t waiting = bytes.size();
   for (const auto& chunk : to_host_) waiting += chunk.size();
   if (waiting > kChipBuffer)

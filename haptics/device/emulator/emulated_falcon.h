@@ -21,8 +21,8 @@ inline constexpr std::uint16_t kBaud9600 = 0x4138, kBaudBoot = 0x15, kBaudRunnin
 /// Parser of a boot stream, byte by byte.
 class BootStreamReader {
  public:
-  /// Whether more bytes are expected, the stream is complete, or it is invalid.
-  enum class State { reading, complete, bad };
+  /// State of the parser: more bytes are expected, the stream is complete, or it is invalid.
+  enum class State { reading, complete, invalid };
   State feed(std::uint8_t byte);
   std::size_t words() const { return words_; }
 
@@ -46,13 +46,13 @@ class EmulatedBootRom {
   static constexpr std::size_t npos = static_cast<std::size_t>(-1);
 
   void reset();
-  /// Appends to `answer` the ROM's response to a byte received at this baud rate.
-  void receive(std::uint8_t byte, std::uint16_t baud, bool dtr, std::vector<std::uint8_t>& answer);
+  /// Appends to `response` the ROM's response to a byte received at this baud rate.
+  void receive(std::uint8_t byte, std::uint16_t baud, bool dtr, std::vector<std::uint8_t>& response);
   bool started() const { return state_ == State::started; }  ///< the loaded program runs
 
   Faults& faults() { return faults_; }
   int attempts() const { return attempts_; }                ///< images begun
-  std::size_t image_bytes() const { return image_bytes_; }  ///< of the last attempt
+  std::size_t image_bytes() const { return image_bytes_; }  ///< bytes of the last attempt
 
  private:
   enum class State { asleep, awake, loading, dead, started };
@@ -90,7 +90,7 @@ struct UsbControl {
 
 /// Fault applied to one reply frame on its way to the host.
 struct ReplyFault {
-  /// What happens to the frame; n is byte_count.
+  /// Kind of fault; n is byte_count.
   enum class Kind {
     none,
     split,     ///< after n bytes, over two packets
@@ -121,8 +121,8 @@ class EmulatedFalcon {
   /// One I/O frame as seen by the device: the command received, and the answer.
   struct Exchange {
     EmulatedMechanism::Counts motors{}, encoders{};
-    Vec3 position_m{0.0};  ///< of the grip, when the encoders were read
-    Vec3 force_n{0.0};     ///< of the motors, at the position of the grip when the command was received
+    Vec3 position_m{0.0};  ///< position of the grip when the encoders were read
+    Vec3 force_n{0.0};     ///< force of the motors at the grip's position when the command was received
     unsigned control = 0;  ///< bits: 1 homing, 2 green, 4 blue, 8 red
     unsigned homed = 0;
   };
@@ -140,7 +140,7 @@ class EmulatedFalcon {
   bool plugged() const { return plugged_; }
   void unplug() { plugged_ = false; }
   /// Plugs the device in. Without power in between the firmware and the homing are lost, and the boot ROM waits.
-  void plug(bool power_kept);
+  void plug(bool stays_powered);
 
   EmulatedFaults& faults() { return faults_; }
   EmulatedBootRom& boot_rom() { return boot_rom_; }

@@ -27,7 +27,7 @@ std::optional<DeltaLegs> solve_delta_legs(const Vec3& grip_m) {
     const double cosine = (kA * kA + radius * radius - length * length) / (2 * kA * radius);
     const double sine = std::sqrt(1 - cosine * cosine);
     legs.theta[i] = std::atan2(w, u + kC) - std::acos(cosine);
-    // d acos(q) = -dq / sqrt(1 - q^2);  q depends on R and L
+    // d acos(q) = -dq / sqrt(1 - q^2); q depends on R and L
     const double cosine_by_radius = (1 - (kA * kA - length * length) / (radius * radius)) / (2 * kA);
     const double cosine_by_length = -length / (kA * radius);
     const double theta_by_u = -w / (radius * radius) + cosine_by_radius * (u + kC) / radius / sine;

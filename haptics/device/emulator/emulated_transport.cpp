@@ -20,7 +20,7 @@ void sleep_until_ns(std::int64_t at) noexcept {
 
 }  // namespace
 
-// Waits for the emulated bus. The deadlines form a grid as long as they are met, so that the mean rate is right.
+// Waits for the emulated bus. Consecutive deadlines are equidistant as long as they are met, so that the mean rate is exact.
 void EmulatedTransport::wait_for_bus(int ms) noexcept {
   if (!paced_) return;
   const std::int64_t now = now_ns(), wait = std::int64_t{1000000} * ms, next = last_ns_ + wait;
@@ -68,7 +68,7 @@ usb::UsbError EmulatedTransport::clear_halt(usb::UsbEndpoint endpoint) noexcept 
 
 Result<std::unique_ptr<usb::Transport>> EmulatedTransportSource::open() {
   const std::scoped_lock lock(shared_->mutex);
-  if (!shared_->device.plugged()) return Error{"emulated Falcon: it is unplugged"};
+  if (!shared_->device.plugged()) return Error{"emulated Falcon: the device is unplugged"};
   return std::unique_ptr<usb::Transport>(std::make_unique<EmulatedTransport>(shared_, paced_));
 }
 
@@ -102,11 +102,11 @@ EmulatedUser resting_user() {
 }
 
 void list_emulated_falcon(std::vector<DeviceInfo>& to) {
-  to.push_back({"emulated-falcon", true, "the Falcon's driver on an emulated device in a moving hand: no hardware"});
-  to.push_back({"emulated-falcon:still", true, "the same in a hand that rests once it has homed: for devices test --forces"});
+  to.push_back({"emulated-falcon", true, "the Falcon's driver with an emulated device in a simulated moving hand, without hardware"});
+  to.push_back({"emulated-falcon:still", true, "the emulated Falcon in a hand that rests after homing, for devices test --forces"});
   to.push_back({"emulated-falcon:process", true,
-                "the same in a process of its own; emulated-falcon:process:FILE.csv, emulated-falcon:still:process:FILE.csv: it writes the "
-                "forces of its motors"});
+                "the emulated Falcon in a separate process; emulated-falcon:process:FILE.csv and emulated-falcon:still:process:FILE.csv "
+                "write the motor forces to a file"});
 }
 
 namespace {

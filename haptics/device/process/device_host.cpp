@@ -22,7 +22,7 @@ void sleep_until(std::int64_t at_ns) {
 }
 
 bool has_gone(int lifeline) {
-  pollfd line{lifeline, POLLIN, 0};  // the program sends nothing on it: only its end is detected
+  pollfd line{lifeline, POLLIN, 0};  // the program sends nothing: only the end of the connection is detected
   return ::poll(&line, 1, 0) > 0;
 }
 
@@ -44,11 +44,11 @@ class Host {
       silent_ = true;
       ++page_.takeovers;
     }
-    // the program has resumed and acknowledged the takeover: its force ramps in
+    // the program has resumed and acknowledged the takeover: the force ramps in
     if (silent_ && fresh && order.acknowledged_takeovers == page_.takeovers) silent_ = false;
     hold(gone || stopped || silent_);
     if (!held_ && fresh) device_.write(order.output);
-    // written again: a command stays fresh until silence_timeout_ms
+    // the zero command is repeated, because a command is valid only for silence_timeout_ms
     if (!held_ && !fresh && pushes(order.output)) device_.write(order.output);
     page_.poses.publish({device_.read(), now});
     page_.zero_force_confirmed = held_ && device_.zero_force_confirmed() ? 1 : 0;
@@ -61,10 +61,10 @@ class Host {
   }
 
  private:
-  void hold(bool wanted) {
-    if (wanted && !held_) device_.stop();
-    if (!wanted && held_) device_.resume();
-    held_ = wanted;
+  void hold(bool requested) {
+    if (requested && !held_) device_.stop();
+    if (!requested && held_) device_.resume();
+    held_ = requested;
   }
 
   DevicePage& page_;

@@ -27,7 +27,7 @@ int reserve(int descriptor, std::int64_t bytes) {
   if (limit && *limit < static_cast<unsigned long long>(bytes)) return EFBIG;
   while (::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, bytes) != 0) {
     if (errno == EINTR) continue;
-    return errno == EOPNOTSUPP || errno == ENOSYS ? 0 : errno;  // a file system without reservation: rows are written as they come
+    return errno == EOPNOTSUPP || errno == ENOSYS ? 0 : errno;  // a file system without reservation: rows are written without it
   }
   return 0;
 }
@@ -37,15 +37,15 @@ int reserve(int descriptor, std::int64_t bytes) {
 Result<FileDescriptor> open_force_table(const std::string& path) {
   if (path.empty()) return FileDescriptor(::open("/dev/null", O_WRONLY | O_CLOEXEC));
   const auto cannot = [&](int code) { return system_error(path + ": cannot write", code); };
-  // non-blocking: a pipe may have no reader
+  // opened without blocking, because a pipe may have no reader
   struct stat about {};
   const bool was_there = ::stat(path.c_str(), &about) == 0;
   if (was_there && !S_ISREG(about.st_mode))
-    return Error{path + ": is a pipe, a device or a folder: expected the name of a regular file for the table of forces"};
+    return Error{path + ": this is a pipe, a device or a folder, expected the name of a regular file for the table of forces"};
   FileDescriptor table(::open(path.c_str(), O_WRONLY | O_CREAT | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0666));
   if (!table) return cannot(errno);
   if (::fstat(table.get(), &about) != 0 || !S_ISREG(about.st_mode))
-    return Error{path + ": expected the name of a regular file for the table of forces"};
+    return Error{path + ": this is not a regular file, expected the name of a regular file for the table of forces"};
   int code = reserve(table.get(), kPiece);
   if (code == 0 && (::ftruncate(table.get(), 0) != 0)) code = errno;
   if (code == 0) code = reserve(table.get(), kPiece);
@@ -78,7 +78,7 @@ void ForceTable::add(const Vec3& force_n) {
   append_row(row);
 }
 
-/// Whether there is space for a row that does not begin or end a period of force (those rows are always written).
+/// Returns whether there is space for a row that does not begin or end a period of force (those rows are always written).
 bool ForceTable::reserve_space() {
   if (reserved_ == 0) return true;
   if (error_ != 0) return false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The program `catena-device`: runs a haptic device for catena, which starts it and passes it the shared memory page (descriptor 3,
-// haptics/device/process/device_page.h), the lifeline (descriptor 4) and the force table that it writes (descriptor 5). It has a session of
-// its own, blocks all signals that can be blocked, and outlives the program only as long as it takes to release the device.
+// The program `catena-device`: runs a haptic device for catena, which starts it and passes the shared memory page (descriptor 3,
+// haptics/device/process/device_page.h), the lifeline (descriptor 4) and the force table to write (descriptor 5). catena-device has its own
+// session, blocks all signals that can be blocked, and outlives catena only until the device is released.
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -24,7 +24,7 @@ constexpr int kPage = 3, kLifeline = 4, kTable = 5;
 constexpr int kPriority = 83;  // above the servo: this process mostly sleeps
 
 int usage() {
-  std::fputs("catena-device: a part of catena, which starts it\n", stderr);
+  std::fputs("catena-device: runs a haptic device for catena, which starts this program\n", stderr);
   return 2;
 }
 

@@ -31,7 +31,7 @@ constexpr int kOpenMs = 60'000;
 constexpr double kEndS = 3, kLostS = 0.1;
 
 Error cannot_start(const std::string& device, const std::string& why) {
-  return Error{device + ": the process that holds the device cannot be started: " + why, true};
+  return Error{device + ": the process for the device cannot be started: " + why, true};
 }
 
 /// Mapping of the shared memory page. Its size is sealed, so that neither side can truncate it.
@@ -97,7 +97,7 @@ class ProcessDevice final : public Device {
     }
     input.age_s += 1e-9 * static_cast<double>(std::max<std::int64_t>(0, now_ns() - pose.written_ns));
     const std::uint32_t takeovers = page_.takeovers.load(std::memory_order_acquire);
-    // reported lost once per takeover, so that the force ramps in
+    // the device is reported lost once per takeover, so that the force ramps in
     if (input.age_s > kLostS || takeovers != seen_takeovers_) input.status = DeviceStatus::lost;
     seen_takeovers_ = takeovers;
     return input;
@@ -145,7 +145,7 @@ Result<std::unique_ptr<Device>> open_in_process(const std::string& device, const
   page.silence_timeout_ms = std::max<std::uint32_t>(50, static_cast<std::uint32_t>(4000 / settings.rate_hz));
   page.force_gain = settings.force_gain;
   if (!fits(page.device, device) || !fits(page.firmware, settings.firmware))
-    return Error{device + ": its name, or that of its firmware, is too long for a process of its own"};
+    return Error{device + ": the name of the device or of the firmware is too long for a separate process"};
   CATENA_TRY(const FileDescriptor table, process::open_force_table(log));
   // if the process does not start, remove the empty table
   bool starts = false;
@@ -161,13 +161,13 @@ Result<std::unique_ptr<Device>> open_in_process(const std::string& device, const
     const int given[] = {memory.fd(), theirs.get(), table.get()};
     CATENA_TRY(HelperProcess started, HelperProcess::start(helper_path("catena-device"), given));
     process.emplace(std::move(started));
-  }  // the process has the only other end: its death is detected
+  }  // only the process holds the other end, so that the end of the process is detected
   pollfd line{ours.get(), POLLIN, 0};
-  int heard = 0;
-  do heard = ::poll(&line, 1, kOpenMs);
-  while (heard < 0 && errno == EINTR);
+  int ready_count = 0;
+  do ready_count = ::poll(&line, 1, kOpenMs);
+  while (ready_count < 0 && errno == EINTR);
   char answer = 0;
-  if (heard != 1 || ::read(ours.get(), &answer, 1) != 1) return cannot_start(device, "catena-device does not answer");
+  if (ready_count != 1 || ::read(ours.get(), &answer, 1) != 1) return cannot_start(device, "catena-device does not answer");
   if (answer != process::kReady)
     return Error{std::string(page.error_text, ::strnlen(page.error_text, sizeof page.error_text)), page.is_machine_error};
   starts = true;

@@ -13,7 +13,7 @@ namespace {
 
 static_assert(std::atomic<FalconState>::is_always_lock_free);
 constexpr int kSliceMs = 50;                              // longest delay until the thread notices that it must end
-constexpr int kTuneAfter = 3;                             // cycles without a frame until the line is set up again
+constexpr int kTuneAfter = 3;                             // cycles without a frame after which the line is reconfigured
 constexpr int kLookEvery = 500, kStartAgainEvery = 1000;  // cycles between checks of the watchdog process; and after a failed start
 constexpr std::uint8_t kOutEndpoint = 0x02;
 
@@ -32,10 +32,11 @@ DeviceCapabilities Falcon::nominal_capabilities() {
   c.workspace_m = 0.06;
   c.workspace_center_m = kFalconWorkspaceCenter;
   c.button_count = 4;
-  // Novint's data sheet: more than 2 lbf. In all directions: 6.1 N at the center, 4.5 N in the corners of the cube; more is clamped.
+  // The data sheet of Novint states more than 2 lbf. The maximum force in every direction is 6.1 N at the center and 4.5 N in the corners
+  // of the cube; larger forces are clamped.
   c.max_force_n = 8.9;
-  // Assumed, not identified: mass and damping as in the stability table, little friction. The encoder step is derived (one axis' count at z
-  // = 110 mm); the delay is one to two round trips of the bus.
+  // Assumed, not identified: mass and damping as in the stability table, little friction. The encoder step is derived (one count of an axis
+  // at z = 110 mm); the delay is one to two round trips of the bus.
   c.mechanics = {.mass_kg = 0.159, .damping_ns_per_m = 0.5, .friction_n = 0.1, .encoder_step_m = 37.7e-6, .delay_s = 2e-3};
   return c;
 }
@@ -90,9 +91,9 @@ DeviceInput Falcon::read() noexcept {
   input.position_m = pose.position_m;
   input.buttons = pose.buttons;
   input.age_s = pose.sampled_ns == 0 ? 0 : 1e-9 * static_cast<double>(now_ns - pose.sampled_ns);
-  // the I/O thread has cut the force meanwhile: the servo must ramp it in
+  // the I/O thread has cut the force since the last command: the servo must ramp it in
   const bool let_go = last_push_ns_ != 0 && 1e-9 * static_cast<double>(now_ns - last_push_ns_) >= options_.command_timeout_s;
-  // likewise for the watchdog process
+  // the watchdog process has taken the device since the last tick
   const std::uint64_t takeovers = takeovers_.load(std::memory_order_acquire);
   const bool taken = takeovers != acknowledged_takeovers_;
   acknowledged_takeovers_ = takeovers;
@@ -126,25 +127,25 @@ std::string Falcon::status_text() const {
   switch (state()) {
     case FalconState::absent: {
       const std::lock_guard lock(problem_mutex_);
-      return problem_.empty() ? "Falcon: lost; is it plugged in, and has it power?" : problem_;
+      return problem_.empty() ? "Falcon: the connection is lost; check the USB cable and the power" : problem_;
     }
     case FalconState::booting:
       return boot_attempt_ == 0
-                 ? std::string("Falcon: it is back, and starts")
-                 : fmt::format("Falcon: its firmware is being sent, try {}, {} %", boot_attempt_.load(), boot_percent_.load());
+                 ? std::string("Falcon: the device is connected again and starts")
+                 : fmt::format("Falcon: the firmware is being sent, attempt {}, {} %", boot_attempt_.load(), boot_percent_.load());
     case FalconState::homing:
       return fmt::format("Falcon: pull the grip fully out, then push it in (homed: {} of 3 axes)",
                          (homed & 1) + ((homed >> 1) & 1) + ((homed >> 2) & 1));
     case FalconState::arming:
-      return "Falcon: pull the grip fully out once; then its forces are on";
+      return "Falcon: pull the grip fully out once to switch the forces on";
     case FalconState::ready:
       break;
   }
   if (unwatched_) {
     const std::lock_guard lock(problem_mutex_);
-    return "Falcon: its forces are off: " + problem_;
+    return "Falcon: the forces are off: " + problem_;
   }
-  return stopped_ ? "Falcon: its forces are stopped" : "";
+  return stopped_ ? "Falcon: the forces are stopped" : "";
 }
 
 FalconStats Falcon::stats() const {
@@ -207,7 +208,7 @@ void Falcon::run() noexcept {
   }
 }
 
-// Sends a packet. If a packet with force was delayed on its way, because the program was stopped just here, a zero-force packet follows.
+// Sends a packet. If a packet with force was delayed because the program was suspended during the call, a zero-force packet follows.
 bool Falcon::send(FalconSession& session, bool forces) noexcept {
   watchdog::SharedPage* page = watchdog_memory_ ? &watchdog_memory_->page() : nullptr;
   if (page != nullptr) {
@@ -224,8 +225,8 @@ bool Falcon::send(FalconSession& session, bool forces) noexcept {
   return true;
 }
 
-// After the watchdog process has cut the force: sends a zero-force packet from here, too, and takes the device back. What the device sent
-// meanwhile is outdated and discarded.
+// Handles a takeover by the watchdog process, which has cut the force: sends a zero-force packet, too, and takes the device back. Data sent
+// by the device in between is outdated and discarded.
 bool Falcon::handle_takeover(FalconSession& session, Ftdi& ftdi) noexcept {
   if (!watchdog_memory_ || watchdog_memory_->page().holder.load(std::memory_order_acquire) == watchdog::Holder::program) return false;
   session.release_force();
@@ -236,13 +237,13 @@ bool Falcon::handle_takeover(FalconSession& session, Ftdi& ftdi) noexcept {
   return true;
 }
 
-// Whether the watchdog process runs, or none is required. Restarts one that has died.
+// Returns whether the watchdog process runs or none is required. Restarts a process that has ended.
 bool Falcon::ensure_watchdog(FalconSession& session) noexcept {
   if (!watchdog_memory_) return true;
   if (--cycles_until_check_ > 0) return watchdog_ != nullptr;
   cycles_until_check_ = kLookEvery;
   if (watchdog_ && watchdog_->is_alive()) return true;
-  // starting one takes time: not while force is on
+  // starting a process takes time, which is not allowed while force is on
   session.release_force();
   increment(watchdog_restarts_);
   const Outcome started = start_watchdog();
@@ -271,7 +272,7 @@ void Falcon::run_session() noexcept {
       homed_.store(session.homed(), std::memory_order_relaxed);
       publish(session.pose());
     } else if (++silent == kTuneAfter) {
-      // setting up may take a second: not while force is on
+      // configuring the line may take a second, which is not allowed while force is on
       session.release_force();
       publish(session.pose());
       increment(counters_.ftdi.retries);
@@ -280,7 +281,7 @@ void Falcon::run_session() noexcept {
   }
   session.send_shutdown();
   zero_force_confirmed_.store(session.zero_force_confirmed() || cycle == FalconSession::Cycle::disconnected);
-  // a device that has not acknowledged its zero is left to the watchdog
+  // a device that has not acknowledged the zero force is left to the watchdog
   if (watchdog_ && (session.zero_force_confirmed() || cycle == FalconSession::Cycle::disconnected)) watchdog_->quit();
   watchdog_.reset();
   transport_.reset();
@@ -293,7 +294,7 @@ void Falcon::run_session() noexcept {
   publish(pose_);
 }
 
-// Waits for the device, opens it and starts its firmware: like open(), repeatedly.
+// Waits for the device, opens it and starts its firmware, like open(); called until it succeeds.
 void Falcon::wait_for_reconnect() noexcept {
   bool arrived = false;
   for (int waited = 0; waited < options_.reconnect_poll_ms && !arrived && !quit_; waited += kSliceMs)

@@ -50,7 +50,7 @@ struct FalconOptions {
 struct FalconStats {
   std::uint64_t cycles = 0, frames = 0, bad_cycles = 0;  ///< round trips; valid frames; round trips without a frame
   std::uint64_t packets_out = 0, packets_in = 0, idle_packets = 0;
-  std::uint64_t resyncs = 0, dropped_bytes = 0;  ///< of the open device
+  std::uint64_t resyncs = 0, dropped_bytes = 0;  ///< incomplete and dropped data of the open device
   std::uint64_t timeouts = 0, stalls = 0, retries = 0, errors = 0, line_errors = 0;
   /// rejected frames (jumps, out of reach); cycles whose force exceeded the motors; expired commands; firmware uploads; plug events
   std::uint64_t jumps = 0, out_of_reach = 0, saturated = 0, stale_commands = 0, uploads = 0, disconnects = 0, reconnects = 0;
@@ -136,8 +136,8 @@ class Falcon final : public Device {
 /// Appends the devices on the USB bus as "falcon", "falcon:1", ...; a "falcon" that is not available if there is none.
 void list_falcons(std::vector<DeviceInfo>& to);
 
-/// Returns a FalconBootOptions::progress that reports the fraction of an upload to `tell`, ten lines per attempt.
-std::function<bool(int attempt, double share)> make_boot_progress_reporter(std::function<void(const std::string&)> tell);
+/// Returns a FalconBootOptions::progress that reports the fraction of an upload to `on_message`, ten lines per attempt.
+std::function<bool(int attempt, double share)> make_boot_progress_reporter(std::function<void(const std::string&)> on_message);
 
 /// Opens a Falcon. `detail`: empty or "0" for the first one, "1" for the second.
 Result<std::unique_ptr<Device>> open_falcon(const std::string& detail, const DeviceSettings& settings);

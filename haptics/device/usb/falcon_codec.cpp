@@ -24,7 +24,7 @@ FalconCounts get_counts(std::span<const std::uint8_t, kFalconPacketBytes> bytes)
   return counts;
 }
 
-// Whether a byte may occur at position `at` of a device's frame.
+// Returns whether a byte may occur at position `at` of a device's frame.
 bool fits(std::size_t at, std::uint8_t byte) noexcept {
   if (at == 0) return byte == kFirst;
   if (at <= 12) return byte >= kZero && byte < kZero + 16;
@@ -81,12 +81,12 @@ bool FalconFramer::push(std::uint8_t byte, FalconFrame& frame) noexcept {
     buffered_ = 0;
     return decode_frame(bytes_, frame);
   }
-  // outside a frame: wait for its first byte
+  // outside a frame: waits for its first byte
   if (buffered_ == 0) {
     ++dropped_bytes_;
     return false;
   }
-  // inside: only byte 14 can be the start of another frame, and then `byte` is its second
+  // inside a frame: only byte 14 can be the start of another frame; then `byte` is its second byte
   ++resyncs_;
   const bool restart = buffered_ == 15 && bytes_[14] == kFirst;
   dropped_bytes_ += restart ? 14 : buffered_;

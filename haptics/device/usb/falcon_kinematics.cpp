@@ -17,13 +17,13 @@ constexpr double kNear = 1e-6;        // rad, in intermediate steps
 constexpr int kSteps = 16, kHalves = 12, kParts = 16;
 
 struct Leg {
-  double cosine, sine;  // of phi
+  double cosine, sine;  // cosine and sine of phi
 };
 const std::array<Leg, 3> kLegs = {{{std::cos(105 * kRadians), std::sin(105 * kRadians)},
                                    {std::cos(-15 * kRadians), std::sin(-15 * kRadians)},
                                    {std::cos(-135 * kRadians), std::sin(-135 * kRadians)}}};
 
-// p in a leg's own frame, and the length of its parallelogram in the leg's plane.
+// Position p in a leg's own frame, and the length of its parallelogram in the leg's plane.
 struct InLeg {
   double u_c, w;              // u + c, w
   double length, dlength_dv;  // L, dL/dv; NaN out of reach
@@ -59,7 +59,7 @@ bool falcon_inverse_kinematics(const Vec3& position_m, Vec3& angles) noexcept {
 
 namespace {
 
-// Rows: d theta_i / dp.
+// Computes the matrix with rows d theta_i / dp.
 bool inverse_jacobian(const Vec3& position_m, const Vec3& angles, Mat3& rad_per_metre) noexcept {
   for (int i = 0; i < 3; ++i) {
     const Leg& leg = kLegs[static_cast<std::size_t>(i)];
@@ -87,7 +87,7 @@ bool falcon_jacobian(const Vec3& position_m, const Vec3& angles, Mat3& metres_pe
 
 namespace {
 
-// Newton from p, whose angles are `at`; each step is halved until it stays within reach and comes nearer.
+// Newton's method from p with the angles `at`; each step is halved until it stays within reach and reduces the error.
 bool newton(const Vec3& angles, double within, Vec3& p, Vec3& at) noexcept {
   double left = max_abs(angles - at);
   for (int step = 0; step < kSteps && left > within; ++step) {
@@ -114,7 +114,7 @@ bool falcon_forward_kinematics(const Vec3& angles, Vec3& position_m) noexcept {
   if (!falcon_inverse_kinematics(kStart, start_angles)) return false;
   Vec3 p = kStart, at = start_angles;
   bool found = newton(angles, kConverged, p, at);
-  // at the rim: along a straight line in the angles, so that Newton stays on the mechanism's branch
+  // at the rim: continuation along a straight line in the angles, so that Newton's method stays on the mechanism's branch
   if (!found) {
     p = kStart;
     at = start_angles;

@@ -23,7 +23,7 @@ inline constexpr double kFalconForceGain = 1e4;  ///< motor counts per N m; empi
 
 /// Returns the motor angles, radians: theta = 35 degrees + counts x 0.0364347 degrees.
 Vec3 falcon_angles(const FalconCounts& encoders) noexcept;
-/// The same for fractional counts.
+/// Returns the motor angles of fractional counts.
 Vec3 falcon_angles(const Vec3& encoders) noexcept;
 /// Returns the fractional encoder counts of motor angles, the inverse of falcon_angles.
 Vec3 falcon_encoders(const Vec3& angles) noexcept;

@@ -38,7 +38,7 @@ bool FalconSession::send(const Vec3& force_n, bool forces) noexcept {
 }
 
 FalconSession::Cycle FalconSession::receive() noexcept {
-  // read until a frame: the device answers each packet with one, whole or in parts, among packets without payload
+  // reads until a frame arrives: the device answers each packet with one frame, whole or in parts, among packets without payload
   FalconFrame frame;
   int frames = 0;
   for (int i = 0; i < kReads && frames == 0; ++i) {
@@ -72,7 +72,7 @@ void FalconSession::release_force() noexcept {
   send_shutdown();
 }
 
-// Compares with the last frame, accepted or not.
+// Compares a frame with the last one, accepted or not.
 bool FalconSession::is_plausible(const FalconFrame& frame) noexcept {
   bool near = has_encoders_;
   for (std::size_t axis = 0; axis < 3; ++axis) near = near && std::abs(frame.encoders[axis] - last_encoders_[axis]) <= kJumpCounts;

@@ -49,7 +49,7 @@ UsbError Ftdi::write(std::span<const std::uint8_t> bytes, int timeout_ms) noexce
       increment(counters_.packets_out);
       return UsbError::none;
     }
-    // a partial transfer: send the rest again
+    // after a partial transfer the rest is sent
     const UsbError error = record_error(moved.error);
     if (error == UsbError::stall) {
       if (const UsbError cleared = record_error(transport_.clear_halt(UsbEndpoint::out)); cleared != UsbError::none) return cleared;

@@ -35,7 +35,7 @@ Result<std::shared_ptr<libusb_context>> make_context() {
   libusb_context* context = nullptr;
   if (const int code = libusb_init(&context); code != 0)
     return Error{
-        fmt::format("USB cannot be used here: {}; a machine with a USB bus that this user may see was expected", libusb_strerror(code))};
+        fmt::format("USB cannot be used: {}; a machine with a USB bus that this user may access was expected", libusb_strerror(code))};
   return std::shared_ptr<libusb_context>(context, libusb_exit);
 }
 
@@ -48,7 +48,7 @@ struct HandleClose {
 };
 using HandlePtr = std::unique_ptr<libusb_device_handle, HandleClose>;
 
-// A device of the given id: its handle and file descriptor, or libusb's error code if it cannot be opened.
+// Device with a given id: its handle and file descriptor, or libusb's error code if it cannot be opened.
 struct Candidate {
   DevicePtr device;
   HandlePtr handle;
@@ -60,7 +60,7 @@ void on_pollfd(int fd, short events, void* at) {
   if ((events & POLLOUT) != 0) *static_cast<int*>(at) = fd;
 }
 
-// libusb announces the file that it opens and polls (POLLOUT: a transfer is complete) only by this callback.
+// Opens a device. libusb announces the file that it opens and polls (POLLOUT: a transfer is complete) only by this callback.
 int open_with_file(libusb_context* context, libusb_device* device, libusb_device_handle*& handle, int& fd) {
   libusb_set_pollfd_notifiers(context, on_pollfd, nullptr, &fd);
   const int code = libusb_open(device, &handle);
@@ -75,10 +75,10 @@ std::string place(libusb_device* device) {
 std::string why_not(const UsbId& id, int code) {
   if (code == LIBUSB_ERROR_ACCESS)
     return fmt::format(
-        "no permission; as root put the line SUBSYSTEM==\"usb\", ATTR{{idVendor}}==\"{:04x}\", ATTR{{idProduct}}==\"{:04x}\", "
-        "MODE=\"0660\", TAG+=\"uaccess\" into /etc/udev/rules.d/60-catena.rules, run udevadm control --reload, plug it again",
+        "no permission; as root add the line SUBSYSTEM==\"usb\", ATTR{{idVendor}}==\"{:04x}\", ATTR{{idProduct}}==\"{:04x}\", "
+        "MODE=\"0660\", TAG+=\"uaccess\" to /etc/udev/rules.d/60-catena.rules, run udevadm control --reload, and plug the device in again",
         id.vendor, id.product);
-  if (code == LIBUSB_ERROR_BUSY) return "another program uses it; close that one first";
+  if (code == LIBUSB_ERROR_BUSY) return "another program uses the device; close this program first";
   return libusb_strerror(code);
 }
 
@@ -155,7 +155,7 @@ Result<std::unique_ptr<LibusbTransport>> LibusbTransport::wrap(int fd) {
   CATENA_TRY(auto context, make_context());
   libusb_device_handle* handle = nullptr;
   if (const int code = libusb_wrap_sys_device(context.get(), fd, &handle); code != 0)
-    return Error{fmt::format("the USB device's file cannot be used: {}; an open node of usbfs was expected", libusb_strerror(code))};
+    return Error{fmt::format("the file of the USB device cannot be used: {}; an open usbfs node was expected", libusb_strerror(code))};
   if (const int code = claim(handle); code != 0) {
     libusb_close(handle);
     return Error{fmt::format("the USB device cannot be claimed: {}", libusb_strerror(code))};
@@ -213,7 +213,7 @@ Result<std::unique_ptr<Transport>> LibusbTransportSource::open() {
   std::vector<Candidate> found = candidates(context_.get(), id_);
   if (found.size() <= static_cast<std::size_t>(index_))
     return Error{
-        fmt::format("{} is not on the USB bus ({} of {:04x}:{:04x} found, number {} was expected); plug in its cable and its power",
+        fmt::format("{} is not on the USB bus ({} of {:04x}:{:04x} found, number {} was expected); connect the USB cable and the power",
                     id_.product_string, found.size(), id_.vendor, id_.product, index_ + 1)};
   Candidate& chosen = found[static_cast<std::size_t>(index_)];
   int code = chosen.code;

@@ -23,7 +23,7 @@ inline const UsbId kFalconUsbId{0x0403, 0xcb48, "FALCON HAPTIC"};
 /// A device found on the bus.
 struct UsbDeviceInfo {
   bool can_open = false;
-  std::string detail;  ///< where it is, or why it cannot be opened and what to do
+  std::string detail;  ///< location on the bus, or the reason why the device cannot be opened and a remedy
 };
 /// Returns the devices of this id, in the order of LibusbTransportSource's index.
 Result<std::vector<UsbDeviceInfo>> list_usb(const UsbId& id);

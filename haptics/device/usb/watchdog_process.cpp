@@ -27,21 +27,21 @@ namespace {
 constexpr int kReadyMs = 5000, kEndMs = 1000, kFirstFree = 10;
 
 Error no_watchdog(const std::string& why) {
-  return {"the process that lets the device go if this program dies cannot be started: " + why, true};
+  return {"the watchdog process, which stops the force if this program ends, cannot be started: " + why, true};
 }
 
 class WatchdogProcess final : public ExternalWatchdog {
  public:
   WatchdogProcess(pid_t child, int lifeline) : child_(child), lifeline_(lifeline) {}
-  /// Without quit(), the process detects the end of the lifeline.
+  /// Closes the lifeline, whose end the process detects if quit() was not called.
   ~WatchdogProcess() override {
     close(lifeline_);
     for (int i = 0; i < kEndMs; ++i) {
-      if (waitpid(child_, nullptr, WNOHANG) != 0) return;  // it has ended, or is not a child of this process
+      if (waitpid(child_, nullptr, WNOHANG) != 0) return;  // the process has ended, or is not a child of this process
       const timespec nap{0, 1000000};
       nanosleep(&nap, nullptr);
     }
-    // still writing: a device that does not answer; the watchdog continues until the device is disconnected
+    // the watchdog still writes to a device that does not answer, and continues until the device is disconnected
   }
   bool is_alive() noexcept override {
     pollfd line{lifeline_, POLLIN, 0};
@@ -92,12 +92,12 @@ bool becomes_ready(int lifeline) {
 }
 
 Result<std::unique_ptr<ExternalWatchdog>> start_process(const std::string& path, Transport& transport, const WatchdogSharedMemory& memory) {
-  if (transport.descriptor() < 0) return no_watchdog("the device's file could not be found among libusb's");
+  if (transport.descriptor() < 0) return no_watchdog("libusb does not expose the file of the device");
   int pair[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0) return no_watchdog(std::strerror(errno));
   FileDescriptor ours(pair[0]);
   FileDescriptor theirs(pair[1]);
-  // keep descriptors 3, 4 and 5 free
+  // keeps descriptors 3, 4 and 5 free
   const FileDescriptor usb(fcntl(transport.descriptor(), F_DUPFD_CLOEXEC, kFirstFree)),
       page(fcntl(memory.fd(), F_DUPFD_CLOEXEC, kFirstFree));
   FileDescriptor lifeline(fcntl(theirs.get(), F_DUPFD_CLOEXEC, kFirstFree));
@@ -105,7 +105,7 @@ Result<std::unique_ptr<ExternalWatchdog>> start_process(const std::string& path,
   pid_t child = 0;
   if (const int code = spawn(path, usb.get(), page.get(), lifeline.get(), child); code != 0)
     return no_watchdog(fmt::format("{}: {}", path, std::strerror(code)));
-  // the process has the only other end: its death is detected
+  // only the process holds the other end, so that the end of the process is detected
   theirs.close();
   lifeline.close();
   auto process = std::make_unique<WatchdogProcess>(child, ours.get());

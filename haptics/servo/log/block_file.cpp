@@ -70,7 +70,7 @@ Result<std::unique_ptr<ByteSource>> open_file_source(const std::string& path) {
   struct stat about {};
   if (::fstat(descriptor, &about) != 0 || !S_ISREG(about.st_mode)) {
     ::close(descriptor);
-    return cannot("it is no regular file");
+    return cannot("not a regular file");
   }
   return std::unique_ptr<ByteSource>(std::make_unique<File>(descriptor, static_cast<std::uint64_t>(about.st_size)));
 }
@@ -91,14 +91,15 @@ Error cannot_write(const std::string& path, int code) { return system_error(path
 Result<BlockFile> BlockFile::create(const std::string& path) {
   CATENA_CHECK(check_not_input(path));
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0666);
-  if (descriptor < 0 && errno == ENXIO) return Error{path + ": nothing reads from this pipe or socket: expected a file, or a reader first"};
+  if (descriptor < 0 && errno == ENXIO)
+    return Error{path + ": no program reads from this pipe or socket, expected a file, or a pipe with a reader"};
   if (descriptor < 0) return cannot_write(path, errno);
   static_cast<void>(::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK));
   BlockFile file(path, descriptor);
   if (is_regular(descriptor)) {
-    // two recordings into one file would destroy each other
+    // two recordings to one file would overwrite each other
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-      return Error{path + ": another program is recording into this file: expected another name"};
+      return Error{path + ": another program is recording to this file, expected another name"};
     if (::ftruncate(descriptor, 0) != 0) return cannot_write(path, errno);
   }
   unsigned char preamble[kPreambleBytes];

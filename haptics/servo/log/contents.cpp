@@ -15,7 +15,7 @@ static_assert(sizeof(DeviceLimits) == 88 && sizeof(Coupling) == 56);
 
 namespace {
 
-// One list of the numbers for both directions: calls `each` for them in the order of the format.
+// Calls `each` for the numbers in the order of the format; used for both directions.
 template <class P, class F>
 void each_number(P& p, const F& each) {
   for (auto* v : {&p.limits.max_stiffness_n_per_m, &p.limits.max_rotational_stiffness_nm_per_rad, &p.limits.max_force_n,
@@ -93,7 +93,7 @@ std::vector<std::string> LogProgram::widget_names() const {
 std::string LogGap::description() const {
   const std::string which =
       ticks == 1 ? fmt::format("tick {} is", first_tick) : fmt::format("ticks {} to {} are", first_tick, first_tick + ticks - 1);
-  return which + (cause == Cause::damaged ? " lost: the log is damaged there" : " lost: the disk did not keep up");
+  return which + (cause == Cause::damaged ? " lost: the log is damaged at this point" : " lost: the disk was too slow");
 }
 
 LogProgram to_log_program(const HapticProgram& program, std::optional<std::string> scene_text) {
@@ -139,19 +139,19 @@ std::optional<LogHeader> parse_header(std::string_view bytes) {
   LogHeader h;
   for (std::string* text : {&h.scene_path, &h.working_folder, &h.scene_text}) *text = in.get_string();
   const auto fields = in.get<std::uint32_t>();
-  for (std::uint32_t i = 0; i < fields && in.good(); ++i) h.fields.push_back(in.get_string());
+  for (std::uint32_t i = 0; i < fields && in.is_ok(); ++i) h.fields.push_back(in.get_string());
   h.device = in.get_string();
   h.catena_version = in.get_string();
   h.rate_hz = in.get<double>();
   h.started_unix_ns = in.get<std::int64_t>();
   if (!in.at_end()) h.about = in.get_string();
   const auto plugins = in.at_end() ? 0 : in.get<std::uint32_t>();
-  for (std::uint32_t i = 0; i < plugins && in.good(); ++i) {
+  for (std::uint32_t i = 0; i < plugins && in.is_ok(); ++i) {
     LogPlugin& plugin = h.plugins.emplace_back();
     plugin.file = in.get_string();
     plugin.hash = in.get<std::uint64_t>();
     const auto types = in.get<std::uint32_t>();
-    for (std::uint32_t k = 0; k < types && in.good(); ++k) plugin.types.push_back(in.get_string());
+    for (std::uint32_t k = 0; k < types && in.is_ok(); ++k) plugin.types.push_back(in.get_string());
   }
   if (!in.at_end()) return std::nullopt;
   return h;
@@ -194,16 +194,16 @@ std::optional<LogProgram> parse_program(std::string_view bytes) {
   each_number(p, GetNumber{in, good});
   const auto links = in.get<std::uint32_t>();
   good = good && links <= kMaxLinks;
-  for (std::uint32_t i = 0; i < links && good && in.good(); ++i) {
+  for (std::uint32_t i = 0; i < links && good && in.is_ok(); ++i) {
     std::string name = in.get_string();
     p.links.push_back({std::move(name), in.get<std::uint64_t>()});
   }
   const auto modes = in.get<std::uint32_t>();
   good = good && modes <= kMaxModes;
-  for (std::uint32_t i = 0; i < modes && good && in.good(); ++i) p.modes.push_back(in.get_string());
+  for (std::uint32_t i = 0; i < modes && good && in.is_ok(); ++i) p.modes.push_back(in.get_string());
   const auto widgets = in.get<std::uint32_t>();
   good = good && widgets <= kMaxWidgets;
-  for (std::uint32_t i = 0; i < widgets && good && in.good(); ++i) {
+  for (std::uint32_t i = 0; i < widgets && good && in.is_ok(); ++i) {
     LogProgram::Widget w;
     w.name = in.get_string();
     w.revision = in.get<std::uint32_t>();
@@ -227,7 +227,7 @@ std::optional<LogState> parse_state(std::string_view bytes) {
   LogState out;
   out.tick = in.get<std::uint64_t>();
   const bool own = in.get<std::uint64_t>() == state_layout();
-  if (!in.good() || out.tick == 0 || out.tick == ~std::uint64_t{0}) return std::nullopt;
+  if (!in.is_ok() || out.tick == 0 || out.tick == ~std::uint64_t{0}) return std::nullopt;
   if (!own) return out;
   const char* from = in.read_bytes(sizeof(ChainState));
   if (from == nullptr || !in.at_end()) return std::nullopt;

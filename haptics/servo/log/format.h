@@ -35,7 +35,7 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Deserializer of numbers and strings. After the first read past the end all reads return zero or empty, and good() is false.
+/// Deserializer of numbers and strings. After the first read past the end all reads return zero or empty, and is_ok() is false.
 class ByteReader {
  public:
   /// Creates a reader of bytes, which must outlive it.
@@ -56,8 +56,8 @@ class ByteReader {
   }
   /// Returns a pointer to the next `size` bytes; null if fewer are left.
   const char* read_bytes(std::size_t size) {
-    if (!good_ || size > bytes_.size() - at_) {
-      good_ = false;
+    if (!is_ok_ || size > bytes_.size() - at_) {
+      is_ok_ = false;
       return nullptr;
     }
     const char* from = bytes_.data() + at_;
@@ -65,14 +65,14 @@ class ByteReader {
     return from;
   }
   /// Returns whether no read went past the end.
-  bool good() const { return good_; }
+  bool is_ok() const { return is_ok_; }
   /// Returns whether exactly all bytes have been read.
-  bool at_end() const { return good_ && at_ == bytes_.size(); }
+  bool at_end() const { return is_ok_ && at_ == bytes_.size(); }
 
  private:
   std::string_view bytes_;
   std::size_t at_ = 0;
-  bool good_ = true;
+  bool is_ok_ = true;
 };
 
 // Format of a recording, version 2. This description is sufficient to write a reader.

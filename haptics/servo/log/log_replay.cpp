@@ -11,7 +11,7 @@ namespace catena::haptics::log {
 
 namespace {
 
-// The built program with the spec hashes of the log, if it has the links that the log names.
+// Returns the built program with the spec hashes of the log if the program has the links named in the log.
 Result<std::shared_ptr<const HapticProgram>> with_recorded_recipes(const HapticProgram& built, const LogProgram& recorded) {
   HapticProgram program = built;
   bool same = program.widgets.size() == recorded.widgets.size() && program.links.size() == recorded.links.size() &&
@@ -29,11 +29,11 @@ Result<std::shared_ptr<const HapticProgram>> with_recorded_recipes(const HapticP
   }
   if (!same)
     return Error{"tick " + std::to_string(recorded.first_tick) +
-                 ": the scene has other links or widgets than the recording; expected the scene that was recorded"};
+                 ": the links or widgets of the scene differ from the recording, expected the recorded scene"};
   return std::shared_ptr<const HapticProgram>(std::make_shared<HapticProgram>(std::move(program)));
 }
 
-// Checks the start tick and the initial state that the log states: neither is trusted.
+// Checks the start tick and the initial state of the log, which are not trusted.
 Outcome check_at(std::uint64_t tick, const HapticProgram& program, const ChainState& state) {
   const Outcome sane = validate_state(program, state);
   if (!sane) return Error{"before tick " + std::to_string(tick) + ": " + sane.error().message};
@@ -56,7 +56,8 @@ Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
     switch (event) {
       case LogEvent::program: {
         if (!log.program().is_known) {
-          result.stop_reason = "the log does not say what ran from tick " + std::to_string(log.program().first_tick) + " on";
+          result.stop_reason =
+              "the log does not contain the program that ran from tick " + std::to_string(log.program().first_tick) + " on";
           break;
         }
         CATENA_TRY(const std::shared_ptr<const HapticProgram> built, hooks.build(log.program()));
@@ -73,7 +74,7 @@ Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
       case LogEvent::state:
         if (!log.state().chain)
           return Error{"the log begins after tick " + std::to_string(log.state().tick) +
-                       ", with a state that another build of Catena has written; expected the build that recorded it"};
+                       ", with a state written by another build of Catena, expected the build that recorded the log"};
         break;
       case LogEvent::gap:
         result.stop_reason = log.gap().description();
@@ -88,7 +89,7 @@ Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
         meter.add(static_cast<double>(now_ns() - start), out);
         pack_tick(log.tick().input, out, words.data());
         std::string difference = first_difference(log.record_words(), words, names, widgets);
-        if (difference.empty() && out.tick != log.tick().output.tick) difference = "the tick's number";
+        if (difference.empty() && out.tick != log.tick().output.tick) difference = "the tick number";
         if (!difference.empty() && result.differing++ == 0) {
           result.first_differing = log.tick().output.tick;
           result.difference = std::move(difference);

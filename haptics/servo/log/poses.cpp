@@ -46,7 +46,7 @@ std::optional<std::vector<LogPoses>> parse_poses(std::string_view bytes) {
   if (count > kMaxPosesABlock) return std::nullopt;
   std::vector<LogPoses> out;
   bool good = true;
-  for (std::uint32_t i = 0; i < count && good && in.good(); ++i) {
+  for (std::uint32_t i = 0; i < count && good && in.is_ok(); ++i) {
     LogPoses one;
     one.tick = in.get<std::uint64_t>();
     one.predicted_ns = in.get<std::int64_t>();

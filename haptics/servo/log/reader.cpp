@@ -18,12 +18,12 @@ Result<LogReader> LogReader::open(std::unique_ptr<ByteSource> source, const std:
   unsigned char preamble[kPreambleBytes];
   std::uint32_t version = 0, order = 0;
   if (source->size() < sizeof preamble || !source->read(0, preamble, sizeof preamble) || std::memcmp(preamble, kMagic, sizeof kMagic) != 0)
-    return Error{name + ": is no recording of Catena, or was cut off within its first bytes; a .catlog file was expected"};
+    return Error{name + ": this is not a recording of Catena, or is truncated; a .catlog file was expected"};
   std::memcpy(&version, preamble + 8, sizeof version);
   std::memcpy(&order, preamble + 12, sizeof order);
-  if (order != kByteOrderMark) return Error{name + ": was recorded on a machine of another byte order; expected one like this"};
-  if (version != kVersion)
-    return Error{fmt::format("{}: is a recording of version {}; this program reads version {}", name, version, kVersion)};
+  if (order != kByteOrderMark)
+    return Error{name + ": the recording was made on a machine with another byte order, expected the byte order of this machine"};
+  if (version != kVersion) return Error{fmt::format("{}: the recording has version {}, expected version {}", name, version, kVersion)};
   LogReader reader{BlockReader(std::move(source))};
   const BlockReader::ReadResult found = reader.blocks_.next();
   if (found == BlockReader::ReadResult::block && reader.blocks_.type() == BlockType::header && reader.blocks_.sequence() == 0) {
@@ -33,8 +33,8 @@ Result<LogReader> LogReader::open(std::unique_ptr<ByteSource> source, const std:
     }
   }
   return Error{name + (found == BlockReader::ReadResult::truncated || found == BlockReader::ReadResult::end
-                           ? ": was cut off before its header was complete; it holds no tick"
-                           : ": its header is damaged; expected it as it was written")};
+                           ? ": the recording is truncated inside the header and contains no tick"
+                           : ": the header of the recording is damaged, expected a valid header")};
 }
 
 bool LogReader::mark_damaged() {
@@ -114,7 +114,7 @@ std::optional<LogEvent> LogReader::read_ticks() {
   ByteReader in(blocks_.payload());
   const auto epoch = in.get<std::uint64_t>(), first = in.get<std::uint64_t>();
   const auto count = in.get<std::uint32_t>(), links = in.get<std::uint32_t>(), widgets = in.get<std::uint32_t>();
-  const bool sane = in.good() && count > 0 && links <= kMaxLinks && widgets <= kMaxWidgets && first > last_tick_ &&
+  const bool sane = in.is_ok() && count > 0 && links <= kMaxLinks && widgets <= kMaxWidgets && first > last_tick_ &&
                     count <= blocks_.payload().size() && first <= ~std::uint64_t{0} - count;
   constexpr std::size_t kHead = 28;
   const RecordLayout shape{static_cast<int>(links & 0xff), static_cast<int>(widgets & 0xff)};
@@ -221,8 +221,8 @@ std::optional<LogEvent> LogReader::read_end() {
 
 std::string LogReader::end_summary() const {
   std::string text = end_       ? fmt::format("ends cleanly with tick {}", last_tick_)
-                     : damaged_ ? fmt::format("nothing can be read after tick {}", last_tick_)
-                                : fmt::format("cut off after tick {}", last_tick_);
+                     : damaged_ ? fmt::format("unreadable after tick {}", last_tick_)
+                                : fmt::format("truncated after tick {}", last_tick_);
   if (damaged_) text += "; the log is damaged";
   return text;
 }

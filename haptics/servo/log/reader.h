@@ -55,7 +55,7 @@ class CATENA_EXPORT LogReader {
   const std::optional<LogEnd>& end() const { return end_; }
   /// Returns whether damage has been found so far.
   bool damaged() const { return damaged_; }
-  /// Returns one line, after LogEvent::done: "ends cleanly with tick 5" or "cut off after tick 5", and whether the log is damaged.
+  /// Returns one line, after LogEvent::done: "ends cleanly with tick 5" or "truncated after tick 5", and whether the log is damaged.
   std::string end_summary() const;
 
  private:

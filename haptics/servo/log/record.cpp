@@ -223,27 +223,29 @@ constexpr std::string_view kLinkNames[kLinkWords] = {"x",
 
 constexpr std::string_view kWidgetNames[kWidgetWords] = {"x", "y", "z", "x2", "y2", "z2", "qw", "qx", "qy", "qz", "value", ""};
 
-std::string said(const std::string& what, const std::string& recorded, const std::string& replayed) {
+std::string difference_text(const std::string& what, const std::string& recorded, const std::string& replayed) {
   return what + " recorded " + recorded + ", replayed " + replayed;
 }
 
 std::string packed_difference(std::uint64_t a, std::uint64_t b) {
   const auto forces = [](std::uint64_t w) -> std::string { return to_string(static_cast<ForceState>(byte_of(w, 6))); };
   const auto mode = [](std::uint64_t w) { return std::to_string(static_cast<std::int8_t>(byte_of(w, 7))); };
-  if (byte_of(a, 6) != byte_of(b, 6)) return said("force_state", forces(a), forces(b));
-  if (byte_of(a, 7) != byte_of(b, 7)) return said("mode", mode(a), mode(b));
+  if (byte_of(a, 6) != byte_of(b, 6)) return difference_text("force_state", forces(a), forces(b));
+  if (byte_of(a, 7) != byte_of(b, 7)) return difference_text("mode", mode(a), mode(b));
   return "the probe's buttons or condition differ";
 }
 
 std::string packed_link_difference(const std::string& link, std::uint64_t a, std::uint64_t b) {
   const auto evaluations = [](std::uint64_t w) { return std::to_string(static_cast<std::int32_t>(static_cast<std::uint32_t>(w))); };
   const auto status = [](std::uint64_t w) -> std::string { return to_string(static_cast<LinkStatus>(byte_of(w, 4))); };
-  if (byte_of(a, 4) != byte_of(b, 4)) return said(link + "_status", status(a), status(b));
-  if (byte_of(a, 5) != byte_of(b, 5)) return said(link + "_active", std::to_string(byte_of(a, 5)), std::to_string(byte_of(b, 5)));
-  if (byte_of(a, 6) != byte_of(b, 6)) return said(link + "_released", std::to_string(byte_of(a, 6)), std::to_string(byte_of(b, 6)));
+  if (byte_of(a, 4) != byte_of(b, 4)) return difference_text(link + "_status", status(a), status(b));
+  if (byte_of(a, 5) != byte_of(b, 5))
+    return difference_text(link + "_active", std::to_string(byte_of(a, 5)), std::to_string(byte_of(b, 5)));
+  if (byte_of(a, 6) != byte_of(b, 6))
+    return difference_text(link + "_released", std::to_string(byte_of(a, 6)), std::to_string(byte_of(b, 6)));
   const auto reason = [](std::uint64_t w) -> std::string { return to_string(static_cast<SampleStatus>(byte_of(w, 7))); };
-  if (byte_of(a, 7) != byte_of(b, 7) && byte_of(a, 7) != 0) return said(link + "_reason", reason(a), reason(b));
-  return said(link + "_evaluations", evaluations(a), evaluations(b));
+  if (byte_of(a, 7) != byte_of(b, 7) && byte_of(a, 7) != 0) return difference_text(link + "_reason", reason(a), reason(b));
+  return difference_text(link + "_evaluations", evaluations(a), evaluations(b));
 }
 
 /// Compares packed links; recordings of older versions have no reasons.
@@ -255,12 +257,13 @@ bool same_packed_link(std::uint64_t recorded, std::uint64_t replayed) {
 std::string packed_widget_difference(const std::string& widget, std::uint64_t a, std::uint64_t b) {
   const auto mode = [](std::uint64_t w) -> std::string { return to_string(static_cast<WidgetMode>(byte_of(w, 4))); };
   const auto revision = [](std::uint64_t w) { return std::to_string(static_cast<std::uint32_t>(w)); };
-  if (byte_of(a, 4) != byte_of(b, 4)) return said(widget + "_mode", mode(a), mode(b));
-  if (static_cast<std::uint32_t>(a) != static_cast<std::uint32_t>(b)) return said(widget + "_revision", revision(a), revision(b));
+  if (byte_of(a, 4) != byte_of(b, 4)) return difference_text(widget + "_mode", mode(a), mode(b));
+  if (static_cast<std::uint32_t>(a) != static_cast<std::uint32_t>(b))
+    return difference_text(widget + "_revision", revision(a), revision(b));
   if (byte_of(a, 5) != byte_of(b, 5))
-    return said(widget + "_handle", std::to_string(static_cast<std::int8_t>(byte_of(a, 5))),
-                std::to_string(static_cast<std::int8_t>(byte_of(b, 5))));
-  return said(widget + "_held", std::to_string(byte_of(a, 6)), std::to_string(byte_of(b, 6)));
+    return difference_text(widget + "_handle", std::to_string(static_cast<std::int8_t>(byte_of(a, 5))),
+                           std::to_string(static_cast<std::int8_t>(byte_of(b, 5))));
+  return difference_text(widget + "_held", std::to_string(byte_of(a, 6)), std::to_string(byte_of(b, 6)));
 }
 
 }  // namespace
@@ -268,7 +271,7 @@ std::string packed_widget_difference(const std::string& widget, std::uint64_t a,
 std::string first_difference(const RecordWords& recorded, const RecordWords& replayed, const std::vector<std::string>& link_names,
                              const std::vector<std::string>& widget_names) {
   const auto numbers = [&](const std::string& what, std::size_t k) {
-    return said(what, to_text(number(recorded[k])), to_text(number(replayed[k])));
+    return difference_text(what, to_text(number(recorded[k])), to_text(number(replayed[k])));
   };
   for (std::size_t k = 0; k < kMissedWord; ++k) {
     if (recorded[k] == replayed[k]) continue;

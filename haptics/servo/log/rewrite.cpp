@@ -13,13 +13,13 @@ Result<std::string> rewrite_payload(const BlockReader& block, const std::string&
   const std::string_view payload = block.payload();
   if (block.type() == BlockType::header) {
     auto header = parse_header(payload);
-    if (!header) return Error{file + ": the header is damaged; a whole recording was expected"};
+    if (!header) return Error{file + ": the header is damaged; a complete recording was expected"};
     CATENA_TRY(header->scene_text, rewrite(header->scene_text));
     return to_bytes(*header);
   }
   if (block.type() == BlockType::program) {
     auto program = parse_program(payload);
-    if (!program) return Error{file + ": a program is damaged; a whole recording was expected"};
+    if (!program) return Error{file + ": a program is damaged; a complete recording was expected"};
     if (!program->scene_text) return std::string(payload);
     CATENA_TRY(program->scene_text, rewrite(*program->scene_text));
     return to_bytes(*program);
@@ -30,7 +30,7 @@ Result<std::string> rewrite_payload(const BlockReader& block, const std::string&
 Outcome copy_blocks(BlockReader& blocks, const std::string& file, BlockFile& out, const RewriteText& rewrite) {
   using Read = BlockReader::ReadResult;
   for (Read read = blocks.next(); read != Read::end && read != Read::truncated; read = blocks.next()) {
-    if (read == Read::damaged) return Error{file + ": blocks are damaged; a whole recording was expected"};
+    if (read == Read::damaged) return Error{file + ": blocks are damaged; a complete recording was expected"};
     CATENA_TRY(const std::string payload, rewrite_payload(blocks, file, rewrite));
     if (!out.write(blocks.type(), payload)) return out.error();
   }

@@ -28,9 +28,9 @@ class SpscRing {
   /// Pushes a message. Returns false if there is not enough space; then nothing is pushed. Producer thread.
   bool try_push(std::span<const std::uint64_t> message) noexcept {
     const std::uint64_t head = head_.load(std::memory_order_relaxed);
-    if (words_.size() - (head - seen_tail_) < message.size()) {
-      seen_tail_ = tail_.load(std::memory_order_acquire);
-      if (words_.size() - (head - seen_tail_) < message.size()) return false;
+    if (words_.size() - (head - cached_tail_) < message.size()) {
+      cached_tail_ = tail_.load(std::memory_order_acquire);
+      if (words_.size() - (head - cached_tail_) < message.size()) return false;
     }
     const std::size_t at = head & mask_, first = std::min(message.size(), words_.size() - at);
     std::copy_n(message.begin(), first, words_.begin() + static_cast<std::ptrdiff_t>(at));
@@ -54,7 +54,7 @@ class SpscRing {
   std::vector<std::uint64_t> words_;
   std::size_t mask_;
   alignas(64) std::atomic<std::uint64_t> head_{0};
-  std::uint64_t seen_tail_ = 0;  ///< tail as last read by the producer
+  std::uint64_t cached_tail_ = 0;  ///< tail as last read by the producer
   alignas(64) std::atomic<std::uint64_t> tail_{0};
 };
 

@@ -24,7 +24,7 @@ namespace catena::haptics::log {
 
 namespace {
 
-// A message of the ring: tick, epoch, number of links, then the record.
+// Message of the ring: tick, epoch, number of links, then the record.
 constexpr std::size_t kMessageHead = 3;
 using Message = std::array<std::uint64_t, kMessageHead + kMaxRecordWords>;
 
@@ -40,15 +40,15 @@ struct LogWriter::Impl {
 
   // haptic thread
   Message message{};
-  ChainState start;        ///< state before the first tick if that is not the servo's initial state; announced by the first message
-  bool has_start = false;  ///< until the writer's thread has read it
+  ChainState start;        ///< state before the first tick, if it differs from the servo's initial state; announced by the first message
+  bool has_start = false;  ///< true until the writer's thread has read it
   std::atomic<std::uint64_t> newest_tick{0}, ring_lost{0}, ticks_before{0};
 
   // frame thread -> writer's thread
   std::mutex mutex;
   std::condition_variable wake;
   std::map<std::uint64_t, LogProgram> programs;
-  std::optional<std::uint64_t> first_epoch;  ///< until the first tick
+  std::optional<std::uint64_t> first_epoch;  ///< set until the first tick
   bool has_first = false, stop = false;
   std::vector<LogPoses> poses;
 
@@ -67,7 +67,7 @@ struct LogWriter::Impl {
 std::vector<LogProgram> LogWriter::Impl::programs_of(std::uint64_t epoch) {
   const std::lock_guard lock(mutex);
   std::vector<LogProgram> found;
-  // a change of program before the first tick counts, too
+  // the program may change before the first tick
   if (first_epoch && *first_epoch != epoch) found.push_back(programs.at(*first_epoch));
   first_epoch.reset();
   const auto wanted = programs.find(epoch);
@@ -77,7 +77,7 @@ std::vector<LogProgram> LogWriter::Impl::programs_of(std::uint64_t epoch) {
     return found;
   }
   found.push_back(std::move(wanted->second));
-  programs.erase(programs.begin(), std::next(wanted));  // older programs have run, or never will
+  programs.erase(programs.begin(), std::next(wanted));  // older programs are no longer needed
   return found;
 }
 
@@ -129,7 +129,7 @@ Result<std::unique_ptr<LogWriter>> LogWriter::open(const std::string& path, LogH
                                                    const LogOptions& options) {
   CATENA_CHECK(check_output(path, inputs));
   if (header.scene_text.size() > kMaxPayload / 2)
-    return Error{path + ": the scene's text is too long to be recorded: expected at most 32 MiB"};
+    return Error{path + ": the text of the scene is too long to record, expected at most 32 MiB"};
   std::error_code ignored;
   if (header.working_folder.empty()) header.working_folder = std::filesystem::current_path(ignored).string();
   if (header.started_unix_ns == 0)

@@ -9,10 +9,10 @@
 namespace catena::render {
 namespace {
 
-constexpr double kHairPt = 0.75;
-constexpr double kHaloShare = 0.09, kHaloLeastPx = 1;  // of the text's size
+constexpr double kHairlinePt = 0.75;
+constexpr double kHaloShare = 0.09, kMinHaloPx = 1;  // halo width: share of the text's size, minimum in pixels
 constexpr double kHaloAlpha = 0.75;
-constexpr double kDarkInk = 0.08;
+constexpr double kDarkGray = 0.08;
 
 double luminance(const Color& c) { return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b; }
 Color grey(double v) { return {float(v), float(v), float(v)}; }
@@ -31,21 +31,21 @@ Canvas::Canvas(const FramePacket& packet, Typesetter& typesetter) : typesetter_(
   size_ = frame.width > 0 ? Vec2(frame.width, frame.height) : Vec2(packet.width, packet.height);
   if (frame.width > 0) corner_ = {frame.x, frame.y};
   scale_ = packet.overlay.scale * std::min(size_.x, size_.y) / kImagePoints;
-  // transparent pictures end on paper more often than not
+  // images with a transparent background are usually placed on white paper
   const auto& b = packet.background;
   const bool light = b[3] < 0.5f || luminance({b[0], b[1], b[2]}) > 0.5;
-  foreground_ = grey(light ? kDarkInk : 1);
+  foreground_ = grey(light ? kDarkGray : 1);
   contrast_color_ = grey(light ? 1 : 0);
   typesetter_.set_family(packet.overlay.font);
 }
 
 Color Canvas::outline_color(const Color& text) { return luminance(text) > 0.5 ? grey(0) : grey(1); }
 
-double Canvas::hairline_width() const { return std::max(1.0, std::round(px(kHairPt))); }
+double Canvas::hairline_width() const { return std::max(1.0, std::round(px(kHairlinePt))); }
 
-TextExtent Canvas::measure(std::string_view text, const CanvasTextStyle& look) const {
-  TextExtent extent = typesetter_.measure(text, {px(look.size_pt), look.bold, 0});
-  if (look.rotated) std::swap(extent.width, extent.height);
+TextExtent Canvas::measure(std::string_view text, const CanvasTextStyle& style) const {
+  TextExtent extent = typesetter_.measure(text, {px(style.size_pt), style.bold, 0});
+  if (style.rotated) std::swap(extent.width, extent.height);
   return extent;
 }
 
@@ -112,26 +112,26 @@ void Canvas::ellipse(const Vec2& centre, const Vec2& axis, double along, double 
   s.size = {s.hi, ball ? 1.0f : 0.0f, 0.0f};
 }
 
-void Canvas::text(std::string_view text, const Vec2& at, Anchor anchor, const CanvasTextStyle& look) {
+void Canvas::text(std::string_view text, const Vec2& at, Anchor anchor, const CanvasTextStyle& style) {
   const Vec2 share = anchor_fraction(anchor);
-  // along the text and down across it
-  const Vec2 axis = look.rotated ? Vec2(0.0, -1.0) : Vec2(1.0, 0.0), down(-axis.y, axis.x);
-  const Vec2 text_share = look.rotated ? Vec2(1 - share.y, share.x) : share;
-  const double size_px = px(look.size_pt);
-  const TextLayout set = typesetter_.layout(text, {size_px, look.bold, text_share.x});
+  // unit vectors along the text and across it, downwards
+  const Vec2 axis = style.rotated ? Vec2(0.0, -1.0) : Vec2(1.0, 0.0), down(-axis.y, axis.x);
+  const Vec2 text_share = style.rotated ? Vec2(1 - share.y, share.x) : share;
+  const double size_px = px(style.size_pt);
+  const TextLayout set = typesetter_.layout(text, {size_px, style.bold, text_share.x});
   if (set.glyphs.empty()) return;
 
-  // pens stand on whole pixels across the line and on quarters along it
+  // text origins are rounded to whole pixels across the line and to quarter pixels along it
   const Vec2 origin(std::floor(at.x), std::floor(at.y)), rest = at - origin;
   const Vec2 corner(rest.x * axis.x + rest.y * axis.y - text_share.x * set.extent.width,
                     rest.x * down.x + rest.y * down.y - text_share.y * set.extent.height);
-  const Color color = text_color(look.color);
-  const double halo_px = std::max(kHaloLeastPx, kHaloShare * size_px);
+  const Color color = text_color(style.color);
+  const double halo_px = std::max(kMinHaloPx, kHaloShare * size_px);
   for (const bool halo : {true, false})
     for (const PlacedGlyph& g : set.glyphs) {
       const double along = std::round(4 * (corner.x + g.x)) / 4;
       add(OVERLAY_GLYPH, origin, axis, halo ? Paint{outline_color(color), kHaloAlpha} : Paint{color});
-      pending_glyphs_.push_back({shapes_.size() - 1, typesetter_.font(look.bold), g.glyph, size_px, halo ? halo_px : 0,
+      pending_glyphs_.push_back({shapes_.size() - 1, typesetter_.font(style.bold), g.glyph, size_px, halo ? halo_px : 0,
                                  int(std::floor(along)), int(std::lround(corner.y + g.y)), int(4 * (along - std::floor(along)))});
     }
 }
@@ -140,7 +140,7 @@ void Canvas::place_glyphs() {
   for (const PendingGlyph& pen : pending_glyphs_) {
     shared::OverlayShape& s = shapes_[pen.shape];
     const GlyphAtlas::Entry* entry = typesetter_.atlas().get(*pen.font, pen.glyph, pen.size_px, pen.subpixel_quarter, pen.halo_px);
-    if (entry == nullptr) continue;  // stays empty
+    if (entry == nullptr) continue;  // not rasterized: an empty quad
     s.lo = {float(pen.x + entry->left), float(pen.y - entry->top)};
     s.hi = s.lo + glm::vec2(float(entry->width), float(entry->height));
     s.texel = {float(entry->x), float(entry->y)};
@@ -150,7 +150,7 @@ void Canvas::place_glyphs() {
 const std::vector<shared::OverlayShape>& Canvas::finish() {
   const std::uint64_t generation = typesetter_.atlas().generation();
   place_glyphs();
-  // the atlas was full and started anew: what was placed before has moved
+  // the atlas was full and was cleared: glyphs placed before have moved
   if (typesetter_.atlas().generation() != generation) place_glyphs();
   return shapes_;
 }

@@ -54,7 +54,7 @@ class Canvas {
   static Color outline_color(const Color& text);  ///< black or white, whichever contrasts with the text color
 
   /// Returns width and height of a text, pixels; for a rotated text, of its rotated box.
-  TextExtent measure(std::string_view text, const CanvasTextStyle& look) const;
+  TextExtent measure(std::string_view text, const CanvasTextStyle& style) const;
 
   /// Adds a box. `radius`: corner radius; `stroke`: line width of an outline, 0: filled; pixels.
   void box(const Rect& rect, const Paint& paint, double radius = 0, double stroke = 0);
@@ -70,7 +70,7 @@ class Canvas {
   /// `ball`: shaded as a sphere.
   void ellipse(const Vec2& centre, const Vec2& axis, double along, double across, const Color& color, bool ball);
   /// Adds a text whose anchor point lies at `at`.
-  void text(std::string_view text, const Vec2& at, Anchor anchor, const CanvasTextStyle& look);
+  void text(std::string_view text, const Vec2& at, Anchor anchor, const CanvasTextStyle& style);
 
   /// Occlusion test of a shape: hidden where an opaque surface lies in front of `depth` (view depth minus the reference depth, world units)
   /// at the pixel of `position`.
@@ -122,7 +122,7 @@ struct BarLayout {
 /// Returns the layouts of the bars. Bars on one side are stacked from the edge of the image inwards, and below a title at the top.
 std::vector<BarLayout> layout_scalar_bars(const Canvas& canvas, const Overlay& overlay);
 /// Returns the position of a value along the bar: the pixel coordinate along its length at which the tick mark lies.
-double tick_position(const BarLayout& place, const ScalarBarItem& bar, double value);
+double tick_position(const BarLayout& layout, const ScalarBarItem& bar, double value);
 
 /// Adds the scalar bars and legends to the canvas.
 void draw_scalar_bars(Canvas& canvas, const Overlay& overlay);

@@ -7,12 +7,12 @@
 namespace catena::render {
 namespace {
 
-constexpr double kArrowShare = 0.37;    // of the square: an arrow's length
-constexpr double kRadiusShare = 0.045;  // of the arrow's length: the shaft's radius
+constexpr double kArrowShare = 0.37;    // arrow length / side of the square
+constexpr double kRadiusShare = 0.045;  // radius of the shaft / arrow length
 constexpr double kConeStart = 0.70, kConeRadius = 0.15;
 constexpr double kLetterGapPt = 8;
-constexpr double kAlongView = 0.3;  // shorter arrows than that share are seen from their end
-constexpr float kShade = 0.62f;     // a cone's base, seen from behind
+constexpr double kEndOnShare = 0.3;  // arrows with a shorter projection than this share are drawn end-on
+constexpr float kShade = 0.62f;      // brightness of a cone's base
 
 const Color kAxisColors[3] = {{0.90f, 0.20f, 0.18f}, {0.25f, 0.75f, 0.25f}, {0.25f, 0.45f, 0.95f}};
 
@@ -27,13 +27,13 @@ MarkerLayout layout_orientation_marker(const Canvas& canvas, const OrientationMa
 }
 
 void draw_orientation_marker(Canvas& canvas, const OrientationMarkerItem& marker, const Camera& camera) {
-  const MarkerLayout place = layout_orientation_marker(canvas, marker);
-  const double radius = kRadiusShare * place.arrow_length, wide = kConeRadius * place.arrow_length;
+  const MarkerLayout layout = layout_orientation_marker(canvas, marker);
+  const double radius = kRadiusShare * layout.arrow_length, wide = kConeRadius * layout.arrow_length;
 
   struct Arrow {
     int axis;
-    Vec2 along;      // in the picture, y down, of length sqrt(1 - towards^2)
-    double towards;  // the eye
+    Vec2 along;      // in the image, y down, of length sqrt(1 - towards^2)
+    double towards;  // component towards the camera
   };
   Arrow arrows[3];
   for (int i = 0; i < 3; ++i) arrows[i] = {i, {camera.right[i], -camera.up[i]}, camera.back[i]};
@@ -42,36 +42,37 @@ void draw_orientation_marker(Canvas& canvas, const OrientationMarkerItem& marker
   bool ball = false;
   for (const Arrow& arrow : arrows) {
     if (!ball && arrow.towards >= 0) {
-      canvas.ellipse(place.center, {1.0, 0.0}, 1.7 * radius, 1.7 * radius, {0.75f, 0.75f, 0.75f}, true);
+      canvas.ellipse(layout.center, {1.0, 0.0}, 1.7 * radius, 1.7 * radius, {0.75f, 0.75f, 0.75f}, true);
       ball = true;
     }
     const Color& color = kAxisColors[arrow.axis];
-    const double seen = std::hypot(arrow.along.x, arrow.along.y);
-    const Vec2 unit = seen > 1e-9 ? arrow.along / seen : Vec2(1.0, 0.0);
-    const Vec2 base = place.center + kConeStart * place.arrow_length * arrow.along, tip = place.center + place.arrow_length * arrow.along;
+    const double projected = std::hypot(arrow.along.x, arrow.along.y);
+    const Vec2 unit = projected > 1e-9 ? arrow.along / projected : Vec2(1.0, 0.0);
+    const Vec2 base = layout.center + kConeStart * layout.arrow_length * arrow.along,
+               tip = layout.center + layout.arrow_length * arrow.along;
     const double squeezed = std::max(0.05, std::fabs(arrow.towards)) * wide;
-    // what is nearer comes later: a cone that points away shows its base, one that points here hides it
+    // the part nearer to the camera is drawn last: the base of a cone that points away, else the cone over the shaft
     if (arrow.towards < 0) {
       canvas.cone(base, tip, wide, color);
       canvas.ellipse(base, unit, squeezed, wide, darker(color, kShade), false);
-      canvas.tube(place.center, base, radius, color);
+      canvas.tube(layout.center, base, radius, color);
     } else {
-      canvas.tube(place.center, base, radius, color);
+      canvas.tube(layout.center, base, radius, color);
       canvas.ellipse(base, unit, squeezed, wide, color, true);
       canvas.cone(base, tip, wide, color);
     }
   }
-  if (!ball) canvas.ellipse(place.center, {1.0, 0.0}, 1.7 * radius, 1.7 * radius, {0.75f, 0.75f, 0.75f}, true);
+  if (!ball) canvas.ellipse(layout.center, {1.0, 0.0}, 1.7 * radius, 1.7 * radius, {0.75f, 0.75f, 0.75f}, true);
 
-  // letters over all arrows; that of an axis along the view stands where the others are not
+  // letters over all arrows; the letter of an axis along the view is placed opposite to the others
   for (const Arrow& arrow : arrows) {
-    Vec2 aside = arrow.along;
-    if (std::hypot(aside.x, aside.y) < kAlongView) {
-      aside = arrow.along - arrows[0].along - arrows[1].along - arrows[2].along;
-      if (!(std::hypot(aside.x, aside.y) > 1e-3)) aside = {0.0, 1.0};
+    Vec2 offset = arrow.along;
+    if (std::hypot(offset.x, offset.y) < kEndOnShare) {
+      offset = arrow.along - arrows[0].along - arrows[1].along - arrows[2].along;
+      if (!(std::hypot(offset.x, offset.y) > 1e-3)) offset = {0.0, 1.0};
     }
-    aside /= std::hypot(aside.x, aside.y);
-    canvas.text(marker.names[std::size_t(arrow.axis)], place.center + place.arrow_length * arrow.along + canvas.px(kLetterGapPt) * aside,
+    offset /= std::hypot(offset.x, offset.y);
+    canvas.text(marker.names[std::size_t(arrow.axis)], layout.center + layout.arrow_length * arrow.along + canvas.px(kLetterGapPt) * offset,
                 Anchor::center, {12, true, false, {}});
   }
 }

@@ -22,10 +22,10 @@ constexpr std::uint32_t kOverlayBlendFloatShader[] = {
 #include "spirv/overlay_blend_float.comp.inc"
 };
 constexpr VkFormat kAtlasFormat = VK_FORMAT_R8_UNORM;
-constexpr VkFormat kOverlayFormat = VK_FORMAT_R8G8B8A8_UNORM;  // premultiplied
+constexpr VkFormat kOverlayFormat = VK_FORMAT_R8G8B8A8_UNORM;  // premultiplied alpha
 constexpr vk::ResourceUse kComputeBoth{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                                        VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT};
-constexpr double kSlackShare = 1e-3;  // of the distance: a label on a surface is not behind it
+constexpr double kSlackShare = 1e-3;  // share of the distance; keeps a label on a surface in front of it
 
 class OverlayPass final : public Pass {
  public:
@@ -65,7 +65,7 @@ Result<std::unique_ptr<Pass>> OverlayPass::create(vk::Device& device) {
   return std::unique_ptr<Pass>(std::move(self));
 }
 
-/// The opaque depth hides labels that ask for it.
+/// Reads the opaque depth if a label is hidden by occlusion.
 PassUse OverlayPass::use(const Frame& frame) const {
   const auto& labels = frame.packet.overlay.labels;
   const bool hides = std::any_of(labels.begin(), labels.end(), [](const LabelItem& label) { return label.hide_if_occluded; });
@@ -75,7 +75,7 @@ PassUse OverlayPass::use(const Frame& frame) const {
 Outcome OverlayPass::upload_atlas(vk::Device& device) {
   const GlyphAtlas& atlas = typesetter_.atlas();
   if (atlas_ && atlas_version_ == atlas.version()) return Done{};
-  // without a glyph: one row, never read
+  // an empty atlas: one row, never read
   const auto height = std::uint32_t(std::max(1, atlas.height()));
   if (!atlas_ || atlas_.info().extent.height != height) {
     vk::ImageInfo info;
@@ -91,12 +91,12 @@ Outcome OverlayPass::upload_atlas(vk::Device& device) {
   return Done{};
 }
 
-/// An image of the picture's size.
+/// Makes an image of the output's size.
 Outcome OverlayPass::prepare(Frame& frame) {
   return vk::ensure_image(frame.device, image_, kOverlayFormat, frame.packet.width, frame.packet.height);
 }
 
-/// The items as shapes; the camera is known now.
+/// Converts the items into shapes; called when the frame's camera is fixed.
 Outcome OverlayPass::lay_out(Frame& frame) {
   const Overlay& overlay = frame.packet.overlay;
   Canvas canvas(frame.packet, typesetter_);
@@ -124,7 +124,7 @@ Outcome OverlayPass::record(vk::Commands& commands, Frame& frame) {
   data.has_depth = hides;
   CATENA_CHECK(vk::write_uniform(frame.device, uniform_, data));
 
-  // the shapes, in order
+  // draw the shapes in order
   if (hides) commands.transition(targets.opaque_depth, vk::kShaderRead);
   const vk::ColorTarget into{&image_, std::array<float, 4>{0, 0, 0, 0}};
   commands.begin_pass({&into, 1}, {});
@@ -137,7 +137,7 @@ Outcome OverlayPass::record(vk::Commands& commands, Frame& frame) {
   commands.draw(6 * count_, 1);
   commands.end_pass();
 
-  // into the picture, in its format
+  // blend over the output, in its format
   const VkFormat format = targets.output.info().format;
   if (!blend_ || format != blend_format_) {
     vk::ComputeInfo blend;

@@ -8,10 +8,10 @@ namespace catena::render {
 namespace {
 
 constexpr double kDotPt = 2.2, kDotHaloAlpha = 0.75;
-const CanvasTextStyle kRowLook{11, false, false, {}}, kHeadLook{11, true, false, {}};
-constexpr double kPanelAlpha = 0.5, kPadPt = 8, kRowPt = 16, kColumnPt = 12, kMeterPt = 5, kLeastWidthPt = 120;
+const CanvasTextStyle kRowStyle{11, false, false, {}}, kHeadStyle{11, true, false, {}};
+constexpr double kPanelAlpha = 0.5, kPadPt = 8, kRowPt = 16, kColumnPt = 12, kMeterPt = 5, kMinWidthPt = 120;
 
-/// What a link does, as a colour: held, free, or in trouble.
+/// Returns the color of a link status word: OK, FREE, BAD_PROBE or another problem.
 Color word_color(const std::string& word, bool light) {
   if (word == "OK") return light ? Color{0.05f, 0.45f, 0.1f} : Color{0.45f, 0.9f, 0.5f};
   if (word == "FREE") return light ? Color{0.35f, 0.35f, 0.35f} : Color{0.75f, 0.75f, 0.75f};
@@ -19,7 +19,7 @@ Color word_color(const std::string& word, bool light) {
   return light ? Color{0.6f, 0.35f, 0} : Color{1, 0.78f, 0.35f};
 }
 
-/// The corner of a box of this size that its anchor puts at the picture's edge.
+/// Returns the top left corner of a box of this size that is anchored at the image's margin.
 Vec2 corner_of(const Canvas& canvas, Anchor anchor, const Vec2& size) {
   const Vec2 share = anchor_fraction(anchor), room = canvas.size() - size - Vec2(2 * canvas.px(kMarginPt));
   return Vec2(canvas.px(kMarginPt)) + share * room;
@@ -38,13 +38,13 @@ void draw_labels(Canvas& canvas, const Overlay& overlay, const Camera& camera, d
   std::vector<LabelItem> labels = overlay.labels;
   labels.insert(labels.end(), overlay.axis_labels.begin(), overlay.axis_labels.end());
   for (const LabelItem& label : labels) {
-    const auto place = project(camera, label.position);
-    if (!place) continue;
-    const Vec2 at =
-        Vec2(place->x, place->y) + Vec2(overlay.frame.width > 0 ? overlay.frame.x : 0, overlay.frame.width > 0 ? overlay.frame.y : 0);
-    // far outside nothing of it is seen, and floats run out
+    const auto projected = project(camera, label.position);
+    if (!projected) continue;
+    const Vec2 at = Vec2(projected->x, projected->y) +
+                    Vec2(overlay.frame.width > 0 ? overlay.frame.x : 0, overlay.frame.width > 0 ? overlay.frame.y : 0);
+    // positions far outside of the image are not visible and would exceed the float range
     if (at.x < -canvas.size().x || at.y < -canvas.size().y || at.x > 2 * canvas.size().x || at.y > 2 * canvas.size().y) continue;
-    if (label.hide_if_occluded) canvas.set_occlusion_test(Canvas::OcclusionTest{at, place->z - reference_depth});
+    if (label.hide_if_occluded) canvas.set_occlusion_test(Canvas::OcclusionTest{at, projected->z - reference_depth});
     if (label.show_dot) {
       const double r = canvas.px(kDotPt);
       const Color color = canvas.text_color(label.color);
@@ -62,24 +62,24 @@ void draw_status(Canvas& canvas, const StatusItem& status) {
   std::snprintf(force, sizeof force, "%.2f N", status.force_n);
   const double pad = canvas.px(kPadPt), row = canvas.px(kRowPt), column = canvas.px(kColumnPt);
 
-  // two columns
-  double names = canvas.measure("Force", kHeadLook).width, words = canvas.measure("00.00 N", kHeadLook).width;
-  words = std::max(words, canvas.measure(force, kHeadLook).width);
+  // widths of the two columns
+  double names = canvas.measure("Force", kHeadStyle).width, words = canvas.measure("00.00 N", kHeadStyle).width;
+  words = std::max(words, canvas.measure(force, kHeadStyle).width);
   for (const StatusItem::Row& r : status.rows) {
-    names = std::max(names, canvas.measure(r.name, kRowLook).width);
-    words = std::max(words, canvas.measure(r.status_text, kRowLook).width);
+    names = std::max(names, canvas.measure(r.name, kRowStyle).width);
+    words = std::max(words, canvas.measure(r.status_text, kRowStyle).width);
   }
-  const double inner = std::max(names + column + words, canvas.px(kLeastWidthPt)), meter = status.max_force_n > 0 ? row : 0;
-  const Vec2 size(inner + 2 * pad, 2 * pad + meter + row * double(status.rows.size()) + canvas.measure("N", kHeadLook).height);
+  const double inner = std::max(names + column + words, canvas.px(kMinWidthPt)), meter = status.max_force_n > 0 ? row : 0;
+  const Vec2 size(inner + 2 * pad, 2 * pad + meter + row * double(status.rows.size()) + canvas.measure("N", kHeadStyle).height);
   const Vec2 corner = corner_of(canvas, status.anchor, size);
   const bool light = canvas.foreground().r < 0.5f;
   canvas.box({corner.x, corner.y, size.x, size.y}, {canvas.contrast_color(), kPanelAlpha}, canvas.px(4));
 
-  // the force, its share of the largest, and the links
+  // force, its ratio to the maximum force, and the links
   const double left = corner.x + pad, right = left + inner;
   double y = corner.y + pad;
-  canvas.text("Force", {left, y}, Anchor::top_left, kHeadLook);
-  canvas.text(force, {right, y}, Anchor::top_right, kHeadLook);
+  canvas.text("Force", {left, y}, Anchor::top_left, kHeadStyle);
+  canvas.text(force, {right, y}, Anchor::top_right, kHeadStyle);
   if (meter > 0) {
     const double share = std::clamp(status.force_n / status.max_force_n, 0.0, 1.0), h = canvas.px(kMeterPt);
     const double top = y + row - 0.1 * canvas.px(kRowPt);
@@ -90,7 +90,7 @@ void draw_status(Canvas& canvas, const StatusItem& status) {
   }
   for (const StatusItem::Row& r : status.rows) {
     y += row;
-    CanvasTextStyle name = kRowLook, word = kRowLook;
+    CanvasTextStyle name = kRowStyle, word = kRowStyle;
     if (!r.is_active) name.color = word_color("FREE", light);
     word.color = word_color(r.is_active ? r.status_text : "FREE", light);
     canvas.text(r.name, {left, y}, Anchor::top_left, name);

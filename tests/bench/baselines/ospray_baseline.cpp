@@ -4,9 +4,9 @@
 ///   g++ -std=c++20 -O2 -I. -IPREFIX/include tests/bench/baselines/ospray_baseline.cpp -LPREFIX/lib -Wl,-rpath,PREFIX/lib -lospray
 ///     build/release/libcatena_engine_base.a -ljsoncpp -lfmt -ltbb -o ospray_peer
 /// mode: samplingRate=R pixelSamples=N [minContribution=C] [lights=1|2]      rays through the pixels' centres (filter `point`), two threads
-/// The volume is `structuredRegular`; its range of values is brought to 0 .. kScale, so that scivis, which leaves gradients below 1e-3
-/// unlit, lights all of them. Ambient light 0.2; a directional light of 0.7 along the view axis and, with lights=2, another one against it,
-/// as scivis lights one side only (the second takes 4 to 7 % of a shaded picture's time). It has no highlight on volumes.
+/// The volume is `structuredRegular`; its values are scaled to 0 .. kScale, because scivis does not shade gradients below 1e-3. Ambient
+/// light 0.2; a directional light of 0.7 along the view axis and, with lights=2, an opposite one, because scivis shades one side only (the
+/// second takes 4 to 7 % of a shaded image's time). Volumes have no highlight.
 #include <ospray/ospray_cpp.h>
 #include <ospray/ospray_cpp/ext/rkcommon.h>
 
@@ -30,26 +30,26 @@ constexpr float kScale = 1e4f;
 
 vec3f vec(const Vec3& v) { return {float(v.x), float(v.y), float(v.z)}; }
 
-/// The fewest nodes from lo to hi, up to `most`, that lie on all the points within a thousandth of the way from one to the next.
-int nodes_for(const std::vector<std::vector<double>>& points, double lo, double hi, int least, int most) {
-  for (int n = least; n < most; ++n)
+/// Smallest number of uniform nodes from lo to hi, up to `maximum`, that match all points within a thousandth of the node distance.
+int nodes_for(const std::vector<std::vector<double>>& points, double lo, double hi, int minimum, int maximum) {
+  for (int n = minimum; n < maximum; ++n)
     if (std::all_of(points.begin(), points.end(), [&](const auto& p) {
           const double at = (p[0] - lo) / (hi - lo) * (n - 1);
           return std::abs(at - std::round(at)) < 1e-3;
         }))
       return n;
-  return most;
+  return maximum;
 }
 
 class OsprayPeer : public peers::Peer {
  public:
   explicit OsprayPeer(const peers::Case& given) : given_(given), renderer_("scivis"), camera_("perspective") {
-    const auto [least, most] = std::minmax_element(given.values.begin(), given.values.end());
-    // the table ends where the points do: beyond them it is constant
+    const auto [minimum, maximum] = std::minmax_element(given.values.begin(), given.values.end());
+    // the table ends at the last point and is constant beyond it
     double lo = std::min(given.opacity.front()[0], given.colour.front()[0]), hi = std::max(given.opacity.back()[0], given.colour.back()[0]);
-    const double scale = double(kScale) / (double(*most) - double(*least));
+    const double scale = double(kScale) / (double(*maximum) - double(*minimum));
     values_ = given.values;
-    for (float& v : values_) v = float((double(v) - double(*least)) * scale);
+    for (float& v : values_) v = float((double(v) - double(*minimum)) * scale);
 
     ospray::cpp::Volume volume("structuredRegular");
     const vec3ul dims(std::size_t(given.dims[0]), std::size_t(given.dims[1]), std::size_t(given.dims[2]));
@@ -72,11 +72,11 @@ class OsprayPeer : public peers::Peer {
     for (int i = 0; i < opacity_nodes; ++i)
       extinctions.push_back(float(given.extinction(std::lerp(lo, hi, double(i) / (opacity_nodes - 1)))));
     const float densest = std::max(1e-6f, *std::max_element(extinctions.begin(), extinctions.end()));
-    for (float& e : extinctions) e /= densest;  // opacities are from 0 to 1
+    for (float& e : extinctions) e /= densest;  // scales opacities to 0..1
     ospray::cpp::TransferFunction transfer("piecewiseLinear");
     transfer.setParam("color", ospray::cpp::CopiedData(colours));
     transfer.setParam("opacity", ospray::cpp::CopiedData(extinctions));
-    transfer.setParam("value", rkcommon::math::range1f(float((lo - double(*least)) * scale), float((hi - double(*least)) * scale)));
+    transfer.setParam("value", rkcommon::math::range1f(float((lo - double(*minimum)) * scale), float((hi - double(*minimum)) * scale)));
     transfer.commit();
 
     ospray::cpp::VolumetricModel model(volume);
@@ -170,7 +170,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "OSPRay: its module cpu cannot be loaded\n");
     return 1;
   }
-  std::string failure;  // of OSPRay, which tells it beside the call
+  std::string failure;  // error message of OSPRay's callback
   int code = 0;
   {
     ospray::cpp::Device device("cpu");

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""How far a picture is from the converged one: the measures of render/image/image_error.h, for pictures [height, width, 4] of bytes, red, green,
-blue over black and alpha."""
+"""Error of an image against the converged one: the metrics of render/image/image_error.h, for images [height, width, 4] of bytes, red,
+green, blue over black and alpha."""
 import numpy as np
 from scipy import ndimage
 
@@ -20,7 +20,7 @@ def rmse(a, b):
 
 
 def top_hat(picture):
-    bright = picture[..., :3].sum(-1).astype(np.float32) / np.float32(3)  # as measure.h: differences of exactly THIN are common
+    bright = picture[..., :3].sum(-1).astype(np.float32) / np.float32(3)  # as in image_error.h: differences of exactly THIN are common
     least = ndimage.grey_erosion(bright, footprint=DISC, mode="constant", cval=np.inf)
     return bright - ndimage.grey_dilation(least, footprint=DISC, mode="constant", cval=-np.inf)
 
@@ -45,7 +45,7 @@ def picture_error(picture, converged):
 
 
 def flicker(frames, converged):
-    """The RMSE of the change of the difference from one frame to the next."""
+    """RMSE of the change of the difference from frame to frame."""
     square = count = 0
     for k in range(1, len(frames)):
         where = covered(frames[k], converged[k]) | covered(frames[k - 1], converged[k - 1])

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-/// What volume_peers.py asks of a program that it compares ("a peer"), for peers in C++:   PEER CASE.json
+/// Protocol between volume_peers.py and a compared program (a "peer"), for peers in C++:   PEER CASE.json
 ///
-/// CASE.json: "raw": a file of float32 beside it, x fastest, voxel (i, j, k) at the place (i, j, k); "dims": [nx, ny, nz];
-/// "colour": [[value, r, g, b], ...] and "opacity": [[value, alpha], ...], linear between points and constant beyond them, alpha being that
-/// of "unit" voxels; "shade": by the gradient, ambient 0.2, diffuse 0.7 on both sides, white specular 0.2 with power 20, a headlight;
-/// "view": {"elevation" and "fovy_deg" in degrees, "distance" in longest sides} around the middle of the box, z up, from -y at azimuth 0,
+/// CASE.json: "raw": a file of float32 in the same folder, x fastest, voxel (i, j, k) at position (i, j, k); "dims": [nx, ny, nz];
+/// "colour": [[value, r, g, b], ...] and "opacity": [[value, alpha], ...], linear between points and constant beyond them, with alpha per
+/// "unit" voxels; "shade": by the gradient, ambient 0.2, two-sided diffuse 0.7, white specular 0.2 with power 20, a headlight;
+/// "view": {"elevation" and "fovy_deg" in degrees, "distance" in longest sides} around the centre of the box, z up, from -y at azimuth 0,
 /// from +x at 90; "size": [width, height].
-/// Requests come as lines on the standard input: {"mode": "...", "azimuths": [degrees, ...], "picture": "path.npy", "warm": 1}. The peer
-/// draws `warm` pictures (1 where it is absent) that are not timed, then one an azimuth, keeps the last as bytes [height, width, 4], red,
-/// green, blue over black and alpha, row 0 at the top, rays through the pixels' centres, and answers with a line
-/// {"cpu_ms": [...], "wall_ms": [...], "picture": path, "note": "..."}, a number an azimuth, or {"error": "one sentence"}.
-/// What a mode needs before its first picture is made before the warm ones and not timed. One thread.
+/// Requests are lines on standard input: {"mode": "...", "azimuths": [degrees, ...], "picture": "path.npy", "warm": 1}. The peer
+/// draws `warm` images (default 1) that are not timed, then one per azimuth, saves the last as bytes [height, width, 4], red, green, blue
+/// over black and alpha, row 0 at the top, rays through the pixels' centres, and replies with a line
+/// {"cpu_ms": [...], "wall_ms": [...], "picture": path, "note": "..."}, one number per azimuth, or {"error": "message"}.
+/// The setup of a mode is done before the warm images and not timed. One thread.
 #pragma once
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -49,7 +49,7 @@ struct Case {
     const double far = distance * std::max({dims[0], dims[1], dims[2]});
     return center() + far * Vec3(std::sin(a) * std::cos(e), -std::cos(a) * std::cos(e), std::sin(e));
   }
-  /// Linear between the points of a curve, a voxel's length.
+  /// Extinction per voxel length, from linearly interpolated opacity.
   double extinction(double value) const {
     std::size_t i = 0;
     while (i < opacity.size() && opacity[i][0] <= value) ++i;
@@ -90,13 +90,13 @@ inline Result<Case> read_case(const std::string& path) {
 class Baseline {
  public:
   virtual ~Baseline() = default;
-  /// Called where the mode is another one than before, with the azimuth of the picture that is kept.
+  /// Called when the mode changes, with the azimuth of the saved image.
   virtual Outcome set_mode(const std::string& mode, double azimuth_deg) = 0;
-  /// Returns when the picture is finished.
+  /// Draws an image; returns when it is finished.
   virtual Outcome draw(double azimuth_deg) = 0;
-  /// The last picture, as the protocol has it.
+  /// The last image, in the protocol's format.
   virtual Result<std::vector<std::uint8_t>> read_image() = 0;
-  /// What the mode turned out to be; may be empty.
+  /// Description of the mode's settings; may be empty.
   virtual std::string note() { return {}; }
 };
 
@@ -111,7 +111,7 @@ inline Outcome write_npy(const std::string& path, const std::vector<std::uint8_t
   return Done{};
 }
 
-/// Answers one request; `mode` is that of the one before.
+/// Handles one request; `mode` is that of the previous request.
 inline Result<std::string> handle_request(Baseline& peer, const Case& given, const std::string& line, std::string& mode) {
   CATENA_TRY(const json::Node request, json::parse(line, "request"));
   CATENA_TRY(const std::string wanted, json::require_string(request, "mode"));
@@ -138,7 +138,7 @@ inline Result<std::string> handle_request(Baseline& peer, const Case& given, con
                      fmt::join(wall, ", "), json_string(path), json_string(peer.note()));
 }
 
-/// The whole program. `make` may keep a reference to the case.
+/// Main function of a peer. `make` may keep a reference to the case.
 inline int run_baseline(int argc, char** argv, const std::function<Result<std::unique_ptr<Baseline>>(const Case&)>& make) {
   const auto failed = [](const std::string& message) {
     fmt::print(stderr, "{}\n", message);

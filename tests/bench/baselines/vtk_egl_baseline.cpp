@@ -6,7 +6,7 @@
 ///     -ljsoncpp -lfmt -ltbb -lvtkRenderingVolumeOpenGL2-9.1 -lvtkRenderingVolume-9.1 -lvtkRenderingOpenGL2-9.1 -lvtkRenderingCore-9.1
 ///     -lvtkCommonExecutionModel-9.1 -lvtkCommonDataModel-9.1 -lvtkCommonCore-9.1 -lvtksys-9.1 -o vtk_egl_peer
 /// mode: "gpu STEP IMAGE_DISTANCE", as vtk_peer.py: step in voxels, distance of rays in pixels, neither jittered nor adjusted.
-/// The note says what draws. A picture is finished when the device says so (glFinish).
+/// The note names the device. An image is finished after glFinish.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <dlfcn.h>
@@ -35,7 +35,7 @@
 VTK_MODULE_INIT(vtkRenderingOpenGL2);
 VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2);
 
-// Debian's VTK loads OpenGL by a GLEW that then asks for an X display. This one, which is found before it, does without.
+// Debian's VTK loads OpenGL by GLEW's glewInit, which needs an X display. This replacement, found before it, does not.
 extern "C" unsigned glewInit() {
   constexpr unsigned kNoDisplay = 4;
   const auto all = reinterpret_cast<unsigned (*)()>(dlsym(RTLD_NEXT, "glewInit"));
@@ -47,7 +47,7 @@ namespace {
 
 using namespace catena;
 
-/// Makes a context of OpenGL current that has no window; the first device that can.
+/// Makes an OpenGL context without a window current, on the first device that supports it.
 Outcome make_context() {
   std::vector<EGLDisplay> displays;
   const auto list = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
@@ -90,10 +90,10 @@ class VtkPeer : public peers::Peer {
     property_->SetAmbient(0.2);
     property_->SetDiffuse(0.7);
     property_->SetSpecular(0.2);
-    property_->SetSpecularPower(80);  // of the half vector: 20 of the mirrored ray
+    property_->SetSpecularPower(80);  // power of the half vector, equivalent to 20 of the reflected ray
     renderer_->SetBackground(0, 0, 0);
     renderer_->SetBackgroundAlpha(0);
-    // no window asks whether the context is current, or makes it so
+    // without a window, these callbacks report the context as current
     window_->SetReadyForRendering(true);
     window_->AddObserver(vtkCommand::WindowIsCurrentEvent, this, &VtkPeer::is_current);
     window_->SetOffScreenRendering(1);

@@ -3,7 +3,7 @@
 """VTK as a peer of volume_peers.py (protocol: protocol.h):   vtk_peer.py CASE.json
 needs: python3-vtk9, python3-numpy, an X display (xvfb-run -a) and LIBGL_ALWAYS_SOFTWARE=1
 mode: MAPPER STEP IMAGE_DISTANCE, MAPPER being gpu (vtkOpenGLGPUVolumeRayCastMapper) or cpu (vtkFixedPointVolumeRayCastMapper, two threads);
-step in voxels, distance of rays in pixels. Not jittered: step and distance are locked."""
+step in voxels, distance of rays in pixels. No jitter: step and distance are fixed."""
 import json, os, resource, sys, time
 import numpy as np
 import vtk
@@ -32,7 +32,7 @@ class Scene:
         self.property.SetAmbient(.2)
         self.property.SetDiffuse(.7)
         self.property.SetSpecular(.2)
-        self.property.SetSpecularPower(80)  # of the half vector: 20 of the mirrored ray
+        self.property.SetSpecularPower(80)  # power of the half vector, equivalent to 20 of the reflected ray
         self.renderer, self.window = vtk.vtkRenderer(), vtk.vtkRenderWindow()
         self.renderer.SetBackground(0, 0, 0)
         self.renderer.SetBackgroundAlpha(0)
@@ -41,7 +41,7 @@ class Scene:
         self.window.SetMultiSamples(0)
         self.window.SetSize(*self.case["size"])
         self.window.AddRenderer(self.renderer)
-        # the fixed-point mapper multiplies the ambient share by that of the light, which is black otherwise; the other one does not
+        # the fixed-point mapper multiplies ambient by the light's ambient colour, which is black by default; the GPU mapper does not
         self.renderer.CreateLight()
         self.renderer.GetLights().GetItemAsObject(0).SetAmbientColor(1, 1, 1)
 

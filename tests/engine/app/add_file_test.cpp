@@ -8,7 +8,7 @@
 namespace catena::app {
 namespace add_file_test {
 
-TEST(AddFile, AFieldAndItsVolumeJoinUnderAFreeName) {
+TEST(AddFile, AddsAFieldAndItsVolumeUnderAnUnusedName) {
   const auto added =
       make_merge_edits(R"({"fields": {"density": {"analytic": "sphere"}}, "volumes": [{"field": "density"}]})", "/a/s.json",
                        R"({"fields": {"density": {"file": "x.vdb", "grid": "density"}}, "volumes": [{"field": "density", "shade": true}]})",
@@ -22,7 +22,7 @@ TEST(AddFile, AFieldAndItsVolumeJoinUnderAFreeName) {
   EXPECT_EQ(added->renames, (std::vector<std::pair<std::string, std::string>>{{"density", "density_2"}}));
 }
 
-TEST(AddFile, FilesElsewhereAreNamedWhole) {
+TEST(AddFile, FilesInAnotherFolderHaveAbsolutePaths) {
   const auto added =
       make_merge_edits("{}", "/a/s.json", R"({"fields": {"v": {"file": "x.vdb"}}, "streamlines": [{"field": "v"}]})", "/b/x.vdb.json");
   ASSERT_TRUE(added);
@@ -31,7 +31,7 @@ TEST(AddFile, FilesElsewhereAreNamedWhole) {
   EXPECT_EQ(added->edits[1].pointer, "/streamlines/-");
 }
 
-TEST(AddFile, ScenesThatAreNamedWithoutTheirFolderAreInTheCurrentOne) {
+TEST(AddFile, SceneNamesWithoutAFolderAreRelativeToTheCurrentFolder) {
   const char* added = R"({"fields": {"v": {"file": "x.vdb"}}})";
   const auto beside = make_merge_edits("{}", "s.json", added, "x.vdb.json");
   ASSERT_TRUE(beside);
@@ -42,7 +42,7 @@ TEST(AddFile, ScenesThatAreNamedWithoutTheirFolderAreInTheCurrentOne) {
   EXPECT_TRUE(make_merge_edits("{}", "sub/s.json", added, "x.vdb.json"));
 }
 
-TEST(AddFile, MeshesAreRenamedAlike) {
+TEST(AddFile, MeshesWithANameInUseAreRenamed) {
   const auto added = make_merge_edits(R"({"meshes": [{"name": "mesh", "file": "a.stl"}]})", "/a/s.json",
                                       R"({"meshes": [{"name": "mesh", "file": "b.stl"}]})", "/a/b.stl.json");
   ASSERT_TRUE(added);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Text and legends from the outside: scenes and bare files that ask for them, and a machine without a font.
+/// Text and legends in images: scenes and data files that request them, and a machine without a font.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -13,7 +13,7 @@ namespace annotate_test {
 using namespace catena;
 using render::Image8;
 
-/// Pixels in columns x0..x1 that differ between two pictures by more than a rounding.
+/// The number of pixels in columns x0..x1 that differ between two images by more than rounding.
 int changed(const Image8& a, const Image8& b, std::uint32_t x0, std::uint32_t x1) {
   int count = 0;
   for (std::uint32_t y = 0; y < a.height; ++y)
@@ -43,7 +43,7 @@ class AnnotateCommand : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(AnnotateCommand, ABareFileTakesATitleABarAndAMarker) {
+TEST_F(AnnotateCommand, ADataFileIsDrawnWithATitleAScalarBarAndAnOrientationMarker) {
   const auto made = test::run_catena({"generate", "gaussian", "-o", folder_ / "g.vdb", "--resolution", "24"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const Image8 plain = picture({folder_ / "g.vdb", "--colormap", "magma"});
@@ -54,14 +54,14 @@ TEST_F(AnnotateCommand, ABareFileTakesATitleABarAndAMarker) {
   EXPECT_EQ(changed(plain, full, 50, 80), 0) << "and nothing else";
 }
 
-TEST_F(AnnotateCommand, AScalarBarNeedsColours) {
+TEST_F(AnnotateCommand, AScalarBarWithoutColoursIsRefused) {
   test::write_file(folder_ / "s.json", R"({"fields": {}})");
   const auto run = test::run_catena({"render", folder_ / "s.json", "-o", folder_ / "o.png", "--scalar-bar"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.err.find("--scalar-bar: nothing here has colours"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("--scalar-bar: nothing in the scene is coloured by values"), std::string::npos) << run.err;
 }
 
-TEST_F(AnnotateCommand, WithoutAFontThereIsOneSentenceAndNoText) {
+TEST_F(AnnotateCommand, WithoutAFontTextIsLeftOutWithOneNote) {
   test::write_file(folder_ / "s.json", R"({"fields": {}, "title": "unseen", "orientation_marker": true})");
   test::write_file(folder_ / "plain.json", R"({"fields": {}})");
   test::write_file(folder_ / "fonts.conf", "<?xml version=\"1.0\"?><!DOCTYPE fontconfig SYSTEM \"fonts.dtd\"><fontconfig></fontconfig>");

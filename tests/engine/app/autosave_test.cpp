@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Nothing that was done in the window is lost: by a kill, by a key, by the window's close button.
+// Autosave keeps unsaved edits when the window is killed, closed by a key or closed by its close button.
 #include "engine/app/viewer/scene/autosave.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace viewer_draft_test {
+namespace autosave_test {
 
 namespace fs = std::filesystem;
 
@@ -35,7 +35,7 @@ std::vector<std::string> drafts_in(const std::string& folder) {
   return found;
 }
 
-/// XDG_STATE_HOME for as long as it lives.
+/// Sets XDG_STATE_HOME for the lifetime of the object.
 class StateHome {
  public:
   explicit StateHome(const std::string& path) {
@@ -53,7 +53,7 @@ class StateHome {
   std::optional<std::string> before_;
 };
 
-TEST(Autosave, OfADataFileLiesInTheUsersFolderUntilItsSceneIsSaved) {
+TEST(Autosave, ADataFilesDraftLiesInTheStateFolderUntilItsSceneIsSaved) {
   const test::TemporaryFolder data, other, home;
   const StateHome state(home / "state");
   const std::string scene = data / "head.nii.json", unsaved = home / "state/catena/unsaved";
@@ -70,7 +70,7 @@ TEST(Autosave, OfADataFileLiesInTheUsersFolderUntilItsSceneIsSaved) {
   EXPECT_EQ(left->text, "one");
   remove_orphaned_autosave(*left);
   EXPECT_TRUE(drafts_in(unsaved).empty());
-  // once the person has put a scene there
+  // A draft is written next to the scene when a scene file exists there.
   test::write_file(scene, "{}");
   Autosave draft;
   ASSERT_TRUE(draft.save_text(scene, "two"));
@@ -78,7 +78,7 @@ TEST(Autosave, OfADataFileLiesInTheUsersFolderUntilItsSceneIsSaved) {
   draft.remove();
 }
 
-TEST(Autosave, IsWrittenWholeAndFoundOnceItsProgramHasEnded) {
+TEST(Autosave, IsWrittenAtomicallyAndFoundAfterItsProcessEnds) {
   const test::TemporaryFolder folder;
   const std::string scene = folder / "a.json";
   test::write_file(scene, kScene);
@@ -93,7 +93,7 @@ TEST(Autosave, IsWrittenWholeAndFoundOnceItsProgramHasEnded) {
     ASSERT_EQ(::stat(files[0].c_str(), &about), 0);
     EXPECT_EQ(about.st_mode & 0777u, 0600u);
     EXPECT_FALSE(find_orphaned_autosave(scene)) << "its program runs";
-    // another window on the same scene keeps its own
+    // Another window on the same scene writes a draft of its own.
     Autosave other;
     ASSERT_TRUE(other.save_text(scene, "other"));
     EXPECT_EQ(drafts_in(folder.path()).size(), 2u);
@@ -109,7 +109,7 @@ TEST(Autosave, IsWrittenWholeAndFoundOnceItsProgramHasEnded) {
   EXPECT_TRUE(drafts_in(folder.path()).empty());
 }
 
-TEST(Autosave, OfAProgramThatIsKilledTheLastTextIsLeft) {
+TEST(Autosave, AKilledProcessLeavesItsLastText) {
   const test::TemporaryFolder folder;
   const std::string scene = folder / "a.json";
   test::write_file(scene, kScene);
@@ -125,7 +125,7 @@ TEST(Autosave, OfAProgramThatIsKilledTheLastTextIsLeft) {
   EXPECT_EQ(left->text, std::string(9000, 'x'));
 }
 
-TEST(Autosave, AnotherSceneTakesItsPlaceAndWhatCannotBeWrittenIsSaid) {
+TEST(Autosave, AnotherSceneReplacesTheDraftAndWriteErrorsAreReported) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "a.json", kScene);
   test::write_file(folder / "b.json", kScene);
@@ -141,7 +141,7 @@ TEST(Autosave, AnotherSceneTakesItsPlaceAndWhatCannotBeWrittenIsSaid) {
   EXPECT_NE(none.error().message.find("cannot write"), std::string::npos);
 }
 
-TEST(Autosave, WhatSomebodyPutThereIsNotOffered) {
+TEST(Autosave, LinksPipesAndOtherNamesAreNotOffered) {
   const test::TemporaryFolder folder;
   const std::string scene = folder / "a.json", name = scene + ".unsaved-0123456789ab";
   test::write_file(folder / "secret", "secret");
@@ -167,25 +167,25 @@ class ViewerAutosave : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-// A change without panels: the moved view is saved under another name, and undone.
+// An edit without panels: changes the view, saves the scene under another name, and undoes the change.
 constexpr const char* kChange =
     "keys o ctrl+shift+s; sleep 0.3; xdotool type --delay 60 'copy'; keys Return; written copy.json\n"
     "keys ctrl+z; titled 'copy.json [^ ]'\n";
 
-TEST_F(ViewerAutosave, IsOfferedAfterTheProgramWasKilled) {
+TEST_F(ViewerAutosave, IsOfferedAfterTheProcessWasKilled) {
   const int code =
       test::drive_windows(folder_, "view flow.json --size 900x600\n" + std::string(kChange) +
                                        "until_ sh -c 'ls copy.json.unsaved-*' || echo 'never kept'\n"
                                        "kill -9 $V; wait $V\n"
                                        "cp copy.json saved.json\n"
-                                       // later: nothing changes, and it is offered again
+                                       // Later: nothing changes, and the draft is offered again.
                                        "view copy.json --size 900x600\nsleep 2; keys Escape ctrl+q; wait $V || echo 'bad end'\n"
                                        "cmp copy.json saved.json || echo changed\nls copy.json.unsaved-* || echo 'lost'\n"
-                                       // restore, save
+                                       // Restore, then save.
                                        "view copy.json --size 900x600\nsleep 2; keys Return; titled 'copy.json [^ ]'\n"
                                        "keys ctrl+s; titled 'copy.json  '; keys ctrl+q; wait $V || echo 'bad end'\n"
                                        "ls copy.json.unsaved-* 2> /dev/null && echo 'still there'\n"
-                                       // nothing is asked any more
+                                       // No draft is offered after the save.
                                        "view copy.json --size 900x600\nsleep 2; keys ctrl+q; wait $V\nexit $?\n");
   EXPECT_EQ(code, 0) << log();
   for (const char* bad : {"never", "lost", "changed", "bad end", "still there"}) EXPECT_FALSE(logged(bad)) << bad << "\n" << log();
@@ -193,12 +193,12 @@ TEST_F(ViewerAutosave, IsOfferedAfterTheProgramWasKilled) {
   EXPECT_NE(test::read_file(folder_ / "saved.json"), kScene);
 }
 
-TEST_F(ViewerAutosave, IsKeptWhereAnInterruptEndsTheWindowAndGoesWhereThePersonDiscards) {
+TEST_F(ViewerAutosave, IsKeptAfterAnInterruptAndRemovedWhenDiscarded) {
   const int code = test::drive_windows(
       folder_, "view flow.json --size 900x600\n" + std::string(kChange) +
                    "until_ sh -c 'ls copy.json.unsaved-*' || echo 'never kept'\n"
                    "kill -TERM $V; wait $V\nls copy.json.unsaved-* || echo 'lost'\n"
-                   // discarded by a click on the second button, or by the keyboard: right of Restore
+                   // The draft is discarded with the second button, to the right of Restore.
                    "view copy.json --size 900x600\nsleep 2; keys Return; titled 'copy.json [^ ]'\n"
                    "keys ctrl+q; sleep 0.3; keys Escape ctrl+z; titled 'copy.json  '; keys ctrl+q; wait $V || echo 'bad end'\n"
                    "ls copy.json.unsaved-* 2> /dev/null && echo 'still there'\nexit 0\n");
@@ -206,24 +206,24 @@ TEST_F(ViewerAutosave, IsKeptWhereAnInterruptEndsTheWindowAndGoesWhereThePersonD
   for (const char* bad : {"never", "lost", "bad end", "still there"}) EXPECT_FALSE(logged(bad)) << bad << "\n" << log();
 }
 
-// before: "saved", and what somebody else had written was gone
-TEST_F(ViewerAutosave, WhatAnotherProgramHasWrittenIsNotReplacedUnasked) {
+// Saving must not silently replace what another program wrote to the file.
+TEST_F(ViewerAutosave, AFileChangedByAnotherProgramIsNotReplacedWithoutAsking) {
   const int code = test::drive_windows(
       folder_,
       "view flow.json --size 900x600\nkeys o\n"
       "sed 's/circle/saddle/' flow.json > theirs.json; cp theirs.json flow.json\n"
       "keys ctrl+s; sleep 0.5; keys Escape; sleep 0.3; cmp flow.json theirs.json || echo 'replaced'\n"
-      // Save as is what Enter does
+      // Enter chooses Save as.
       "keys ctrl+s; sleep 0.5; keys Return; sleep 0.5; keys ctrl+a; xdotool type --delay 60 'mine'; keys Return; written mine.json\n"
       "cmp flow.json theirs.json || echo 'replaced'\n"
-      // a scene that is removed is not made again unasked
+      // A scene file that was removed is not written again without asking.
       "titled 'mine.json'; rm mine.json; keys ctrl+s; sleep 0.5; ls mine.json 2> /dev/null && echo 'made again'\n"
       "kill -TERM $V; wait $V; exit 0\n");
   EXPECT_EQ(code, 0) << log();
   for (const char* bad : {"never", "replaced", "made again"}) EXPECT_FALSE(logged(bad)) << bad << "\n" << log();
 }
 
-TEST_F(ViewerAutosave, QuitAsksWhileItRecordsAndNoOtherKeyQuits) {
+TEST_F(ViewerAutosave, QuitAsksDuringARecordingAndOnlyCtrlQQuits) {
   ASSERT_EQ(test::drive_window(folder_, "flow.json --size 900x600 --record run.catlog",
                                "titled 'recording'\n"
                                "keys q Q Escape Escape Escape; kill -0 $V && echo 'after Q'\n"
@@ -237,8 +237,8 @@ TEST_F(ViewerAutosave, QuitAsksWhileItRecordsAndNoOtherKeyQuits) {
   EXPECT_TRUE(test::exists(folder_ / "run.catlog"));
 }
 
-// before: the last ticks were missing, as after a crash
-TEST_F(ViewerAutosave, ARecordingIsWholeWhereATerminationEndsTheWindow) {
+// A recording must contain its last ticks when a signal ends the window.
+TEST_F(ViewerAutosave, ARecordingIsCompleteAfterSigterm) {
   ASSERT_EQ(test::drive_windows(folder_,
                                 "view flow.json --size 900x600 --record run.catlog\ntitled 'recording'; sleep 0.5\n"
                                 "kill -TERM $V; wait $V; exit 0\n"),
@@ -273,5 +273,5 @@ TEST_F(ViewerAutosave, EscapeClosesAMenuFirst) {
   EXPECT_LT(differing(*after), 200);
 }
 
-}  // namespace viewer_draft_test
+}  // namespace autosave_test
 }  // namespace catena::app

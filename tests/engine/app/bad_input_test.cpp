@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Every kind of bad input, from the outside: exit code 2, one clear line on stderr, no output file.
+/// Bad input on the command line: exit code 2, one line on stderr, and no output file.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,8 +13,8 @@ using namespace catena;
 
 struct Bad {
   const char* name;
-  std::string scene;                 ///< the scene's text
-  std::vector<std::string> expects;  ///< parts of the message
+  std::string scene;                 ///< the scene file's text
+  std::vector<std::string> expects;  ///< expected parts of the message
 };
 
 void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
@@ -22,7 +22,7 @@ void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
 constexpr const char* kProbe = "t,x,y,z\n0,0.1,0,0\n0.001,0.2,0,0\n";
 
 void expect_one_line_and_no_file(const test::ProgramResult& run, const std::string& output, const std::vector<std::string>& expects) {
-  // a full disk is the machine's failure
+  // A full disk is an error of the machine: exit code 1.
   EXPECT_EQ(run.exit_code, run.err.find("No space left on device") != std::string::npos ? 1 : 2) << run.err;
   EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
   EXPECT_TRUE(run.err.starts_with("catena: ")) << run.err;
@@ -155,7 +155,7 @@ class BadArguments : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(BadArguments, Generate) {
+TEST_F(BadArguments, GenerateRefusesBadOptions) {
   const std::string o = folder_ / "o.vdb";
   refused({"generate", "spere", "-o", o, "--resolution", "8"}, o, {"spere", "sphere"});
   refused({"generate", "sphere", "-o", o, "--resolution", "1"}, o, {"resolution"});
@@ -175,7 +175,7 @@ TEST_F(BadArguments, Generate) {
   refused({"generate", "circle", "-o", o, "--resolution", "4", "--direction", "1", "0", "0"}, o, {"direction"});
 }
 
-TEST_F(BadArguments, OutputsThatCannotBe) {
+TEST_F(BadArguments, UnwritableOutputsAreRefused) {
   const std::string s = folder_ / "s.json", p = folder_ / "p.csv";
   refused({"replay", s, "--probe", p, "-o", folder_ / "none/o.csv"}, folder_ / "none/o.csv", {"none"});
   refused({"replay", s, "--probe", p, "-o", "/dev/full"}, {}, {"/dev/full", "space"});
@@ -191,7 +191,7 @@ TEST_F(BadArguments, OutputsThatCannotBe) {
   EXPECT_EQ(test::read_file(p), kProbe) << "an input was harmed";
 }
 
-TEST_F(BadArguments, TraceRenderInfo) {
+TEST_F(BadArguments, TraceRenderAndInfoRefuseBadArguments) {
   const std::string s = folder_ / "s.json", seeds = folder_ / "seeds.csv", o = folder_ / "o.csv";
   refused({"trace", s, "--field", "q", "--seeds", seeds, "-o", o}, o, {"\"q\"", "s, v"});
   refused({"trace", s, "--field", "s", "--seeds", seeds, "-o", o}, o, {"vector"});
@@ -214,7 +214,7 @@ TEST_F(BadArguments, TraceRenderInfo) {
   refused({}, {}, {});
 }
 
-// before: an abort, or 0 that nobody meant, or a bound of 309 digits
+// An empty number must not abort the program or be read as 0.
 TEST_F(BadArguments, AnEmptyNumberIsRefusedByEveryOption) {
   const std::string s = folder_ / "s.json", seeds = folder_ / "seeds.csv", o = folder_ / "o.csv", png = folder_ / "o.png";
   const std::string empty = "the value is empty; a number was expected";
@@ -230,7 +230,7 @@ TEST_F(BadArguments, AnEmptyNumberIsRefusedByEveryOption) {
   refused({"feel", s, "--seconds", ""}, {}, {"--seconds", empty});
 }
 
-TEST(UnknownWords, WhatNothingKnowsIsNamedWithTheNearestThatThereIs) {
+TEST(UnknownWords, UnknownCommandsAndOptionsSuggestTheNearestName) {
   const auto says = [](const std::vector<std::string>& words) {
     const test::ProgramResult run = test::run_catena(words);
     EXPECT_EQ(run.exit_code, 2);

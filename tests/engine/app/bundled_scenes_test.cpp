@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The scenes of assets/scenes work in a fresh clone: where nothing but the folder `assets` is there, every one is drawn, and names no file
-/// but those beside it and those of packages that `./run` installs.
+/// The scenes of assets/scenes work in a fresh clone: each is drawn with the folder `assets` alone, and refers only to files in that folder
+/// and to files of packages that `./run` installs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,12 +13,12 @@
 #include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
-namespace scenes_test {
+namespace bundled_scenes_test {
 
 using namespace catena;
 namespace fs = std::filesystem;
 
-/// The scenes that need no measured data, without folder and ending.
+/// The names of the scenes that need no measured data, without folder and extension.
 std::vector<std::string> scene_names() {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(test::source_dir() + "/assets/scenes"))
@@ -33,7 +33,7 @@ std::vector<std::string> packages() {
   return {std::istream_iterator<std::string>(words), std::istream_iterator<std::string>()};
 }
 
-/// Every object of the scene that names a file.
+/// Finds each object of the scene that names a file.
 void find_files(const json::Node& node, std::vector<std::pair<const json::Node*, std::string>>& found) {
   for (const char* key : {"file", "transfer", "firmware"})
     if (const json::Node* file = node.find(key)) found.push_back({&node, file->string});
@@ -41,16 +41,16 @@ void find_files(const json::Node& node, std::vector<std::pair<const json::Node*,
   for (const json::Node& item : node.items) find_files(item, found);
 }
 
-/// The share of pixels that do not have the picture's most frequent colour.
+/// The fraction of pixels that differ from the image's most frequent color.
 double covered(const render::Image8& picture) {
   std::map<std::array<std::uint8_t, 3>, int> count;
-  int most = 0;
+  int max_count = 0;
   for (std::uint32_t y = 0; y < picture.height; ++y)
     for (std::uint32_t x = 0; x < picture.width; ++x) {
       const std::uint8_t* p = picture.pixel(x, y);
-      most = std::max(most, ++count[{p[0], p[1], p[2]}]);
+      max_count = std::max(max_count, ++count[{p[0], p[1], p[2]}]);
     }
-  return 1 - static_cast<double>(most) / (picture.width * picture.height);
+  return 1 - static_cast<double>(max_count) / (picture.width * picture.height);
 }
 
 class BundledScenes : public testing::TestWithParam<std::string> {};
@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Assets, BundledScenes, testing::ValuesIn(scene_names())
   return name;
 });
 
-TEST_P(BundledScenes, IsDrawnWhereOnlyTheAssetsAre) {
+TEST_P(BundledScenes, IsDrawnFromTheAssetsFolderAlone) {
   const test::TemporaryFolder clone;
   fs::copy(test::source_dir() + "/assets", clone / "assets", fs::copy_options::recursive);
   const std::string scene = clone / ("assets/scenes/" + GetParam() + ".json"), assets = clone / "assets/";
@@ -93,12 +93,12 @@ TEST_P(BundledScenes, IsDrawnWhereOnlyTheAssetsAre) {
   EXPECT_GT(covered(*picture), 0.1);
 }
 
-TEST(MissingPackages, AMissingFileOfAPackageNamesThePackage) {
+TEST(MissingPackages, AMissingFileErrorNamesItsPackage) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", R"({"fields": {"mr": {"file": "/nowhere/brain.nii.gz", "package": "mricron-data"}}})");
   const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "o.png"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.err.find("the Debian package \"mricron-data\" brings it"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("the Debian package \"mricron-data\" contains it"), std::string::npos) << run.err;
 }
 
-}  // namespace scenes_test
+}  // namespace bundled_scenes_test

@@ -7,11 +7,11 @@
 #include <numbers>
 
 namespace catena::app {
-namespace camera_paths_test {
+namespace camera_motion_test {
 
 render::View view() { return {{0.0, -10.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 30, false, 4}; }
 
-TEST(Fly, ManySmallStepsMakeTheWayOfOneLargeOne) {
+TEST(Fly, ManySmallStepsCoverTheDistanceOfOneLargeStep) {
   FlyKeys keys;
   keys.forward = keys.right = true;
   render::View one = view(), many = view();
@@ -20,26 +20,26 @@ TEST(Fly, ManySmallStepsMakeTheWayOfOneLargeOne) {
   for (int i = 0; i < 50; ++i) fly(many, f2, keys, 8, 1, 0.01);
   EXPECT_NEAR(norm(one.position - many.position), 0, 1e-12);
   EXPECT_NEAR(norm(f1.velocity - f2.velocity), 0, 1e-12);
-  // two keys are no faster than one, and the target comes along
+  // Two keys are no faster than one, and the target moves with the camera.
   EXPECT_LT(norm(f1.velocity), kFlyDiagonalsPerS * 8);
   EXPECT_NEAR(norm((one.target - one.position) - (view().target - view().position)), 0, 1e-12);
 }
 
-TEST(Fly, TheSpeedIsAShareOfTheSceneAndFastIsFourTimesIt) {
+TEST(Fly, TheSpeedScalesWithTheSceneAndFastIsFourTimesAsFast) {
   for (const bool fast : {false, true}) {
     FlyKeys keys;
     keys.forward = true;
     keys.fast = fast;
     render::View v = view();
     Flight flight;
-    fly(v, flight, keys, 8, 1, 1);  // settles
+    fly(v, flight, keys, 8, 1, 1);  // reaches its steady speed
     const double from = v.position.y;
     fly(v, flight, keys, 8, 1, 1);
     EXPECT_NEAR(v.position.y - from, (fast ? 4 : 1) * kFlyDiagonalsPerS * 8, 1e-2);
   }
 }
 
-TEST(Fly, ItGlidesToRestWhenTheKeysAreLetGo) {
+TEST(Fly, TheCameraGlidesToRestWhenTheKeysAreReleased) {
   FlyKeys keys;
   keys.up = true;
   render::View v = view();
@@ -54,7 +54,7 @@ TEST(Fly, ItGlidesToRestWhenTheKeysAreLetGo) {
   EXPECT_EQ(v.position, at);
 }
 
-TEST(Fly, AnOrthographicPictureGrowsInstead) {
+TEST(Fly, AnOrthographicCameraZoomsInstead) {
   render::View v = view();
   v.orthographic = true;
   FlyKeys keys;
@@ -65,7 +65,7 @@ TEST(Fly, AnOrthographicPictureGrowsInstead) {
   EXPECT_EQ(v.position, view().position);
 }
 
-TEST(Fly, LookingTurnsTheTargetAboutTheEye) {
+TEST(Fly, LookingAroundRotatesTheTargetAboutTheCamera) {
   render::View v = view();
   look_around(v, 0.5 * std::numbers::pi, 0);
   EXPECT_NEAR(norm(v.target - Vec3(10, -10, 0)), 0, 1e-12) << "to the right";
@@ -79,7 +79,7 @@ TEST(Fly, LookingTurnsTheTargetAboutTheEye) {
   EXPECT_GT(norm(cross(v.target - v.position, v.up)), 0.1) << "short of the pole";
 }
 
-TEST(Turntable, ItGoesRoundInItsTime) {
+TEST(Turntable, CompletesATurnInItsPeriod) {
   render::View v = view();
   const double lap = 2 * std::numbers::pi / kTurntableRadPerS;
   advance_turntable(v, 0.5 * lap);
@@ -88,5 +88,5 @@ TEST(Turntable, ItGoesRoundInItsTime) {
   EXPECT_NEAR(norm(v.position - view().position), 0, 1e-9);
 }
 
-}  // namespace camera_paths_test
+}  // namespace camera_motion_test
 }  // namespace catena::app

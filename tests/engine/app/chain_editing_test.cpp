@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the chain and widget panels write into the scene's text.
+// Edits of the scene's text by the chain and widget panels.
 #include "engine/app/viewer/edit/chain_editing.h"
 #include "engine/scene/ruler.h"
 
@@ -16,7 +16,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace chain_edit_test {
+namespace chain_editing_test {
 
 constexpr const char* kScene = R"({
   // the flow
@@ -38,7 +38,7 @@ std::vector<std::string> names(const scene::Scene& scene) {
   return out;
 }
 
-TEST(ChainEdit, RowsAreTheScenesItemsWithTheirLinksOfTheProgram) {
+TEST(ChainEdit, RowsAreTheChainItemsWithTheirProgramLinks) {
   const Fixture f;
   const auto rows = make_chain_rows(f.host->scene(), {"line", "skin_surface", "skin_direction", "skin_friction"});
   ASSERT_EQ(rows.size(), 2u);
@@ -49,7 +49,7 @@ TEST(ChainEdit, RowsAreTheScenesItemsWithTheirLinksOfTheProgram) {
   EXPECT_EQ(rows[1].pointer("level"), "/chain/1/level");
 }
 
-TEST(ChainEdit, EveryTypeOfLinkBeginsWithKeysThatMakeAProgram) {
+TEST(ChainEdit, ANewLinkOfEveryTypeBuildsAProgram) {
   for (const std::string& type : link_types()) {
     Fixture f(R"({"fields": {"flow": {"analytic": "circle"}, "ball": {"analytic": "sphere"}}})");
     const auto link = make_link_json(f.host->scene(), type, Vec3(0.5, 0.25, 0.1), 4);
@@ -60,11 +60,11 @@ TEST(ChainEdit, EveryTypeOfLinkBeginsWithKeysThatMakeAProgram) {
     }
     if (type == "curves" || type == "points") {
       ASSERT_FALSE(link);
-      EXPECT_EQ(link.error().message, type + " cannot be felt, for the scene has none");
+      EXPECT_EQ(link.error().message, type + " cannot be felt: the scene has none");
       continue;
     }
     ASSERT_TRUE(link) << type << link.error().message;
-    // twice: the second one gets a name of its own
+    // The second link of a type gets a unique name.
     const Outcome added = f.host->set("/chain/-", *link, "add");
     ASSERT_TRUE(added) << type << ": " << *link << ": " << added.error().message;
     const auto second = make_link_json(f.host->scene(), type, Vec3(0.5, 0.25, 0.1), 4);
@@ -79,9 +79,9 @@ TEST(ChainEdit, EveryTypeOfLinkBeginsWithKeysThatMakeAProgram) {
   EXPECT_EQ(link.error().message, "a streamline needs a vector field, which the scene does not have");
 }
 
-TEST(ChainEdit, KeysThatAreAddedHaveValuesThatCanBeRead) {
+TEST(ChainEdit, AddedKeysHaveValidValues) {
   for (const std::string& type : link_types()) {
-    if (type == "mesh" || type == "curves" || type == "points") continue;  // which need a file
+    if (type == "mesh" || type == "curves" || type == "points") continue;  // these need a file
     Fixture f(R"({"fields": {"flow": {"analytic": "circle"}, "ball": {"analytic": "sphere"}}})");
     const Vec3 probe(0.5, 0.25, 0.1);
     ASSERT_TRUE(f.host->set("/chain/-", *make_link_json(f.host->scene(), type, probe, 4), "add"));
@@ -91,7 +91,7 @@ TEST(ChainEdit, KeysThatAreAddedHaveValuesThatCanBeRead) {
     });
     for (const schema::Key& key : link_type_keys(type)) {
       const ChainRow row = make_chain_rows(f.host->scene(), {})[0];
-      // one of the two excludes the other
+      // Excludes keys that contradict each other.
       if (row.node.find(key.name) != nullptr || key.name == "coefficient" || key.name == "method") continue;
       const auto edits = make_add_key_edits(f.host->scene(), row, key, probe, 4);
       if (edits.empty()) continue;
@@ -109,21 +109,21 @@ constexpr const char* kDrawn = R"({
                   {"field": "other", "level": {"widget": "iso"}}]
 })";
 
-/// The link's field and level as its text has them.
+/// The link's field and level as they are written in its text.
 std::pair<std::string, std::string> surface_of(const json::Node& link) {
   const json::Node* level = link.find("level");
   return {scene::level_field_name(link), level == nullptr ? "" : json::serialize_node(*level)};
 }
 
-TEST(ChainEdit, WhatIsAddedLiesOnTheSurfaceThatIsDrawn) {
+TEST(ChainEdit, ANewLinkLiesOnTheNearestDrawnSurface) {
   int with_level = 0;
   for (const std::string& type : link_types()) {
-    if (type == "mesh" || type == "curves" || type == "points") continue;  // which need a file
+    if (type == "mesh" || type == "curves" || type == "points") continue;  // these need a file
     Fixture f(kDrawn);
     const Vec3 probe(1.1, 0, 0);  // |x| = 1.1: nearer to 1.23 than to 0.7
     ASSERT_TRUE(f.host->set("/chain/-", *make_link_json(f.host->scene(), type, probe, 4), "add"));
     ChainRow row = make_chain_rows(f.host->scene(), {})[0];
-    // a surface that may be stated, is
+    // Adds the optional key "surface".
     for (const schema::Key& key : link_type_keys(type))
       if (key.name == "surface" && row.node.find("surface") == nullptr) {
         ASSERT_TRUE(f.host->apply(make_add_key_edits(f.host->scene(), row, key, probe, 4), "add")) << type;
@@ -134,7 +134,7 @@ TEST(ChainEdit, WhatIsAddedLiesOnTheSurfaceThatIsDrawn) {
     ++with_level;
     EXPECT_EQ(field, "ball") << type;
     EXPECT_EQ(level, "1.2345678901") << type << ": all digits of what is drawn";
-    // from one field to another: its surface follows a widget, and so does what is felt
+    // After a change to a field whose surface follows a widget, the link's level follows the same widget.
     for (const schema::Key& key : link_type_keys(type))
       if (key.role == schema::Role::scalar_field) {
         const Outcome done = f.host->apply(make_change_field_edits(f.host->scene(), row, key, "other", probe), "field");
@@ -149,7 +149,7 @@ TEST(ChainEdit, WhatIsAddedLiesOnTheSurfaceThatIsDrawn) {
   EXPECT_GE(with_level, 5) << "isosurface, friction, modulated friction, texture, the ready-made mode";
 }
 
-TEST(ChainEdit, ALevelThatIsDraggedMovesAllThatLiesOnTheSurface) {
+TEST(ChainEdit, DraggingALevelMovesAllLevelsOfTheSurface) {
   Fixture f(R"({
     "fields": {"ball": {"analytic": "sphere"}, "other": {"analytic": "plane"}, "flow": {"analytic": "circle"}},
     "chain": [{"name": "skin", "type": "isosurface", "field": "ball", "level": 1},
@@ -160,16 +160,16 @@ TEST(ChainEdit, ALevelThatIsDraggedMovesAllThatLiesOnTheSurface) {
     "isosurfaces": [{"field": "ball", "level": 1}, {"field": "ball", "level": 0.25}] })");
   const auto rows = make_chain_rows(f.host->scene(), {});
   ASSERT_EQ(rows.size(), 5u);
-  // by the histogram of the isosurface
+  // The levels that change with the histogram of the isosurface.
   EXPECT_EQ(find_link_levels(f.host->scene(), "ball", 1), (std::vector<std::string>{"/chain/0/level", "/chain/1/level", "/chain/3/level"}));
-  // by the key of a link: what is seen and the other links go along
+  // The levels that change with the key of a link: the isosurface's and the other links'.
   EXPECT_EQ(find_coupled_levels(f.host->scene(), rows[1]),
             (std::vector<std::string>{"/isosurfaces/0/level", "/chain/0/level", "/chain/3/level"}));
   EXPECT_TRUE(find_coupled_levels(f.host->scene(), rows[2]).empty()) << "no surface is drawn there";
   EXPECT_TRUE(find_coupled_levels(f.host->scene(), rows[4]).empty()) << "another field";
 }
 
-TEST(ChainEdit, NeighboursChangePlacesInOneStepAndTheRestOfTheTextStays) {
+TEST(ChainEdit, SwappingNeighboursIsOneUndoStepAndKeepsTheOtherText) {
   Fixture f;
   const std::string before = f.host->document().text();
   const auto rows = make_chain_rows(f.host->scene(), {});
@@ -181,7 +181,7 @@ TEST(ChainEdit, NeighboursChangePlacesInOneStepAndTheRestOfTheTextStays) {
   EXPECT_FALSE(f.host->document().can_undo());
 }
 
-TEST(ChainEdit, AnEditThatCannotBeFeltChangesNothing) {
+TEST(ChainEdit, AnEditThatBuildsNoProgramChangesNothing) {
   Fixture f;
   ASSERT_TRUE(haptics::build_program(f.host->scene()));
   f.host->set_validator([](scene::Scene& scene) -> Outcome {
@@ -204,7 +204,7 @@ TEST(ChainEdit, AnEditThatCannotBeFeltChangesNothing) {
   EXPECT_TRUE(f.host->take_changed());
 }
 
-TEST(NewWidget, EveryTypeIsReadAndHasANameOfItsOwn) {
+TEST(NewWidget, EveryTypeIsValidAndHasAUniqueName) {
   Fixture f;
   Bounds bounds;
   bounds.extend(Vec3(-1.0));
@@ -223,5 +223,5 @@ TEST(NewWidget, EveryTypeIsReadAndHasANameOfItsOwn) {
   EXPECT_TRUE(scene::find_widget(f.host->scene(), "cut"));
 }
 
-}  // namespace chain_edit_test
+}  // namespace chain_editing_test
 }  // namespace catena::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Colour maps through the program: a ramp of values shows the map; data files are coloured as asked.
+/// Color maps in the program: a ramp of values shows the map, and data files have the requested colors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ Image8 draw(std::vector<std::string> arguments, const std::string& keep) {
   return *picture;
 }
 
-/// z from -2 to 2, upwards in the picture: an opaque slab seen along y.
+/// A field z from -2 to 2, upwards in the image: an opaque slab seen along y.
 std::string ramp(const std::string& keys) {
   return R"({"fields": {"z": {"analytic": "plane", "resolution": 33}}, "volumes": [{"field": "z", "extinction": [[0, 1000]], )" + keys +
          R"(}],
@@ -52,7 +52,7 @@ TEST(ColorMapImage, ARampShowsTheMapInOrder) {
     test::write_file(folder / "s.json", ramp("\"color\": \"" + std::string(name) + "\""));
     const Image8 picture = draw({folder / "s.json", "--size", "64x256", "--quality", "reference"}, std::string("ramp-") + name);
     for (const Entry& entry : entries) {
-      // row y has its centre at the share (255.5 - y) / 256 of the map, entry i at i / 255
+      // The center of row y is at the fraction (255.5 - y) / 256 of the map, entry i at i / 255.
       const double y = 255.5 - 256 * entry.at / 255.0;
       const auto above = static_cast<std::uint32_t>(y);
       for (int c = 0; c < 3; ++c) {
@@ -60,7 +60,7 @@ TEST(ColorMapImage, ARampShowsTheMapInOrder) {
         EXPECT_NEAR(shown, entry.rgb[c], 2) << name << " " << entry.at << " component " << c;
       }
     }
-    // every row, against the map's own points
+    // Compares each row with the map's own points.
     const auto table = scene::make_color_map(name, -2, 2);
     for (std::uint32_t y = 1; y < 255; ++y) {
       const double z = 2 - 4 * (y + 0.5) / 256;
@@ -75,7 +75,7 @@ TEST(ColorMapImage, ARampShowsTheMapInOrder) {
   }
 }
 
-TEST(ColorMapImage, ARangeMovesTheMapAndATransferFileIsTheSame) {
+TEST(ColorMapImage, ARangeMapsANamedMapAndATransferFileAlike) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", ramp(R"("color": "grey", "range": [-1, 1])"));
   test::write_file(folder / "t.json", R"([{"RGBPoints": [0, 0, 0, 0, 8, 1, 1, 1], "Points": [0, 1, 0.5, 0, 8, 1, 0.5, 0]}])");
@@ -98,17 +98,17 @@ TEST(ColorMapProgram, ListsItsMaps) {
     EXPECT_NE(run.out.find(name), std::string::npos) << name;
 }
 
-TEST(ColorMapProgram, DataFilesAreColouredAsAsked) {
+TEST(ColorMapProgram, DataFilesHaveTheRequestedColours) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(program({"generate", "gaussian", "-o", folder / "g.vdb", "--resolution", "24"}).exit_code, 0);
   const Image8 plain = draw({folder / "g.vdb", "--size", "64x48"}, "bare");
   const Image8 red = draw({folder / "g.vdb", "--size", "64x48", "--colormap", "grey", "--range", "0", "1"}, "bare-grey");
-  // what was chosen, and why, is said once the picture is there
+  // A note after rendering states the chosen presentation and the reason.
   const auto render = program({"render", folder / "g.vdb", "-o", folder / "note.png", "--size", "16x12"});
   EXPECT_NE(render.err.find("\"gaussian\" looks like a simulation: "), std::string::npos) << render.err;
   EXPECT_NE(program({"info", folder / "g.vdb"}).out.find("\"gaussian\" looks like a simulation: "), std::string::npos);
   EXPECT_NE(plain.rgba, red.rgba);
-  // grey over the backdrop, which is bluer by 13 of 255, and grey alone where it is dense
+  // Grey over the background, which is bluer by 13 of 255, and pure grey where the volume is dense.
   const auto bluer = [](const Image8& picture, std::uint32_t x, std::uint32_t y) {
     return int(picture.pixel(x, y)[2]) - int(picture.pixel(x, y)[0]);
   };
@@ -121,7 +121,7 @@ TEST(ColorMapProgram, DataFilesAreColouredAsAsked) {
   for (std::uint32_t y = 0; y < 48; ++y)
     for (std::uint32_t x = 0; x < 64; ++x) greener = std::max(greener, int(plain.pixel(x, y)[1]) - int(plain.pixel(x, y)[0]));
   EXPECT_GT(greener, 20) << "not grey without the map";
-  // lines show their speed
+  // Lines are colored by speed.
   ASSERT_EQ(program({"generate", "circle", "-o", folder / "c.vdb", "--resolution", "16"}).exit_code, 0);
   const Image8 lines = draw({folder / "c.vdb", "--size", "64x48", "--colormap", "grey_r"}, "bare-lines");
   bool any = false;
@@ -133,7 +133,7 @@ TEST(ColorMapProgram, DataFilesAreColouredAsAsked) {
   EXPECT_TRUE(any);
 }
 
-TEST(ColorMapProgram, RefusesWhatItCannotColour) {
+TEST(ColorMapProgram, RefusesBadMapsAndRangesAndScenes) {
   const test::TemporaryFolder folder;
   const std::string g = folder / "g.vdb", o = folder / "o.png";
   ASSERT_EQ(program({"generate", "gaussian", "-o", g, "--resolution", "8"}).exit_code, 0);
@@ -153,13 +153,13 @@ TEST(ColorMapProgram, RefusesWhatItCannotColour) {
     EXPECT_TRUE(test::read_file(o).empty());
   };
   refused({g, "--colormap", "virdis"}, "did you mean \"viridis\"?");
-  refused({g, "--range", "1", "0"}, "two rising numbers LO HI were expected");
-  refused({g, "--range", "a", "0"}, "two rising numbers LO HI were expected");
+  refused({g, "--range", "1", "0"}, "two increasing numbers LO HI were expected");
+  refused({g, "--range", "a", "0"}, "two increasing numbers LO HI were expected");
   refused({g, "--range", "1"}, "--range");
-  refused({folder / "s.json", "--colormap", "viridis"}, "a scene says its colours");
+  refused({folder / "s.json", "--colormap", "viridis"}, "a scene states its colours");
   refused({folder / "m.obj", "--colormap", "viridis"}, "a mesh has no values");
   refused({folder / "f.json"}, "t.json:2: ");
-  // a picture never overwrites the transfer file
+  // An output never overwrites the transfer file.
   test::write_file(folder / "t.json", "{\"color\": \"grey\"}");
   const auto run = program({"render", folder / "f.json", "-o", folder / "o.png", "--stats", folder / "t.json"});
   EXPECT_EQ(run.exit_code, 2) << run.err;

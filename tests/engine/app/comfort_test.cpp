@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Turns in steps, and how far the picture narrows while the world moves.
+/// Snap turns, and the strength of the vignette while the world moves.
 #include "engine/app/viewer/xr/comfort.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace comfort_test {
 using namespace catena;
 using namespace catena::xr_interaction;
 
-TEST(SnapTurn, OneStepAPush) {
+TEST(SnapTurn, APushOfTheStickIsOneStep) {
   SnapTurn turn;
   double sum = 0;
   for (const double x : {0.0, 0.2, 0.5, 0.69, 0.71, 1.0, 0.8, 0.4, 0.9, 0.29, 0.5, 0.75}) sum += turn.step(x);
@@ -22,16 +22,16 @@ TEST(SnapTurn, OneStepAPush) {
   EXPECT_EQ(turn.step(NAN), 0);
 }
 
-TEST(SnapTurn, AStepTurnsTheWorldAboutTheHead) {
+TEST(SnapTurn, AStepRotatesTheWorldAboutTheHead) {
   const Placement before{{1, 1, 1}, glm::mat3_cast(rotation_from_vector({0.2, 0.3, 0.4})), 0.1};
   const Vec3 head(0.5, 1.7, 0.2);
   const Placement after = rotate_about(before, head, M_PI / 2);
   EXPECT_LT(norm(after.to_room(before.to_world(head)) - head), 1e-15);
-  // seen from above, counter-clockwise: what was ahead (-z) is to the left (-x)
+  // Seen from above, counter-clockwise: a point ahead (-z) moves to the left (-x).
   EXPECT_LT(norm(after.to_room(before.to_world(head + Vec3(0, 0.3, -1))) - head - Vec3(-1, 0.3, 0)), 1e-14);
 }
 
-TEST(Vignette, RisesWhileTheWorldMovesAndFallsAgain) {
+TEST(Vignette, RisesWhileTheWorldMovesAndFallsAtRest) {
   Vignette vignette;
   Placement still, now;
   const Vec3 head(0, 1.7, 0);
@@ -49,7 +49,7 @@ TEST(Vignette, RisesWhileTheWorldMovesAndFallsAgain) {
   for (int k = 0; k < 40; ++k) last = vignette.step(now, now, head, dt);
   EXPECT_NEAR(last, 0, 1e-12);
 
-  // half a turn's speed is half the strength; scaling counts where the head is not at the fixed place; slow drift does not
+  // Half the reference rotation speed gives half the strength; scaling counts away from its fixed point; slow drift does not count.
   for (int k = 0; k < 100; ++k) {
     const Placement before = now;
     now = rotate_about(now, head, 0.005);

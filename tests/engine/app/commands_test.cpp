@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The table of commands: which stroke asks for what, and what menu and list of keys say of it.
+// The table of commands: the action of each keystroke, and the labels in the menu and the list of keys.
 #include "engine/app/viewer/input/commands.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ std::optional<Action> asked(int key, bool control = false, bool shift = false, b
   return find_action(event, fly);
 }
 
-TEST(Commands, AStrokeAsksForOneThing) {
+TEST(Commands, EachKeystrokeHasOneAction) {
   const struct {
     int key;
     bool control, shift;
@@ -70,7 +70,7 @@ TEST(Commands, AStrokeAsksForOneThing) {
     EXPECT_TRUE(asked(stroke.key, stroke.control, stroke.shift) == stroke.action) << stroke.key << stroke.control << stroke.shift;
 }
 
-TEST(Commands, OnlyAPressAndAQuestionMarkAsk) {
+TEST(Commands, OnlyKeyPressesAndTheQuestionMarkHaveActions) {
   for (const auto what : {KeyEvent::Type::release, KeyEvent::Type::repeat}) {
     KeyEvent event;
     event.type = what;
@@ -87,7 +87,7 @@ TEST(Commands, OnlyAPressAndAQuestionMarkAsk) {
   EXPECT_EQ(find_action(text, true), Action::toggle_help);
 }
 
-TEST(Commands, LettersThatFlyAreNoCommandsButShortcutsAre) {
+TEST(Commands, FlyModeDisablesItsLetterKeysButNotShortcuts) {
   for (const int key : {int('A'), int('S'), int('W'), int('D'), int('E'), int('Q'), kLeft})
     EXPECT_FALSE(asked(key, false, false, true)) << key;
   EXPECT_EQ(asked('A', false, false, false), Action::fit_view);
@@ -95,7 +95,7 @@ TEST(Commands, LettersThatFlyAreNoCommandsButShortcutsAre) {
   EXPECT_EQ(asked('V', false, false, true), Action::toggle_fly);
 }
 
-TEST(Commands, MenuAndKeysSayWhatTheTableSays) {
+TEST(Commands, MenuAndShortcutLabelsComeFromTheTable) {
   EXPECT_STREQ(menu_label(Action::save_as), "Save as...");
   EXPECT_EQ(shortcut_label(Action::save_as), "Ctrl+Shift+S");
   EXPECT_EQ(shortcut_label(Action::view_along_minus_y), "Shift+2");
@@ -104,7 +104,7 @@ TEST(Commands, MenuAndKeysSayWhatTheTableSays) {
   EXPECT_EQ(shortcut_label(Action::redo), "Ctrl+Y");
 }
 
-TEST(Commands, TheListOfKeysNamesEachStrokeOnce) {
+TEST(Commands, TheListOfKeysHasEachKeystrokeOnce) {
   std::set<std::string> keys;
   for (const KeyHelp& line : key_list()) {
     EXPECT_TRUE(keys.insert(line.keys).second) << line.keys;
@@ -112,34 +112,34 @@ TEST(Commands, TheListOfKeysNamesEachStrokeOnce) {
   }
 }
 
-TEST(Commands, TheListOfKeysAsItIsPrinted) {
+TEST(Commands, ThePrintedListOfKeys) {
   EXPECT_EQ(key_help(), R"keys(left drag            orbit
 middle, shift+left   pan
 wheel                zoom
-1, 2, 3              look along +x, +y, +z, at all that is drawn; with shift along -x, -y, -z
-A, Home              all that is drawn into the picture, from the same direction
+1, 2, 3              look along +x, +y, +z at the whole scene; with shift along -x, -y, -z
+A, Home              fit the whole scene into the image, from the same direction
 O                    orthographic or perspective
-R                    the first view again
-T                    turntable, until T or the mouse
-V                    fly: W S A D or arrows, E up, Q down, shift faster, left drag looks about, wheel: pace; V or Esc ends it
-right drag, control  move the hand in the picture's plane (wheel: depth)
-H                    the mouse is the hand, on what is under the pointer; the wheel pushes, the left button is its button 1
-space                the hand's button 1
-F                    a haptic device's forces on and off (off at first)
-G                    with a headset: touch three places, which says where a haptic device stands; again: not now
-device button 1      takes hold of widgets, selects; what the scene's "active_when" says
-Ctrl+O               open; a file can be dropped on the window as well
-Ctrl+S, Ctrl+Shift+S save (with the view, if it was moved), save as
+R                    return to the first view
+T                    start the turntable; T or the mouse stops it
+V                    fly: W S A D or arrows, E up, Q down, shift faster, left drag turns, wheel: speed; V or Esc ends flying
+right drag, control  move the probe in the image plane (wheel: depth)
+H                    probe mode: the mouse moves the probe on the object under the pointer; wheel: depth, left button: button 1
+space                button 1 of the probe
+F                    forces of a haptic device on or off (initially off)
+G                    with a headset: register a haptic device in the room by touching three points; again: cancel
+device button 1      grab widgets, select, or as stated by "active_when" in the scene
+Ctrl+O               open a file; a file can also be dropped on the window
+Ctrl+S, Ctrl+Shift+S save, including a changed view, save as
 Ctrl+Z, Ctrl+Y       undo, redo
-K                    play the steps in time, or stop
-,, .                 the step before, and after
-P                    the pulses along streamlines stand or run
-Tab                  panels
-F2                   the next stereo mode
-F11                  full screen
-F12, Shift+F12       write the picture, the window, as SCENE-001.png
-F1, ?                these keys
-Esc                  closes or cancels what is open, ends flying, hand mode, full screen
+K                    play or stop the time steps
+,, .                 previous time step, next time step
+P                    start or stop the moving bands along streamlines
+Tab                  show or hide the panels
+F2                   next stereo mode
+F11                  full screen on or off
+F12, Shift+F12       save the image, save the window, as SCENE-001.png
+F1, ?                show this list
+Esc                  close or cancel an open dialog; end flying, probe mode, full screen
 Ctrl+Q               quit
 )keys");
 }

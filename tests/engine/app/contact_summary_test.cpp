@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 namespace catena::app {
-namespace felt_test {
+namespace contact_summary_test {
 
-TEST(ContactSummary, NamesTheLabelThatWasPressed) {
+TEST(ContactSummary, NamesThePressedLabel) {
   haptics::HapticProgram program;
   program.meters_per_unit = 0.001;
   haptics::Link link;
@@ -14,7 +14,7 @@ TEST(ContactSummary, NamesTheLabelThatWasPressed) {
   link.one_sided = true;
   link.feature_name = "Precentral_L";
   program.links = {link};
-  ContactSummary felt;
+  ContactSummary summary;
   HapticState state;
   state.link_count = 1;
   state.links[0].status = LinkStatus::ok;
@@ -22,12 +22,12 @@ TEST(ContactSummary, NamesTheLabelThatWasPressed) {
   state.force_n = state.links[0].force_n = Vec3(0, 0, 2);
   for (int k = 0; k < 3; ++k) {
     state.t_s = 0.1 * k;
-    felt.add(state);
+    summary.add(state);
   }
-  EXPECT_EQ(felt.link_lines(program), "gyrus: pressed 3 mm into Precentral_L, at most 2 N; held 0.20 of 0.20 s\n");
+  EXPECT_EQ(summary.link_lines(program), "gyrus: pressed 3 mm into Precentral_L, at most 2 N; held 0.20 of 0.20 s\n");
   program.links[0].one_sided = false;
-  EXPECT_NE(felt.link_lines(program).find("pulled up to 3 mm off Precentral_L"), std::string::npos);
+  EXPECT_NE(summary.link_lines(program).find("pulled up to 3 mm away from Precentral_L"), std::string::npos);
 }
 
-}  // namespace felt_test
+}  // namespace contact_summary_test
 }  // namespace catena::app

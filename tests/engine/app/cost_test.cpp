@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena info --cost`: what a scene will take, and with --measure what it took. Times are not judged here: they are a benchmark's.
+/// `catena info --cost`: the expected cost of a scene, and the measured cost with --measure. Times are left to benchmarks.
 #include <gtest/gtest.h>
 
 #include "engine/base/json.h"
@@ -40,7 +40,7 @@ const char* kScene = R"({
   "chain": [{"name": "curve", "type": "streamline", "field": "flow", "seed": [0.5, 0, 0]},
             {"name": "skin", "type": "isosurface", "field": "ball", "level": 0.5}]})";
 
-TEST_F(InfoCost, BytesAreThoseThatAreThenHeldAndEveryPartHasItsRow) {
+TEST_F(InfoCost, ExpectedBytesEqualMeasuredBytesAndEveryPartHasARow) {
   const auto found = rows(kScene, true);
   const json::Node* ball = find(found, "load", "ball");
   ASSERT_NE(ball, nullptr);
@@ -73,11 +73,11 @@ TEST_F(InfoCost, CountsMeshesPointsAndTracedLines) {
   EXPECT_TRUE(tubes->find("work")->string.starts_with("2 of ")) << tubes->find("work")->string;
   EXPECT_GT(number(tubes, "expected_bytes"), 2 * 20 * 24) << "a circle is more than 20 places";
   ASSERT_NE(find(found, "shape", "points"), nullptr);
-  EXPECT_EQ(find(found, "shape", "points")->find("work")->string, "1 of 3 balls");
+  EXPECT_EQ(find(found, "shape", "points")->find("work")->string, "1 of 3 spheres");
   EXPECT_EQ(find(found, "shape", "meshes")->find("work")->string, "1 of 4 triangles");
 }
 
-TEST_F(InfoCost, WhatIsHiddenOrUnusedHasNone) {
+TEST_F(InfoCost, HiddenAndUnusedPartsHaveNoCost) {
   const auto found = rows(kScene, false);
   EXPECT_EQ(find(found, "load", "unused"), nullptr);
   EXPECT_EQ(find(found, "mirror", "torus"), nullptr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Curves from files: their colours in the picture, what `info` says, what is wrong with a scene that names them.
+// Curves from files: colors in the image, the output of `info`, and errors of scenes that name them.
 #include <gtest/gtest.h>
 
 #include "engine/scene/scene.h"
@@ -15,7 +15,7 @@ using test::Polylines;
 
 class CurveImages : public test::ImageTest {
  protected:
-  /// Three crossing lines along the axes, seen from where all three can be told apart.
+  /// Three crossing lines along the axes, seen from a position where all three can be distinguished.
   std::string scene_of(const std::string& keys, const std::string& more = "") {
     test::TrkFile file;
     file.voxel = Vec3(1.0);
@@ -24,7 +24,7 @@ class CurveImages : public test::ImageTest {
     for (int axis = 0; axis < 3; ++axis) {
       file.lines.emplace_back();
       for (int i = 0; i <= 20; ++i) {
-        Vec3 p(0.5);  // the middle of the first voxel is the world's origin
+        Vec3 p(0.5);  // the center of the first voxel is the world's origin
         p[(axis + 1) % 3] += 0.4;
         p[axis] += -1 + 0.1 * i;
         file.lines.back().push_back(p);
@@ -40,21 +40,21 @@ class CurveImages : public test::ImageTest {
     if (!scene) return scene.error();
     return render::make_frame(*scene, 256, 192);
   }
-  /// The colour of the picture where a world place is, without the light: its brightest component is 1.
+  /// The color of the image at a world position, without lighting: the brightest component is 1.
   Color hue_at(const render::FramePacket& packet, const render::Image8& picture, const Vec3& place) {
     const auto camera = render::make_camera(packet.view, packet.width, packet.height, Bounds());
     const auto at = render::project(camera, place);
     const std::size_t pixel = 4 * (static_cast<std::size_t>(at->y) * packet.width + static_cast<std::size_t>(at->x));
     const auto part = [&](std::size_t i) { return static_cast<float>(picture.rgba[pixel + i]) / 255.0f; };
-    const float most = std::max({part(0), part(1), part(2), 1e-3f});
-    return {part(0) / most, part(1) / most, part(2) / most};
+    const float max_part = std::max({part(0), part(1), part(2), 1e-3f});
+    return {part(0) / max_part, part(1) / max_part, part(2) / max_part};
   }
   test::TemporaryFolder folder_;
 };
 
 const Vec3 kOn[] = {{0.7, 0.4, 0}, {0, 0.7, 0.4}, {0.4, 0, 0.7}};
 
-TEST_F(CurveImages, ColoursOfTheDirections) {
+TEST_F(CurveImages, LinesAreColouredByDirection) {
   const auto packet = packet_of(scene_of(""));
   ASSERT_TRUE(packet) << packet.error().message;
   const auto picture = draw(*packet, {}, "directions");
@@ -65,7 +65,7 @@ TEST_F(CurveImages, ColoursOfTheDirections) {
     EXPECT_NEAR(seen.g, expected[1], 0.02) << axis;
     EXPECT_NEAR(seen.b, expected[2], 0.02) << axis;
   }
-  // a line that runs askew
+  // A diagonal line.
   test::write_file(folder_ / "askew.tck", test::tck_bytes({{{-1, -1, 0}, {1, 1, 0}}}, "Float32LE"));
   const auto askew = packet_of(R"({"curves": [{"name": "a", "file": "askew.tck"}]})");
   ASSERT_TRUE(askew);
@@ -74,12 +74,12 @@ TEST_F(CurveImages, ColoursOfTheDirections) {
   EXPECT_EQ(askew->tubes[0].colors[0].b, 0);
 }
 
-TEST_F(CurveImages, OneColourValuesAndLengths) {
+TEST_F(CurveImages, LinesHaveOneColourOrAreColouredByValueOrLength) {
   const auto one = packet_of(scene_of(R"(, "color": [0, 1, 1])"));
   ASSERT_TRUE(one);
   EXPECT_NEAR(hue_at(*one, draw(*one), kOn[0]).r, 0, 0.02);
 
-  // scalars of the file: 100 n + i on line n
+  // The file's scalars are 100 n + i on line n.
   const std::string table = R"("color": [[0, 1, 0, 0], [99, 1, 0, 0], [100, 0, 1, 0], [199, 0, 1, 0], [200, 0, 0, 1]])";
   const auto values = packet_of(scene_of(R"(, "color_by": {"value": "fa", )" + table + "}", R"(, "scalar_bars": [{"curves": 0}])"));
   ASSERT_TRUE(values) << values.error().message;
@@ -100,7 +100,7 @@ TEST_F(CurveImages, OneColourValuesAndLengths) {
   EXPECT_NEAR(field->tubes[0].colors[13].r, 0.5 + 0.5 * (0.3 + 0.4), 1e-5) << "x + y + z";
 }
 
-TEST_F(CurveImages, ClipPlanesAndTheFitOfTheRadius) {
+TEST_F(CurveImages, ClipPlanesCutAndTheDefaultRadiusFitsTheExtent) {
   const auto clipped = packet_of(scene_of("", R"(, "clip": [{"plane": {"point": [0, 0, 0], "normal": [-1, 0, 0]}}])"));
   ASSERT_TRUE(clipped);
   const auto picture = draw(*clipped);
@@ -113,8 +113,8 @@ TEST_F(CurveImages, ClipPlanesAndTheFitOfTheRadius) {
   EXPECT_NEAR(fitted->tubes[0].radius, 0.003 * 5, 1e-9);
 }
 
-TEST_F(CurveImages, VeryManyAreDrawnInPartAndSaySo) {
-  // 2.2 million points: 11 lines of 200 000
+TEST_F(CurveImages, TooManyLinesAreDrawnInPartWithANote) {
+  // 2.2 million points: 11 lines of 200 000.
   std::vector<Vec3> line;
   for (int i = 0; i < 200000; ++i) line.push_back({1e-5 * i, 0, 0});
   Polylines lines(11, line);
@@ -126,7 +126,7 @@ TEST_F(CurveImages, VeryManyAreDrawnInPartAndSaySo) {
             "curves \"many\": 10 of 11 lines are drawn, evenly chosen, so that they have about 2000000 points; all are felt");
 }
 
-TEST_F(CurveImages, BallsAreRoundLitAndWhereTheyAre) {
+TEST_F(CurveImages, PointsAreDrawnAsLitSpheresAtTheirPositions) {
   test::write_file(folder_ / "p.csv", "x,y,z,v,size\n0,0,0,0,0.5\n1.5,0,0,1,0.25\n0,5,0,2,nan\n");
   for (const bool flat : {false, true}) {
     const std::string camera = flat ? R"("projection": "orthographic", "height": 3)" : R"("fovy_deg": 30)";
@@ -142,7 +142,7 @@ TEST_F(CurveImages, BallsAreRoundLitAndWhereTheyAre) {
     const auto picture = draw(*packet, {}, flat ? "flat" : "perspective");
     EXPECT_NEAR(hue_at(*packet, picture, {0, 0, 0}).r, 1, 0.02);
     EXPECT_NEAR(hue_at(*packet, picture, {1.5, 0, 0}).g, 1, 0.02);
-    // every pixel: the ball's nearest depth by its formula, or nothing
+    // Compares each pixel with the nearest depth by the formula of the sphere, or with no hit.
     const auto camera_now = render::make_camera(packet->view, packet->width, packet->height, Bounds());
     const auto depth = renderer_->read_depth();
     ASSERT_TRUE(depth);
@@ -166,7 +166,7 @@ TEST_F(CurveImages, BallsAreRoundLitAndWhereTheyAre) {
   }
 }
 
-TEST_F(CurveImages, AClippedBallShowsItsInside) {
+TEST_F(CurveImages, AClippedSphereShowsItsInside) {
   test::write_file(folder_ / "p.csv", "x,y,z\n0,0,0\n");
   const auto packet = packet_of(R"({"points": [{"name": "p", "file": "p.csv", "radius": 1, "color": [0, 1, 0]}],
                                     "clip": [{"plane": {"point": [0, 0, 0], "normal": [0, 0, -1]}}],
@@ -179,24 +179,25 @@ TEST_F(CurveImages, AClippedBallShowsItsInside) {
   EXPECT_NEAR(depth->depth[96 * 256 + 128], 7, 0.01) << "the far half";
 }
 
-TEST(CurveScenes, PointTablesByTheirHeader) {
+TEST(CurveScenes, ATableOfPointsIsRecognizedByItsHeader) {
   test::TemporaryFolder folder;
   test::write_file(folder / "table.csv", "id,x,y,z,mass\n1,0,0,0,7\n2,3,4,0,9\n");
   auto scene = scene::scene_for_file(folder / "table.csv");
   ASSERT_TRUE(scene) << scene.error().message;
   ASSERT_EQ(scene->notes.size(), 1u);
-  EXPECT_NE(scene->notes[0].find("a table of points (it has columns x, y, z): 2 of them as balls, coloured by \"mass\""), std::string::npos)
+  EXPECT_NE(scene->notes[0].find("a table of points (columns x, y, z): 2 points, shown as spheres, coloured by \"mass\""),
+            std::string::npos)
       << scene->notes[0];
   ASSERT_TRUE(render::make_frame(*scene, 64, 48));
   test::write_file(folder / "other.csv", "t,force\n1,0\n");
   const auto other = test::run_catena({"render", folder / "other.csv", "-o", folder / "a.png"});
   EXPECT_EQ(other.exit_code, 2);
-  EXPECT_NE(other.err.find("no column is called x"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("there is no column x"), std::string::npos) << other.err;
   const auto info = test::run_catena({"info", folder / "table.csv"});
-  EXPECT_NE(info.out.find("spacing      5 in the median"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("spacing      median 5"), std::string::npos) << info.out;
 }
 
-TEST(CurveScenes, StraysAndTailsOfATableDoNotHideTheOthers) {
+TEST(CurveScenes, OutliersOfATableAreLeftOutOfTheViewAndTheColorRange) {
   test::TemporaryFolder folder;
   std::string table = "x,y,z,mass\n";
   for (int k = 0; k < 200; ++k) table += fmt::format("{},{},{},{}\n", k % 6, k / 6 % 6, k / 36, k * k % 199);
@@ -207,7 +208,7 @@ TEST(CurveScenes, StraysAndTailsOfATableDoNotHideTheOthers) {
   EXPECT_FALSE(plain->annotations.scalar_bars.at(0).title);
   EXPECT_FALSE(stray->annotations.scalar_bars.at(0).title);
   for (const char* part :
-       {"coloured by \"mass\"; 1 value of 100000 beyond the others, 0 .. 196", "1 far from the others outside of the first view"})
+       {"coloured by \"mass\"; 1 value of 100000 beyond the others, 0 .. 196", "1 distant points outside the initial view"})
     EXPECT_NE(stray->notes.at(0).find(part), std::string::npos) << stray->notes[0];
   for (scene::Scene* one : {&*plain, &*stray}) {
     const auto packet = render::make_frame(*one, 320, 240);
@@ -219,23 +220,23 @@ TEST(CurveScenes, StraysAndTailsOfATableDoNotHideTheOthers) {
   }
 }
 
-TEST(CurveScenes, BareFilesAndInfo) {
+TEST(CurveScenes, ACurveFileIsDrawnAndDescribed) {
   test::TemporaryFolder folder;
   test::write_file(folder / "a.tck", test::tck_bytes({{{0, 0, 0}, {3, 4, 0}}, {{0, 0, 0}, {0, 0, 1}}}, "Float32LE"));
   auto scene = scene::scene_for_file(folder / "a.tck");
   ASSERT_TRUE(scene) << scene.error().message;
   ASSERT_EQ(scene->notes.size(), 1u);
-  EXPECT_NE(scene->notes[0].find("2 curves in the colours of their directions, red for x, green for y, blue for z"), std::string::npos);
+  EXPECT_NE(scene->notes[0].find("2 curves, coloured by direction: red for x, green for y, blue for z"), std::string::npos);
   const auto packet = render::make_frame(*scene, 64, 48);
   ASSERT_TRUE(packet);
   EXPECT_EQ(packet->tubes.size(), 2u);
   EXPECT_GT(packet->view.position.y, packet->view.target.y) << "a patient is seen from the front";
   const auto info = test::run_catena({"info", folder / "a.tck"});
   EXPECT_EQ(info.exit_code, 0);
-  EXPECT_NE(info.out.find("lengths      3 mm in the mean, the longest 5 mm"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("lengths      mean 3 mm, maximum 5 mm"), std::string::npos) << info.out;
 }
 
-TEST(CurveScenes, MessagesNameThePlace) {
+TEST(CurveScenes, ErrorsNameTheLine) {
   test::TemporaryFolder folder;
   test::write_file(folder / "a.tck", test::tck_bytes({{{0, 0, 0}, {3, 4, 0}}}, "Float32LE"));
   const auto message = [&](const std::string& text) {
@@ -250,7 +251,7 @@ TEST(CurveScenes, MessagesNameThePlace) {
   };
   expect(R"({"curves": [{"name": "a", "file": "b.tck"}]})",
          "does not exist; a .tck, .trk, .vtu, .vtp, .pvtp, .vtk, .pvd or .series file was expected");
-  expect(R"({"curves": [{"name": "a", "file": "a.tck"}, {"name": "a", "file": "a.tck"}]})", "a name of their own was expected");
+  expect(R"({"curves": [{"name": "a", "file": "a.tck"}, {"name": "a", "file": "a.tck"}]})", "a unique name was expected");
   expect(R"({"curves": [{"name": "a", "file": "a.tck", "color_by": {"value": "fa"}}]})",
          "the file has no values called \"fa\"; known: none");
   expect(R"({"curves": [{"name": "a", "file": "a.tck", "color_by": {}}]})", "exactly one of them was expected");
@@ -258,7 +259,7 @@ TEST(CurveScenes, MessagesNameThePlace) {
   test::write_file(folder / "p.csv", "x,y,z,v\n1,2,3,4\n");
   expect(R"({"points": [{"name": "p", "file": "p.csv", "radius_by": "w"}]})", "no column of numbers called \"w\"; known: v");
   expect(R"({"points": [{"name": "p", "file": "p.csv", "color_by": {"value": "w"}}]})", "no column of numbers called \"w\"; known: v");
-  expect(R"({"points": [{"name": "p", "file": "p.csv", "radius": 1, "radius_by": "v"}]})", "stands beside \"radius\"");
+  expect(R"({"points": [{"name": "p", "file": "p.csv", "radius": 1, "radius_by": "v"}]})", "both \"radius_by\" and \"radius\" are given");
   expect(R"({"points": [{"name": "p", "file": "p.csv"}], "scalar_bars": [{"points": 0}]})", "shows no values");
   test::write_file(folder / "a.tck", "mrtrix tracks\n");
   expect(R"({"curves": [{"name": "a", "file": "a.tck"}]})", "a line END was expected");

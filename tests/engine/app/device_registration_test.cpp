@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A haptic device on the desk, registered to the room of a headset: known places, known answer, and what becomes of it.
+// Registration of a haptic device on the desk to a headset's room: known touches, the known answer, and the effects of recentering.
 #include "engine/app/viewer/xr/device_registration.h"
 
 #include <gtest/gtest.h>
@@ -15,18 +15,18 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace desk_device_test {
+namespace device_registration_test {
 
 const std::array<Vec3, 3> kTouched{Vec3(0.02, -0.03, 0.01), Vec3(-0.05, 0.01, 0.04), Vec3(0.01, 0.05, 0.02)};
 const Quat kTurn = rotation_from_vector({0.2, -1.4, 0.5});
-const Vec3 kOrigin(0.3, 0.8, -0.5);  // of the device, in the room's own space
+const Vec3 kOrigin(0.3, 0.8, -0.5);  // the device's origin in stage space
 const StageSpace kStage{{0.1, -1.5, 0.7}, rotation_from_vector({0.0, 0.6, 0.0}), true, 0};
 const std::string kScene = R"({ "fields": {"ball": {"analytic": "sphere"}},
   "chain": [{"name": "floor", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}],
   "device": {"type": "simulated", "friction": 0, "encoder_step": 0},
   "workspace": {"metres_per_unit": 0.05, "origin": [1, 2, 3]} })";
 
-/// The simulated hand touches the places, half a second each.
+/// A rig whose simulated hand touches the points, half a second each.
 struct Rig {
   explicit Rig(const std::string& device, const std::string& text = kScene) {
     std::string path = "t,x,y,z,buttons\n";
@@ -49,18 +49,18 @@ struct Rig {
     EXPECT_TRUE(hand->prepare(host->scene(), bounds, RecordedScene{folder / "scene.json", text, {}, {}}));
     EXPECT_TRUE(hand->start());
   }
-  /// Pictures, some milliseconds apart.
+  /// Steps the session, some milliseconds apart, until the condition holds.
   bool until(const std::function<bool()>& true_now, const StageSpace& space, const std::function<XrHand()>& right) {
     for (int k = 0; k < 5000; ++k) {
       hand->pull_state(host->scene());
       desk.step(t += 0.02, *hand, {XrHand{}, right()}, space);
-      for (const DeviceRegistration::Message& news : desk.take_messages()) said.push_back(news.text);
+      for (const DeviceRegistration::Message& news : desk.take_messages()) messages.push_back(news.text);
       if (true_now()) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     return false;
   }
-  /// The controller touches the places that the device will touch.
+  /// Touches with the controller the points that the device will touch.
   void touch_with_controller(const StageSpace& space) {
     for (const Vec3& p : kTouched) {
       const Vec3 stage = kOrigin + rotate(kTurn, p);
@@ -85,25 +85,25 @@ struct Rig {
   std::optional<HapticSession> hand;
   DeviceRegistration desk;
   double t = 5;
-  std::vector<std::string> said;
+  std::vector<std::string> messages;
 };
 
-TEST(DeviceRegistration, IsWhereItWasTouched) {
+TEST(DeviceRegistration, FindsThePoseFromTheTouchedPoints) {
   Rig rig("simulated");
-  ASSERT_TRUE(rig.finds(kStage)) << (rig.said.empty() ? "" : rig.said.back());
-  ASSERT_EQ(rig.said.size(), 8u);
-  EXPECT_NE(rig.said.front().find("Touch three places"), std::string::npos);
-  EXPECT_NE(rig.said.back().find("is registered"), std::string::npos) << rig.said.back();
+  ASSERT_TRUE(rig.finds(kStage)) << (rig.messages.empty() ? "" : rig.messages.back());
+  ASSERT_EQ(rig.messages.size(), 8u);
+  EXPECT_NE(rig.messages.front().find("Touch three points"), std::string::npos);
+  EXPECT_NE(rig.messages.back().find("is registered"), std::string::npos) << rig.messages.back();
   const DeviceRegistration::Room room = *rig.hand->room();
   EXPECT_LT(norm(room.origin_m - kOrigin), 5e-4);
   EXPECT_LT(norm(room.room_from_workspace * Vec3(0, 0, 1) - rotate(kTurn, {0, 0, 1})), 5e-3);
   EXPECT_FALSE(rig.desk.is_active());
-  const auto kept = rig.desk.take_registration();
-  ASSERT_TRUE(kept);
-  EXPECT_EQ(kept->origin_m, room.origin_m);
+  const auto registration = rig.desk.take_registration();
+  ASSERT_TRUE(registration);
+  EXPECT_EQ(registration->origin_m, room.origin_m);
   EXPECT_FALSE(rig.desk.take_registration());
 
-  // in the world, however it stands in the room
+  // The device's workspace in the world follows the placement of the world in the room.
   Placement placement;
   placement.world_from_room = glm::mat3_cast(rotation_from_vector({0.0, 0.9, 0.0}));
   placement.world_origin = Vec3(3, -1, 2);
@@ -114,7 +114,7 @@ TEST(DeviceRegistration, IsWhereItWasTouched) {
   const Vec3 in_room = kStage.position_m + rotate(kStage.orientation, kOrigin + rotate(kTurn, kTouched[1]));
   EXPECT_LT(norm(world - placement.to_world(in_room)), 1e-3 / 0.2);
 
-  // recentred: the stage lies elsewhere in the local space, and the device with it
+  // After recentering, the stage has another pose in local space, and the device moves with it.
   StageSpace moved = kStage;
   moved.position_m += Vec3(0.5, 0, 0);
   moved.recenter_count = 1;
@@ -122,17 +122,17 @@ TEST(DeviceRegistration, IsWhereItWasTouched) {
   EXPECT_LT(norm(rig.desk.workspace(*rig.hand, placement)->origin - workspace->origin - placement.world_from_room * Vec3(0.5, 0, 0) / 0.2),
             1e-9);
   EXPECT_TRUE(rig.hand->room());
-  // what trembles does not
+  // Jitter of the stage does not move the device.
   const Vec3 before = rig.desk.workspace(*rig.hand, placement)->origin;
   moved.position_m += Vec3(0, 5e-4, 0);
   EXPECT_TRUE(rig.until([] { return true; }, moved, [] { return XrHand{}; }));
   EXPECT_EQ(rig.desk.workspace(*rig.hand, placement)->origin, before);
 }
 
-TEST(DeviceRegistration, WithoutAStageItHoldsUntilRecentring) {
+TEST(DeviceRegistration, WithoutAStageItIsValidUntilRecentring) {
   Rig rig("simulated");
   const StageSpace local;
-  ASSERT_TRUE(rig.finds(local)) << (rig.said.empty() ? "" : rig.said.back());
+  ASSERT_TRUE(rig.finds(local)) << (rig.messages.empty() ? "" : rig.messages.back());
   EXPECT_FALSE(rig.desk.take_registration());
   StageSpace recentred = local;
   recentred.recenter_count = 1;
@@ -141,24 +141,24 @@ TEST(DeviceRegistration, WithoutAStageItHoldsUntilRecentring) {
   EXPECT_TRUE(rig.desk.is_active());
 }
 
-TEST(DeviceRegistration, AsksOnlyWhatStandsOnTheDesk) {
+TEST(DeviceRegistration, OnlyDevicesWithAFixedPositionCanBeRegistered) {
   const auto refused = [](const std::string& device, const std::string& text, const char* words) {
     Rig rig(device, text);
     const Outcome begun = rig.desk.begin(*rig.hand);
     ASSERT_FALSE(begun);
     EXPECT_NE(begun.error().message.find(words), std::string::npos) << begun.error().message;
   };
-  refused("null", kScene, "null has no place of its own");
+  refused("null", kScene, "null has no fixed position in the room");
   std::string scaled = kScene;
   scaled.replace(scaled.find("\"friction\""), 0, "\"scale\": 2, ");
-  refused("simulated", scaled, "with \"scale\" its metres are not the room's");
+  refused("simulated", scaled, "a device with \"scale\" cannot be registered");
 }
 
-TEST(DeviceRegistration, ItsFileIsGivenAgain) {
+TEST(DeviceRegistration, IsStoredInTheDeviceFile) {
   const test::TemporaryFolder folder;
   const std::string file = folder / "arm.json";
   scene::Scene scene;
-  EXPECT_TRUE(apply_device_file(file, scene));  // not there yet
+  EXPECT_TRUE(apply_device_file(file, scene));  // the file does not exist yet
   EXPECT_FALSE(scene.device);
   test::write_file(file, "// mine\n{\n  \"type\": \"simulated\",\n  \"mass\": 0.2\n}\n");
   ASSERT_TRUE(write_device_file(file, {{"/room_origin", "[0.3, 0.8, -0.5]"}, {"/room_rotation", "[[0, -1, 0], [1, 0, 0], [0, 0, 1]]"}}));
@@ -184,5 +184,5 @@ TEST(DeviceRegistration, ItsFileIsGivenAgain) {
   bad(R"([1, 2])", "expected");
 }
 
-}  // namespace desk_device_test
+}  // namespace device_registration_test
 }  // namespace catena::app

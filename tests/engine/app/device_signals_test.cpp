@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What signals do to a program that holds a device: asked to end, or crashed.
+// Effects of signals on a program that holds a device: requests to end, and crashes.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -13,12 +13,12 @@
 #include "engine/base/result.h"
 #include "haptics/device/device.h"
 
-namespace hand_signals_test {
+namespace device_signals_test {
 
 using namespace catena;
 using namespace catena::haptics;
 
-/// Says so on stderr when it is stopped: by then the process is dying.
+/// A device that reports its stop() on stderr, where the death tests look for it.
 class Last final : public Device {
  public:
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
@@ -41,7 +41,7 @@ struct CrashGuardDeathTest : testing::Test {
   Last device;
 };
 
-TEST_F(CrashGuardDeathTest, AnAssertionLetsGoAndAborts) {
+TEST_F(CrashGuardDeathTest, AnAssertionStopsTheDeviceAndAborts) {
   const auto crash = [&] {
     const app::CrashGuard guard(device);
     std::thread([] { CATENA_ASSERT(1 + 1 == 3); }).join();
@@ -49,7 +49,7 @@ TEST_F(CrashGuardDeathTest, AnAssertionLetsGoAndAborts) {
   EXPECT_EXIT(crash(), testing::KilledBySignal(SIGABRT), "let go");
 }
 
-TEST_F(CrashGuardDeathTest, EveryCrashLetsGoAndEndsAsItWould) {
+TEST_F(CrashGuardDeathTest, EveryCrashSignalStopsTheDeviceAndKeepsItsExitStatus) {
   for (const int signal_number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGTRAP, SIGQUIT}) {
     const auto crash = [&] {
       const app::CrashGuard guard(device);
@@ -59,8 +59,8 @@ TEST_F(CrashGuardDeathTest, EveryCrashLetsGoAndEndsAsItWould) {
   }
 }
 
-// before, 50 ms were waited, and "the device is off" was said of one whose thread had not had the processor yet
-TEST_F(CrashGuardDeathTest, TheDeviceIsOffWhenItHasConfirmedIt) {
+// A confirmation of zero force is awaited for long enough that a busy machine's device thread can give it.
+TEST_F(CrashGuardDeathTest, TheDeviceIsReportedOffOnlyOnceConfirmed) {
   const auto crash = [&](int asks) {
     device.asks_until_rest_ = asks;
     const app::CrashGuard guard(device);
@@ -70,7 +70,7 @@ TEST_F(CrashGuardDeathTest, TheDeviceIsOffWhenItHasConfirmedIt) {
   EXPECT_EXIT(crash(1 << 20), testing::KilledBySignal(SIGTRAP), "ended by SIGTRAP; the device has not confirmed that it is off\n$");
 }
 
-TEST_F(CrashGuardDeathTest, AfterItsEndNobodyIsStopped) {
+TEST_F(CrashGuardDeathTest, AfterTheGuardsLifetimeNoDeviceIsStopped) {
   const auto crash = [&] {
     { const app::CrashGuard guard(device); }
     std::raise(SIGQUIT);
@@ -78,9 +78,9 @@ TEST_F(CrashGuardDeathTest, AfterItsEndNobodyIsStopped) {
   EXPECT_EXIT(crash(), testing::KilledBySignal(SIGQUIT), "^$");
 }
 
-#ifndef __SANITIZE_ADDRESS__  // which has a handler of its own
-// what fills the first thread's stack leaves none for a handler, but its own
-TEST_F(CrashGuardDeathTest, AFullStackLetsGo) {
+#ifndef __SANITIZE_ADDRESS__  // AddressSanitizer has a handler of its own
+// A stack overflow in the first thread leaves no room for a signal handler except on an alternate stack.
+TEST_F(CrashGuardDeathTest, AStackOverflowStopsTheDevice) {
   struct Fill {
     static int deeper(int n) {
       volatile char page[4096];
@@ -96,7 +96,7 @@ TEST_F(CrashGuardDeathTest, AFullStackLetsGo) {
 }
 #endif
 
-TEST_F(CrashGuardDeathTest, AnErrorThatNothingHandlesLetsGoAndIsOneSentence) {
+TEST_F(CrashGuardDeathTest, AnUncaughtExceptionStopsTheDeviceAndIsOneMessage) {
   const auto end = [&] {
     EXPECT_TRUE(app::prepare_process());
     const app::CrashGuard guard(device);
@@ -111,7 +111,7 @@ TEST_F(CrashGuardDeathTest, AnErrorThatNothingHandlesLetsGoAndIsOneSentence) {
   EXPECT_EXIT(full(), testing::ExitedWithCode(1), "let go\ncatena: out of memory: .*\n$");
 }
 
-TEST(Interrupt, WhatWouldEndTheProgramIsAnErrorOfTheMachine) {
+TEST(Interrupt, TerminatingSignalsAreSystemFailures) {
   for (const int signal_number : {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU, SIGIO, SIGPWR, SIGSTKFLT, SIGRTMIN, SIGRTMAX}) {
     const app::InterruptHandler interrupt;
     EXPECT_TRUE(interrupt.outcome());
@@ -128,7 +128,7 @@ TEST(Interrupt, WhatWouldEndTheProgramIsAnErrorOfTheMachine) {
   EXPECT_TRUE(interrupt.outcome()) << "the first one counts: a person asked";
 }
 
-TEST(Interrupt, WorkWithoutADeviceEndsAtOnceWhereItIsAskedAgain) {
+TEST(Interrupt, WithoutADeviceASecondSignalEndsTheProgramAtOnce) {
   const auto asked = [](int times) {
     const app::InterruptHandler interrupt({SIGINT, SIGTERM});
     for (int k = 0; k < times; ++k) std::raise(SIGINT);
@@ -138,7 +138,7 @@ TEST(Interrupt, WorkWithoutADeviceEndsAtOnceWhereItIsAskedAgain) {
   EXPECT_EXIT(asked(2), testing::KilledBySignal(SIGINT), "");
 }
 
-TEST(Interrupt, WhatSomebodyIgnoresOrHandlesIsLeftAlone) {
+TEST(Interrupt, SignalsThatAreIgnoredStayIgnored) {
   std::signal(SIGUSR1, SIG_IGN);
   const app::InterruptHandler interrupt;
   std::raise(SIGUSR1);
@@ -146,8 +146,8 @@ TEST(Interrupt, WhatSomebodyIgnoresOrHandlesIsLeftAlone) {
   std::signal(SIGUSR1, SIG_DFL);
 }
 
-// a closed pipe and Ctrl-Z, too: a process that is stopped or killed leaves the last force at the device
-TEST(Interrupt, EverythingThatWouldEndOrSuspendTheProgramIsOnlyAsked) {
+// Also a closed pipe and Ctrl-Z: a process that is stopped or killed leaves the last force on the device.
+TEST(Interrupt, SignalsThatEndOrSuspendTheProgramAreOnlyRequests) {
   for (const int signal_number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGTSTP}) {
     const auto before = std::signal(signal_number, SIG_IGN);
     {
@@ -161,4 +161,4 @@ TEST(Interrupt, EverythingThatWouldEndOrSuspendTheProgramIsOnlyAsked) {
   }
 }
 
-}  // namespace hand_signals_test
+}  // namespace device_signals_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The self-test of devices (device_check.h) on devices that behave and that do not, and `catena devices` from the outside.
+/// The self-test of devices (device_check.h) on correct and faulty devices, and the command `catena devices`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using haptics::DeviceInput;
 using haptics::DeviceOutput;
 using haptics::DeviceStatus;
 
-/// x = compliance F at the hand; what goes wrong, and when, in reads.
+/// A device whose position is the compliance times the force; its faults begin at stated numbers of reads.
 class Springy final : public haptics::Device {
  public:
   Springy() { able_.max_force_n = 5; }
@@ -89,37 +89,37 @@ TEST(DeviceCheck, PushesAreSmallRampedAndReported) {
   EXPECT_EQ(device.force, Vec3(0.0));
 }
 
-TEST(DeviceCheck, AHandThatMovesTooFarEndsItAtOnce) {
+TEST(DeviceCheck, AHandThatMovesTooFarEndsTheCheckAtOnce) {
   Springy device;
   device.compliance = 0.05;
   const DeviceCheckResult out = check(device, true);
-  EXPECT_NE(out.failure.find("under a push of"), std::string::npos) << out.failure;
+  EXPECT_NE(out.failure.find("under a force of"), std::string::npos) << out.failure;
   EXPECT_NE(out.failure.find("+x"), std::string::npos) << out.failure;
   EXPECT_LE(device.strongest, 0.41);  // 0.02 m at 0.4 N
   EXPECT_EQ(device.force, Vec3(0.0));
   EXPECT_TRUE(out.pushes.empty());
 }
 
-TEST(DeviceCheck, AForceTheWrongWayRoundIsFound) {
+TEST(DeviceCheck, AForceInTheWrongDirectionIsFound) {
   Springy device;
   device.compliance = -0.002;
   EXPECT_NE(check(device, true).failure.find("axes or signs"), std::string::npos);
 }
 
-TEST(DeviceCheck, LossAndNonsenseAreFailuresWithZeroForce) {
+TEST(DeviceCheck, LossAndInvalidPositionsAreFailuresWithZeroForce) {
   for (const int when : {50, 900, 1300}) {
     Springy lost, broken, fallen;
     lost.lost = broken.broken = when;
     const DeviceCheckResult a = check(lost, true), b = check(broken, true);
     EXPECT_NE(a.failure.find("lost"), std::string::npos) << a.failure;
-    EXPECT_NE(b.failure.find("not a number"), std::string::npos) << b.failure;
+    EXPECT_NE(b.failure.find("the pose is not finite"), std::string::npos) << b.failure;
     EXPECT_EQ(lost.force, Vec3(0.0));
     EXPECT_EQ(broken.force, Vec3(0.0));
     EXPECT_LE(lost.reads, when);
   }
 }
 
-TEST(DeviceCheck, WaitsForAStartOnlySoLong) {
+TEST(DeviceCheck, TheWaitForAReadyDeviceIsLimited) {
   Springy device;
   device.starts = 1 << 30;
   const DeviceCheckResult out = check(device, false);
@@ -127,7 +127,7 @@ TEST(DeviceCheck, WaitsForAStartOnlySoLong) {
   EXPECT_EQ(out.read_count, 0u);
 }
 
-// Not ready for a while; says why.
+// A device that is not ready for a while and states the reason.
 class Homing final : public haptics::Device {
  public:
   const haptics::DeviceCapabilities& capabilities() const override { return able_; }
@@ -144,17 +144,17 @@ class Homing final : public haptics::Device {
   haptics::DeviceCapabilities able_;
 };
 
-TEST(DeviceCheck, SaysWhatTheDeviceAsksForWhileItIsNotReady) {
+TEST(DeviceCheck, PromptsWithTheStatusOfADeviceThatIsNotReady) {
   Homing device;
-  std::vector<std::string> told;
+  std::vector<std::string> prompts;
   DeviceCheckOptions options;
   options.seconds = 0.1;
-  options.prompt = [&](const std::string& text) { told.push_back(text); };
+  options.prompt = [&](const std::string& text) { prompts.push_back(text); };
   EXPECT_EQ(check_device(device, options, make_immediate_schedule(options.rate_hz)).failure, "");
-  EXPECT_EQ(told, (std::vector<std::string>{"pull it out", "push it in"}));
+  EXPECT_EQ(prompts, (std::vector<std::string>{"pull it out", "push it in"}));
 }
 
-// DrawState, but forces are not let through at first, and the hand moves until `rests`.
+// A device that enables forces late and whose hand moves until `rests`.
 class Arming final : public haptics::Device {
  public:
   Arming() { able_.max_force_n = 5; }
@@ -175,27 +175,27 @@ class Arming final : public haptics::Device {
   haptics::DeviceCapabilities able_;
 };
 
-TEST(DeviceCheck, PushesOnlyOnceForcesAreLetThroughAndTheGripRests) {
-  const auto run = [](Arming& device, std::vector<std::string>& told) {
+TEST(DeviceCheck, PushesOnlyOnceForcesAreEnabledAndTheGripRests) {
+  const auto run = [](Arming& device, std::vector<std::string>& prompts) {
     DeviceCheckOptions options;
     options.seconds = 0.1;
     options.forces = true;
-    options.prompt = [&](const std::string& text) { told.push_back(text); };
+    options.prompt = [&](const std::string& text) { prompts.push_back(text); };
     return check_device(device, options, make_immediate_schedule(options.rate_hz));
   };
-  std::vector<std::string> told;
+  std::vector<std::string> prompts;
   Arming device;
-  EXPECT_EQ(run(device, told).failure, "");
+  EXPECT_EQ(run(device, prompts).failure, "");
   EXPECT_GE(device.first_push, 2500 - 20 + 500);  // 2 mm of rest are 20 ticks of this hand
   EXPECT_LE(device.first_push, 2510 + 500);
-  ASSERT_EQ(told.size(), 2u);
-  EXPECT_EQ(told[0], "pull it out once");
-  EXPECT_NE(told[1].find("hold the grip still"), std::string::npos);
+  ASSERT_EQ(prompts.size(), 2u);
+  EXPECT_EQ(prompts[0], "pull it out once");
+  EXPECT_NE(prompts[1].find("hold the grip still"), std::string::npos);
 
   Arming never, restless;
   never.arms = restless.rests = 1 << 30;
-  EXPECT_NE(run(never, told).failure.find("lets no force through after 20 s; pull it out once"), std::string::npos);
-  EXPECT_NE(run(restless, told).failure.find("did not rest"), std::string::npos);
+  EXPECT_NE(run(never, prompts).failure.find("has not enabled its forces after 20 s; pull it out once"), std::string::npos);
+  EXPECT_NE(run(restless, prompts).failure.find("did not rest"), std::string::npos);
   EXPECT_EQ(never.first_push + restless.first_push, 0);
 }
 
@@ -209,7 +209,7 @@ TEST(DeviceCheck, StopsWhenAsked) {
     if (k == 2800) stop = true;
     return 1e-3 * static_cast<double>(k);
   });
-  EXPECT_EQ(out.failure, "stopped by hand");
+  EXPECT_EQ(out.failure, "stopped by the user");
   EXPECT_EQ(device.force, Vec3(0.0));
   EXPECT_LE(device.reads, 2801);
   EXPECT_GT(device.strongest, 0) << "it was pushing";
@@ -226,7 +226,7 @@ test::ProgramResult devices(std::vector<std::string> arguments) {
   return test::run_catena(arguments);
 }
 
-TEST(Devices, ListsWhatThereIs) {
+TEST(Devices, ListsTheDevices) {
   const test::ProgramResult plain = devices({}), json = devices({"--json"});
   EXPECT_EQ(plain.exit_code, 0);
   EXPECT_NE(plain.out.find("simulated-6dof"), std::string::npos);
@@ -243,13 +243,13 @@ TEST(Devices, ListsWhatThereIs) {
   EXPECT_TRUE(found);
 }
 
-TEST(Devices, TestsTheSimulatedOnesAndARecordedPath) {
+TEST(Devices, TestsTheSimulatedDevicesAndARecordedPath) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "p.csv", "t,x,y,z,buttons\n-1,0,2,3,0\n0,1,2,3,0\n0.001,1.5,2,3,2\n");
   for (const std::string& name : {std::string("null"), std::string("simulated"), "recorded:" + (folder / "p.csv")}) {
     const test::ProgramResult run = devices({"test", name, "--seconds", "0.05"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_NE(run.out.find("pass (no forces"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("pass (without forces"), std::string::npos) << run.out;
   }
   const test::ProgramResult recorded = devices({"test", "recorded:" + (folder / "p.csv"), "--seconds", "0.05"});
   EXPECT_NE(recorded.out.find("x 1.00000 .. 1.50000"), std::string::npos) << recorded.out;
@@ -259,10 +259,10 @@ TEST(Devices, TestsTheSimulatedOnesAndARecordedPath) {
 TEST(Devices, PushesTheSimulatedHand) {
   const test::ProgramResult run = devices({"test", "simulated-6dof", "--seconds", "0.05", "--forces"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  const std::string said = "push         +1.00 +0.00 +0.00 N moved the hand +";
-  const auto at = run.out.find(said);
+  const std::string prefix = "force        +1.00 +0.00 +0.00 N moved the hand +";
+  const auto at = run.out.find(prefix);
   ASSERT_NE(at, std::string::npos) << run.out;
-  EXPECT_NEAR(std::stod(run.out.substr(at + said.size())), 2, 0.5) << run.out;  // mm: 1 N against a hand of 500 N/m
+  EXPECT_NEAR(std::stod(run.out.substr(at + prefix.size())), 2, 0.5) << run.out;  // mm: 1 N against a hand of 500 N/m
   EXPECT_NE(run.out.find("\npass\n"), std::string::npos) << run.out;
 }
 
@@ -270,10 +270,10 @@ TEST(Devices, PushesTheEmulatedFalconInAStillHand) {
   const test::ProgramResult run = devices({"test", "emulated-falcon:still", "--seconds", "0.05", "--forces"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(run.err.find("pull the grip fully out"), std::string::npos) << run.err;
-  const std::string said = "push         +1.00 +0.00 +0.00 N moved the hand +";
-  const auto at = run.out.find(said);
+  const std::string prefix = "force        +1.00 +0.00 +0.00 N moved the hand +";
+  const auto at = run.out.find(prefix);
   ASSERT_NE(at, std::string::npos) << run.out;
-  EXPECT_NEAR(std::stod(run.out.substr(at + said.size())), 1000.0 / 300, 0.5) << run.out;  // mm: 1 N against a hand of 300 N/m
+  EXPECT_NEAR(std::stod(run.out.substr(at + prefix.size())), 1000.0 / 300, 0.5) << run.out;  // mm: 1 N against a hand of 300 N/m
 }
 
 TEST(Devices, TheEmulatedFalconBootsAStatedFirmware) {
@@ -292,7 +292,7 @@ TEST(Devices, TheEmulatedFalconBootsAStatedFirmware) {
   }
 }
 
-TEST(Devices, FailuresAreOneLineAndOneBadNamesTwo) {
+TEST(Devices, FailuresAreOneLine) {
   const auto expect = [](const test::ProgramResult& run, int code, const char* part) {
     EXPECT_EQ(run.exit_code, code) << run.err;
     EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
@@ -303,8 +303,8 @@ TEST(Devices, FailuresAreOneLineAndOneBadNamesTwo) {
   expect(devices({"test", "null", "--seconds", "0.05", "--forces"}), 1, "no force output");
   expect(devices({"test", "recorded"}), 1, "recorded:PATH.csv");
   expect(devices({"test", "mouse"}), 1, "catena view");
-  expect(devices({"test", "simulated:"}), 1, "nothing after its colon");
-  expect(devices({"test", "null:1"}), 1, "\"null\" alone");
+  expect(devices({"test", "simulated:"}), 1, "no detail after the colon");
+  expect(devices({"test", "null:1"}), 1, "\"null\" was expected");
   expect(devices({"test", "emulated-falcon:stil"}), 1, "emulated-falcon:still");
 }
 

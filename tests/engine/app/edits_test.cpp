@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Edits that panels note: what becomes of them in the queue of commands, and which of them are one step of undo.
+// Edits that panels record: execution in the queue of commands, and grouping into undo steps.
 #include "engine/app/viewer/edit/edits.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ struct Notes {
   EditState state;
   Edits edits{commands, state};
 
-  /// As the session does after each frame.
+  /// Applies the edits as the session does after each frame.
   void carry_out(SceneModel& host) {
     for (const Command& command : std::exchange(commands, {})) {
       const Edit* edit = std::get_if<Edit>(&command);
@@ -35,7 +35,7 @@ SceneModel open_scene() {
   return std::move(*host);
 }
 
-TEST(Edits, AreNotedAndChangeNothingAtOnce) {
+TEST(Edits, AreQueuedAndAppliedInOrder) {
   SceneModel host = open_scene();
   Notes notes;
   notes.edits.set("/isosurfaces/0/opacity", "0.5", "opacity");
@@ -49,7 +49,7 @@ TEST(Edits, AreNotedAndChangeNothingAtOnce) {
   EXPECT_EQ(host.document().undo_label(), "opacity") << "in order, a step each";
 }
 
-TEST(Edits, OfOneGestureAreOneStepOfUndo) {
+TEST(Edits, EditsOfOneGestureAreOneUndoStep) {
   SceneModel host = open_scene();
   Notes notes;
   for (int frame = 1; frame <= 5; ++frame) {
@@ -61,7 +61,7 @@ TEST(Edits, OfOneGestureAreOneStepOfUndo) {
   EXPECT_FALSE(host.document().can_undo());
 }
 
-TEST(Edits, OfTwoGesturesOrOfTwoThingsAreTwoSteps) {
+TEST(Edits, EditsOfDifferentGesturesOrItemsAreSeparateUndoSteps) {
   SceneModel host = open_scene();
   Notes notes;
   notes.edits.drag("/isosurfaces/0/level", "0.1", "isolevel");
@@ -74,7 +74,7 @@ TEST(Edits, OfTwoGesturesOrOfTwoThingsAreTwoSteps) {
   EXPECT_EQ(steps, 3);
 }
 
-TEST(Edits, ThatBelongTogetherAreAllOrNothing) {
+TEST(Edits, ASetOfEditsIsAppliedCompletelyOrNotAtAll) {
   SceneModel host = open_scene();
   const Outcome done = host.apply({{"/isosurfaces/0/level", "0.1"}, {"/isosurfaces/0/opacity", "\"thick\""}}, "level");
   EXPECT_FALSE(done);

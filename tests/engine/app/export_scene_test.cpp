@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena export SCENE` and `catena import` to other formats, from the outside: what is written holds what closed forms say.
+/// `catena export SCENE` and `catena import` to other formats: the written values equal closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -81,13 +81,13 @@ TEST_F(ExportScene, IsosurfaceIsTheSameSphereInEveryFormat) {
     EXPECT_EQ(mesh->open_edges() + mesh->non_manifold_edges() + mesh->misoriented_edges(), 0u);
     EXPECT_NEAR(volume_of(*mesh), 0.5236, 6e-3);
     for (const Vec3& v : mesh->vertices()) ASSERT_NEAR(norm(v), 0.5, 2e-3);
-    // the other way round values below the level are inside out
+    // With the default --outside, the sphere is inside out.
     expect_written({"--isosurface", "0", "-o", folder_ / name});
     EXPECT_NEAR(volume_of(*mesh_in(name)), -0.5236, 6e-3);
   }
 }
 
-TEST_F(ExportScene, MeshKeepsItsCornersAndItsOutside) {
+TEST_F(ExportScene, MeshKeepsItsVerticesAndOrientation) {
   for (const std::string& name : surface_names("m")) {
     SCOPED_TRACE(name);
     expect_written({"--mesh", "tetrahedron", "-o", folder_ / name});
@@ -99,7 +99,7 @@ TEST_F(ExportScene, MeshKeepsItsCornersAndItsOutside) {
   }
 }
 
-TEST_F(ExportScene, SliceHasTheValuesOfAllFields) {
+TEST_F(ExportScene, ASliceHasTheValuesOfAllFields) {
   expect_written({"--slice", "0", "--spacing", "0.25", "-o", folder_ / "s.csv"});
   const Table table = Table::read(folder_ / "s.csv");
   ASSERT_EQ(table.rows(), 81u) << "-1 to 1 in steps of 0.25, both ways";
@@ -111,7 +111,7 @@ TEST_F(ExportScene, SliceHasTheValuesOfAllFields) {
     EXPECT_EQ(table.number(i, "w_x"), -p.y);
     EXPECT_EQ(table.number(i, "w_y"), p.x);
   }
-  // of a widget's plane, in the voxels of the grid that is drawn; as triangles
+  // A slice by a widget's plane, sampled at the voxel spacing of the drawn grid and written as triangles.
   expect_written({"--slice", "1", "--spacing", "0.5", "-o", folder_ / "s.vtp"});
   const std::string file = test::read_file(folder_ / "s.vtp");
   EXPECT_NE(file.find("NumberOfPoints=\"81\""), std::string::npos);
@@ -126,7 +126,7 @@ TEST_F(ExportScene, SliceHasTheValuesOfAllFields) {
 #endif
 }
 
-TEST_F(ExportScene, StreamlinesAreWhatTraceWrites) {
+TEST_F(ExportScene, StreamlinesEqualTheOutputOfTrace) {
   test::write_file(folder_ / "seeds.csv", "x,y,z\n1,0,0\n0.5,0,0.25\n");
   for (const std::string ending : {".csv", ".vtp"}) {
     expect_written({"--streamlines", "0", "-o", folder_ / ("a" + ending)});
@@ -138,7 +138,7 @@ TEST_F(ExportScene, StreamlinesAreWhatTraceWrites) {
   }
 }
 
-TEST_F(ExportScene, ProbePathHasTheValuesThatItMet) {
+TEST_F(ExportScene, AProbePathHasTheFieldValuesAlongIt) {
   expect_written({"--probe", folder_ / "p.csv", "-o", folder_ / "o.csv"});
   const Table table = Table::read(folder_ / "o.csv");
   ASSERT_EQ(table.rows(), 3u);
@@ -166,15 +166,16 @@ TEST_F(ExportScene, FieldOfASceneAndImportWriteTheSame) {
   EXPECT_NEAR(back->scalar->sample(Vec3(0.5, 0.25, -0.5), cursor).value, 0.75, 1e-3);
 }
 
-TEST_F(ExportScene, RefusesWhatIsNotThereInOneSentence) {
-  expect_refused({}, "expected one of --isosurface");
-  expect_refused({"--isosurface", "0", "--slice", "0"}, "expected one of --isosurface");
-  expect_refused({"--isosurface", "2"}, "there is no item 2 in \"isosurfaces\"; the scene has those from 0 to 1");
+TEST_F(ExportScene, MissingItemsAreRefusedInOneLine) {
+  expect_refused({}, "one of --isosurface, --slice, --streamlines, --mesh, --field or --probe was expected");
+  expect_refused({"--isosurface", "0", "--slice", "0"},
+                 "one of --isosurface, --slice, --streamlines, --mesh, --field or --probe was expected");
+  expect_refused({"--isosurface", "2"}, "there is no item 2 in \"isosurfaces\"; the scene has items 0 to 1");
   expect_refused({"--mesh", "m"}, "unknown mesh \"m\"");
   expect_refused({"--field", "q"}, "expected an output that ends in .vdb");
   expect_refused({"--slice", "2"}, "no sample of the slice lies within its field");
   expect_refused({"--slice", "0", "--spacing", "1e-9"}, "samples, needs");
-  expect_refused({"--slice", "0", "--details", folder_ / "d.csv"}, "--details goes with a recording");
+  expect_refused({"--slice", "0", "--details", folder_ / "d.csv"}, "--details applies only to a recording");
   const ProgramResult onto_input = write({"--mesh", "tetrahedron", "-o", folder_ / "t.obj"});
   EXPECT_EQ(onto_input.exit_code, 2);
   EXPECT_NE(onto_input.err.find("is also an input"), std::string::npos) << onto_input.err;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena feel` from the outside.
+/// The command `catena feel`.
 #include <gtest/gtest.h>
 #include <pty.h>
 #include <sys/wait.h>
@@ -16,7 +16,7 @@
 #include "tests/support/support.h"
 
 namespace catena {
-namespace feel_test {
+namespace feel_command_test {
 
 constexpr const char* kScene = R"({
   "fields": {"v": {"analytic": "circle"}},
@@ -30,7 +30,7 @@ class FeelCommand : public testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return test::run_catena(arguments);
   }
-  /// A run of a fifth of a second, and its figures.
+  /// Runs for a fifth of a second and returns the statistics.
   json::Node stats(std::vector<std::string> more, const std::string& device = "") {
     more.insert(more.end(), {"--seconds", "0.2", "--stats", folder_ / "stats.json"});
     const test::ProgramResult run = feel(more, device);
@@ -52,7 +52,7 @@ class FeelCommand : public testing::Test {
   std::string out_, err_;
 };
 
-TEST_F(FeelCommand, RunsTheServoAndWritesItsFigures) {
+TEST_F(FeelCommand, RunsTheServoAndWritesItsStatistics) {
   const json::Node root = stats({});
   EXPECT_EQ(root.find("device")->string.find("simulated"), 0u) << "the default device";
   EXPECT_EQ(root.find("rate_hz")->number, 1000);
@@ -68,22 +68,22 @@ TEST_F(FeelCommand, RunsTheServoAndWritesItsFigures) {
   EXPECT_EQ(root.find("state_hash")->string.size(), 16u);
   EXPECT_NE(out_.find("forces off"), std::string::npos) << out_;
   EXPECT_NE(out_.find("missed deadlines"), std::string::npos) << out_;
-  // what was not permitted has been said, once for each
+  // Each real-time setting that was not permitted has one note.
   const json::Node& realtime = *root.find("realtime");
   EXPECT_EQ(static_cast<std::size_t>(std::count(err_.begin(), err_.end(), '\n')), realtime.find("notes")->items.size()) << err_;
 }
 
-TEST_F(FeelCommand, OptionsGoBeforeTheScenesDeviceAndThatBeforeTheDefault) {
+TEST_F(FeelCommand, OptionsOverrideTheScenesDeviceAndThatOverridesTheDefault) {
   const std::string device = R"({"type": "null", "rate": 500})";
   EXPECT_EQ(stats({}, device).find("rate_hz")->number, 500);
   EXPECT_EQ(stats({"--rate", "2000"}, device).find("rate_hz")->number, 2000);
   const json::Node other = stats({"--device", "simulated", "--forces", "on"}, device);
   EXPECT_EQ(other.find("rate_hz")->number, 1000) << "what the scene says is for its own device";
-  EXPECT_NE(err_.find("describes a null: not used for simulated"), std::string::npos) << err_;
+  EXPECT_NE(err_.find("describes a device of type null; it is not used for simulated"), std::string::npos) << err_;
   EXPECT_NE(out_.find("forces on"), std::string::npos) << out_;
 }
 
-TEST_F(FeelCommand, WithoutRealTimeItHasNothingToSay) {
+TEST_F(FeelCommand, WithRealtimeOffThereAreNoNotes) {
   const json::Node root = stats({"--realtime", "off"});
   EXPECT_FALSE(root.find("realtime")->find("fifo")->boolean);
   EXPECT_FALSE(root.find("realtime")->find("locked")->boolean);
@@ -100,7 +100,7 @@ TEST_F(FeelCommand, CtrlCEndsItCleanly) {
   EXPECT_NE(run.out.find("ticks in"), std::string::npos) << run.out;
 }
 
-/// On a terminal that is stopped after a moment: the exit code, -1 where it had to be killed.
+/// Runs on a terminal that is stopped after a moment, and returns the exit code, or -1 if the program had to be killed.
 int run_on_stopped_terminal(const std::vector<std::string>& words, int signal_number) {
   int terminal = -1;
   const pid_t child = ::forkpty(&terminal, nullptr, nullptr, nullptr);
@@ -134,8 +134,8 @@ int run_on_stopped_terminal(const std::vector<std::string>& words, int signal_nu
   return -1;
 }
 
-// before, its line of state waited for the terminal, and with it the time, the signals and the end, while the force went on
-TEST_F(FeelCommand, AStoppedTerminalHoldsNothingUp) {
+// The status line must not wait for the terminal: the time limit, signals and the end of the program do not depend on the terminal.
+TEST_F(FeelCommand, AStoppedTerminalDoesNotBlockTheProgram) {
   test::write_file(folder_ / "s.json", std::string(kScene) + "}");
   const auto words = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {"feel", folder_ / "s.json", "--device", "emulated-falcon", "--forces", "on"});
@@ -166,8 +166,8 @@ TEST_F(FeelCommand, BadInputIsOneLine) {
   expect_refused(feel({"--stats", folder_ / "none/stats.json"}), "none");
   const test::ProgramResult data = test::run_catena({"feel", "grid.vdb"});
   EXPECT_EQ(data.exit_code, 2);
-  EXPECT_NE(data.err.find("expected a scene file"), std::string::npos) << data.err;
+  EXPECT_NE(data.err.find("a scene file (.json) with a chain was expected"), std::string::npos) << data.err;
 }
 
-}  // namespace feel_test
+}  // namespace feel_command_test
 }  // namespace catena

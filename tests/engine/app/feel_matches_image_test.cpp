@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// "Feel": what the hand feels is the very thing that is drawn. Random pixels of each kind of thing are pointed at; the link that the window
-// makes of that is felt by the tick of `replay`, and the place where it holds the hand is held against the depth that the picture shows.
+// The object that is felt is the object that is drawn. The tests pick random pixels of each kind of item, simulate the link that the
+// window makes for the item, and compare the proxy's position with the depth in the image.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@
 #include "tests/support/mesh_shapes.h"
 
 namespace catena::app {
-namespace feel_this_test {
+namespace feel_matches_image_test {
 
 constexpr int kPixels = 20, kTicks = 400;
 
@@ -32,7 +32,7 @@ class FeelMatchesImage : public test::ImageTest {
     camera_ = render::make_camera(packet_.view, packet_.width, packet_.height, Bounds());
   }
 
-  /// A pixel that shows an item of the part, away from its silhouette, and its place.
+  /// A pixel that shows an item of the given part, away from its silhouette, and its position.
   std::optional<PickHit> random_place(const std::string& part) {
     std::uniform_int_distribution<int> column(4, 315), row(4, 235);
     for (int tries = 0; tries < 4000; ++tries) {
@@ -50,39 +50,39 @@ class FeelMatchesImage : public test::ImageTest {
   }
   std::string item_of(const PickHit& place) const { return packet_.objects[place.id - 1].scene_path; }
   double pixel_at(const Vec3& p) const { return render::pixel_size(camera_, render::project(camera_, p)->z); }
-  /// What the picture shows in that pixel: the depth that the device drew.
+  /// The position in the image at that pixel, from the depth buffer.
   Vec3 drawn_at(double x, double y) {
     const auto texel = renderer_->pick(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
     EXPECT_TRUE(texel);
     return render::unproject(camera_, x, y, texel->depth);
   }
 
-  struct Felt {
-    Vec3 touched{0.0}, pressed{0.0};  ///< the proxy where the hand is put, and once it is pushed
+  struct Contact {
+    Vec3 touched{0.0}, pressed{0.0};  ///< the proxy where the hand is placed, and after it is pushed
     double force_n = 0;
     Vec3 hand{0.0};
     std::string words;
   };
-  /// As the window does: the link, then the hand on the place, then pushed along the view.
-  Felt feel_at(const PickHit& place, double push) {
-    Felt felt;
+  /// Makes the link as the window does, places the hand at the position, and pushes along the view direction.
+  Contact feel_at(const PickHit& place, double push) {
+    Contact contact;
     const auto thing = make_haptic_binding(host_->scene(), item_of(place), place.world, packet_.view.position, 4);
     EXPECT_TRUE(thing) << thing.error().message;
-    if (!thing) return felt;
-    felt.words = thing->description;
+    if (!thing) return contact;
+    contact.words = thing->description;
     const std::string text = host_->document().text();
     const std::string with_link = text.substr(0, text.rfind('}')) + ", \"chain\": [" + thing->link_json + "]}";
     TickSimulation hand(with_link);
     const Vec3 ahead = direction(place.world - packet_.view.position);
     for (int k = 0; k <= kTicks; ++k) {
       const double share = std::max(0.0, (k - 50) / double(kTicks - 50));
-      felt.hand = place.world + share * push * ahead;
-      const HapticState& state = hand.step(1e-3 * k, felt.hand);
-      if (k == 0) felt.touched = state.links[0].proxy;
-      felt.pressed = state.links[0].proxy;
-      felt.force_n = norm(state.force_n);
+      contact.hand = place.world + share * push * ahead;
+      const HapticState& state = hand.step(1e-3 * k, contact.hand);
+      if (k == 0) contact.touched = state.links[0].proxy;
+      contact.pressed = state.links[0].proxy;
+      contact.force_n = norm(state.force_n);
     }
-    return felt;
+    return contact;
   }
 
   test::TemporaryFolder folder_;
@@ -93,7 +93,7 @@ class FeelMatchesImage : public test::ImageTest {
   std::mt19937 random_{20261122};
 };
 
-TEST_F(FeelMatchesImage, WhatThePointerShowsIsWhatThePictureShows) {
+TEST_F(FeelMatchesImage, PickingFindsTheDrawnObjectAndDepth) {
   show(R"({"fields": {"g": {"analytic": "gaussian", "resolution": 48}, "flow": {"analytic": "hill", "resolution": 32}},
            "isosurfaces": [{"field": "g", "level": 0.4}], "slices": [{"field": "g", "axis": "x", "at": -0.7}],
            "streamlines": [{"field": "flow", "radius": 0.03, "length": 3, "seeds": [[0.2, 0.1, -0.4], [0.5, 0.5, 0.1]]}],
@@ -105,7 +105,7 @@ TEST_F(FeelMatchesImage, WhatThePointerShowsIsWhatThePictureShows) {
     const auto place = pick_on_cpu(packet_, x, y);
     const auto texel = renderer_->pick(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
     ASSERT_TRUE(texel);
-    // at an edge either may win
+    // At an edge, either object may be nearer.
     bool edge = false;
     for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
       const auto u = static_cast<std::uint32_t>(std::clamp(int(x) + dx, 0, 319)),
@@ -127,32 +127,32 @@ TEST_F(FeelMatchesImage, AnIsosurfaceIsFeltWhereItIsDrawn) {
   for (int k = 0; k < kPixels; ++k) {
     const auto place = random_place("isosurfaces");
     ASSERT_TRUE(place);
-    const Felt felt = feel_at(*place, 0.05);
-    EXPECT_LE(norm(felt.touched - place->world), pixel_at(place->world)) << felt.words;
-    EXPECT_LE(norm(felt.touched - drawn_at(pixel_[0], pixel_[1])), 1.5 * pixel_at(place->world)) << felt.words;
-    // pressed: the proxy stays on what is drawn
-    const auto at = render::project(camera_, felt.pressed);
+    const Contact contact = feel_at(*place, 0.05);
+    EXPECT_LE(norm(contact.touched - place->world), pixel_at(place->world)) << contact.words;
+    EXPECT_LE(norm(contact.touched - drawn_at(pixel_[0], pixel_[1])), 1.5 * pixel_at(place->world)) << contact.words;
+    // The proxy of the pressed hand stays on the drawn surface.
+    const auto at = render::project(camera_, contact.pressed);
     const Vec3 drawn = drawn_at(std::floor(at->x) + 0.5, std::floor(at->y) + 0.5);
-    EXPECT_LE(norm(drawn - felt.pressed), 3 * pixel_at(felt.pressed)) << "half a pixel sideways on an oblique surface";
-    EXPECT_GT(felt.force_n, 0.05);
-    EXPECT_GT(norm(felt.hand - felt.pressed), 0.01);
+    EXPECT_LE(norm(drawn - contact.pressed), 3 * pixel_at(contact.pressed)) << "half a pixel sideways on an oblique surface";
+    EXPECT_GT(contact.force_n, 0.05);
+    EXPECT_GT(norm(contact.hand - contact.pressed), 0.01);
   }
   EXPECT_EQ(feel_at(*random_place("isosurfaces"), 0.05).words, "isosurface g at 0.37");
 }
 
-TEST_F(FeelMatchesImage, AVolumeIsFeltAtTheValueThatIsPointedAt) {
+TEST_F(FeelMatchesImage, AVolumeIsFeltAsTheIsosurfaceOfThePickedValue) {
   show(R"({"fields": {"g": {"analytic": "gaussian", "resolution": 48}},
            "volumes": [{"field": "g", "extinction": [[0.3, 0], [0.31, 40], [1, 40]]}], "workspace": {"metres_per_unit": 0.05}})");
   for (int k = 0; k < kPixels; ++k) {
     const auto place = random_place("volumes");
     ASSERT_TRUE(place);
-    const Felt felt = feel_at(*place, 0.05);
-    EXPECT_LE(norm(felt.touched - place->world), pixel_at(place->world)) << felt.words;
-    EXPECT_GT(felt.force_n, 0.05);
+    const Contact contact = feel_at(*place, 0.05);
+    EXPECT_LE(norm(contact.touched - place->world), pixel_at(place->world)) << contact.words;
+    EXPECT_GT(contact.force_n, 0.05);
   }
 }
 
-TEST_F(FeelMatchesImage, OfALabelMapTheLabelThatIsPointedAtIsFeltByItself) {
+TEST_F(FeelMatchesImage, OnlyThePickedLabelOfALabelMapIsFelt) {
   std::string bytes;
   for (int z = 0; z < 24; ++z)
     for (int y = 0; y < 24; ++y)
@@ -172,7 +172,7 @@ TEST_F(FeelMatchesImage, OfALabelMapTheLabelThatIsPointedAtIsFeltByItself) {
       EXPECT_EQ(thing->description, place->world.x < 11.5 ? "label Left one (5)" : "label Right (6)");
     }
     if (thing->description != "label Left one (5)") continue;
-    // the first time its surface becomes a field, in one step with the link; then it is known
+    // The first binding adds the label's field together with the link; later ones find the link.
     const bool known = !find_bound_link(host_->scene(), *thing).empty();
     EXPECT_EQ(thing->new_field.has_value(), !known);
     if (known) continue;
@@ -184,7 +184,7 @@ TEST_F(FeelMatchesImage, OfALabelMapTheLabelThatIsPointedAtIsFeltByItself) {
   EXPECT_EQ(words.size(), 2u) << "both are seen";
 }
 
-TEST_F(FeelMatchesImage, AStreamlineIsTheOneThatIsPointedAt) {
+TEST_F(FeelMatchesImage, ThePickedStreamlineIsFelt) {
   show(R"({"fields": {"flow": {"analytic": "helix", "resolution": 40}},
            "streamlines": [{"field": "flow", "radius": 0.04, "length": 2, "seeds": [[0.6, 0, -0.8], [-0.5, 0.2, 0.1], [0, 0.9, 0.4]]}],
            "workspace": {"metres_per_unit": 0.05}})");
@@ -193,40 +193,40 @@ TEST_F(FeelMatchesImage, AStreamlineIsTheOneThatIsPointedAt) {
     const auto place = random_place("streamlines");
     ASSERT_TRUE(place);
     links.insert(make_haptic_binding(host_->scene(), item_of(*place), place->world, packet_.view.position, 4)->link_json);
-    const Felt felt = feel_at(*place, 0.2);
-    EXPECT_LE(norm(felt.touched - place->world), 0.04 + pixel_at(place->world)) << "the line within the tube";
-    EXPECT_GT(felt.force_n, 0.05);
+    const Contact contact = feel_at(*place, 0.2);
+    EXPECT_LE(norm(contact.touched - place->world), 0.04 + pixel_at(place->world)) << "the line within the tube";
+    EXPECT_GT(contact.force_n, 0.05);
   }
   EXPECT_GE(links.size(), 2u) << "the picture shows several lines";
 }
 
-TEST_F(FeelMatchesImage, ASliceIsItsPlane) {
+TEST_F(FeelMatchesImage, ASliceIsFeltAsItsPlane) {
   show(
       R"({"fields": {"g": {"analytic": "gaussian", "resolution": 32}}, "slices": [{"field": "g", "point": [0, 0.1, 0], "normal": [1, -2, 0.5]}],
            "workspace": {"metres_per_unit": 0.05}})");
   for (int k = 0; k < kPixels; ++k) {
     const auto place = random_place("slices");
     ASSERT_TRUE(place);
-    const Felt felt = feel_at(*place, 0.1);
-    EXPECT_LE(norm(felt.touched - place->world), pixel_at(place->world));
-    EXPECT_LE(std::abs(dot(direction(Vec3(1, -2, 0.5)), felt.pressed - Vec3(0, 0.1, 0))), 1e-9);
-    EXPECT_GT(felt.force_n, 0.05);
+    const Contact contact = feel_at(*place, 0.1);
+    EXPECT_LE(norm(contact.touched - place->world), pixel_at(place->world));
+    EXPECT_LE(std::abs(dot(direction(Vec3(1, -2, 0.5)), contact.pressed - Vec3(0, 0.1, 0))), 1e-9);
+    EXPECT_GT(contact.force_n, 0.05);
   }
 }
 
-TEST_F(FeelMatchesImage, AMeshIsItself) {
+TEST_F(FeelMatchesImage, AMeshIsFeltWhereItIsDrawn) {
   test::write_file(folder_ / "ball.stl", test::binary_stl(test::sphere_soup(24, 0.8)));
   show(R"({"meshes": [{"name": "ball", "file": ")" + (folder_ / "ball.stl") + R"("}], "workspace": {"metres_per_unit": 0.05}})");
   for (int k = 0; k < kPixels; ++k) {
     const auto place = random_place("meshes");
     ASSERT_TRUE(place);
-    const Felt felt = feel_at(*place, 0.05);
-    EXPECT_LE(norm(felt.touched - place->world), pixel_at(place->world));
-    EXPECT_GT(felt.force_n, 0.05);
+    const Contact contact = feel_at(*place, 0.05);
+    EXPECT_LE(norm(contact.touched - place->world), pixel_at(place->world));
+    EXPECT_GT(contact.force_n, 0.05);
   }
 }
 
-TEST_F(FeelMatchesImage, CurvesFromAFileAreTheLineThatIsPointedAt) {
+TEST_F(FeelMatchesImage, ThePickedCurveOfAFileIsFelt) {
   test::Polylines lines;
   for (int k = 0; k < 12; ++k) {
     lines.emplace_back();
@@ -242,19 +242,19 @@ TEST_F(FeelMatchesImage, CurvesFromAFileAreTheLineThatIsPointedAt) {
   for (int k = 0; k < kPixels; ++k) {
     const auto place = random_place("curves");
     ASSERT_TRUE(place);
-    const Felt felt = feel_at(*place, 0.06);
-    EXPECT_EQ(felt.words, "curves fibres");
-    EXPECT_LE(norm(felt.touched - place->world), 0.03 + pixel_at(place->world)) << "the line within the tube";
-    EXPECT_LE(norm(felt.touched - drawn_at(pixel_[0], pixel_[1])), 0.03 + 1.5 * pixel_at(place->world));
-    // pressed: still on that line
-    EXPECT_NEAR(felt.pressed.y, felt.touched.y, 1e-9);
-    EXPECT_GT(felt.force_n, 0.05);
-    held.insert(static_cast<int>(std::lround((felt.pressed.y + 0.9) / 0.15)));
+    const Contact contact = feel_at(*place, 0.06);
+    EXPECT_EQ(contact.words, "curves fibres");
+    EXPECT_LE(norm(contact.touched - place->world), 0.03 + pixel_at(place->world)) << "the line within the tube";
+    EXPECT_LE(norm(contact.touched - drawn_at(pixel_[0], pixel_[1])), 0.03 + 1.5 * pixel_at(place->world));
+    // The proxy of the pressed hand stays on that line.
+    EXPECT_NEAR(contact.pressed.y, contact.touched.y, 1e-9);
+    EXPECT_GT(contact.force_n, 0.05);
+    held.insert(static_cast<int>(std::lround((contact.pressed.y + 0.9) / 0.15)));
   }
   EXPECT_GE(held.size(), 4u) << "the picture shows many lines";
 }
 
-TEST_F(FeelMatchesImage, PointsOfATableAreThePointThatIsPointedAt) {
+TEST_F(FeelMatchesImage, ThePickedPointOfATableIsFelt) {
   std::string table = "x,y,z\n";
   std::uniform_real_distribution<double> place(-0.9, 0.9);
   for (int k = 0; k < 60; ++k) table += fmt::format("{},{},{}\n", place(random_), place(random_), place(random_));
@@ -265,14 +265,14 @@ TEST_F(FeelMatchesImage, PointsOfATableAreThePointThatIsPointedAt) {
     const auto at = random_place("points");
     ASSERT_TRUE(at);
     EXPECT_LE(norm(at->world - drawn_at(pixel_[0], pixel_[1])), 1.5 * pixel_at(at->world)) << "picked where it is drawn";
-    const Felt felt = feel_at(*at, 0.03);
-    EXPECT_EQ(felt.words, "points dots");
-    EXPECT_NEAR(norm(felt.pressed - at->world), 0.06, 1e-6) << "the middle of the ball";
-    EXPECT_GT(felt.force_n, 0.05);
+    const Contact contact = feel_at(*at, 0.03);
+    EXPECT_EQ(contact.words, "points dots");
+    EXPECT_NEAR(norm(contact.pressed - at->world), 0.06, 1e-6) << "the middle of the ball";
+    EXPECT_GT(contact.force_n, 0.05);
   }
 }
 
-TEST_F(FeelMatchesImage, TheFreeSideIsTheEyesAlsoOfAMeshWhoseFacesLookInwards) {
+TEST_F(FeelMatchesImage, TheFreeSideIsTheCamerasSideForEitherMeshOrientation) {
   mesh::TriangleSoup soup = test::sphere_soup(16, 0.8);
   test::write_file(folder_ / "out.stl", test::binary_stl(soup));
   for (auto& triangle : soup.triangles) std::swap(triangle[0], triangle[1]);
@@ -285,21 +285,21 @@ TEST_F(FeelMatchesImage, TheFreeSideIsTheEyesAlsoOfAMeshWhoseFacesLookInwards) {
   }
 }
 
-TEST_F(FeelMatchesImage, AFieldOfOneValueHasNoSurface) {
+TEST_F(FeelMatchesImage, AConstantFieldHasNoSurface) {
   show(R"({"fields": {"c": {"analytic": "constant", "resolution": 16}}, "volumes": [{"field": "c"}]})");
   const auto thing = make_haptic_binding(host_->scene(), "volumes[0]", Vec3(0.0), Vec3(9, 9, 9), 4);
   ASSERT_FALSE(thing);
-  EXPECT_NE(thing.error().message.find("one value everywhere"), std::string::npos);
+  EXPECT_NE(thing.error().message.find("the same value everywhere"), std::string::npos);
 }
 
-TEST_F(FeelMatchesImage, WhatIsFeltAlreadyIsSaidAndWhatCannotBeFeltSaysWhy) {
+TEST_F(FeelMatchesImage, AnExistingLinkIsFoundAndErrorsStateTheReason) {
   show(R"({"fields": {"g": {"analytic": "gaussian", "resolution": 16}}, "isosurfaces": [{"field": "g", "level": 0.5}],
            "volumes": [{"field": "g"}], "slices": [{"field": "g", "widget": "cut"}], "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1]}],
            "chain": [{"name": "skin", "type": "isosurface", "field": "g", "level": 0.5, "free": "below"}]})");
   const auto thing = make_haptic_binding(host_->scene(), "isosurfaces[0]", std::nullopt, Vec3(9, 9, 9), 4);
   ASSERT_TRUE(thing);
   EXPECT_EQ(find_bound_link(host_->scene(), *thing), "skin");
-  EXPECT_NE(make_haptic_binding(host_->scene(), "volumes[0]", std::nullopt, Vec3(9, 9, 9), 4).error().message.find("point at it"),
+  EXPECT_NE(make_haptic_binding(host_->scene(), "volumes[0]", std::nullopt, Vec3(9, 9, 9), 4).error().message.find("point at the volume"),
             std::string::npos);
   EXPECT_NE(make_haptic_binding(host_->scene(), "slices[0]", std::nullopt, Vec3(9, 9, 9), 4).error().message.find("widget"),
             std::string::npos);
@@ -308,5 +308,5 @@ TEST_F(FeelMatchesImage, WhatIsFeltAlreadyIsSaidAndWhatCannotBeFeltSaysWhy) {
     EXPECT_TRUE(can_bind_haptics(part)) << part;
 }
 
-}  // namespace feel_this_test
+}  // namespace feel_matches_image_test
 }  // namespace catena::app

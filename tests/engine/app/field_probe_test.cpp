@@ -8,9 +8,9 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace values_test {
+namespace field_probe_test {
 
-TEST(FieldProbe, EveryLoadedFieldHasItsValueAndUnitAtAPlace) {
+TEST(FieldProbe, EveryLoadedFieldHasAValueAndAUnit) {
   auto scene = scene::parse_scene(R"({"unit_length": "mm", "fields": {
     "v": {"analytic": "circle", "unit": "m/s"}, "d": {"analytic": "sphere"}, "unused": {"analytic": "plane"}}})",
                                   "s.json");
@@ -43,13 +43,13 @@ TEST(FieldProbe, ALabelIsShownByItsName) {
   ASSERT_TRUE(scene::resolve_field(*scene, "m", {}));
   const auto words = [&](double x) { return format_sample(sample_fields(*scene, {x, 2.2, 3.4}).at(0)); };
   EXPECT_EQ(words(1.3), "Precentral_L (1)");
-  EXPECT_EQ(words(2.7), "beside Precentral_L (1)") << "a surface lies halfway";
+  EXPECT_EQ(words(2.7), "near Precentral_L (1)") << "a surface lies halfway";
   EXPECT_EQ(words(4.2), "no label");
   EXPECT_EQ(words(6.8), "9");
   EXPECT_EQ(words(9), "outside");
 }
 
-TEST(FieldProbe, OutsideOfADomainThereIsNone) {
+TEST(FieldProbe, OutsideOfADomainThereIsNoValue) {
   FieldSample value;
   value.name = "d";
   value.value = 3;
@@ -57,5 +57,5 @@ TEST(FieldProbe, OutsideOfADomainThereIsNone) {
   EXPECT_EQ(format_point_samples({Vec3(1, 2, 3), "", {value}}, ""), "1, 2, 3");
 }
 
-}  // namespace values_test
+}  // namespace field_probe_test
 }  // namespace catena::app

@@ -9,7 +9,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace file_list_test {
+namespace file_browser_test {
 
 class FileBrowser : public testing::Test {
  protected:
@@ -23,7 +23,7 @@ class FileBrowser : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(FileBrowser, FoldersComeFirstThenWhatCatenaOpens) {
+TEST_F(FileBrowser, FoldersComeFirstThenSupportedFiles) {
   const auto entries = list_folder(folder_.path());
   ASSERT_TRUE(entries);
   std::vector<std::string> names;
@@ -36,7 +36,7 @@ TEST_F(FileBrowser, FoldersComeFirstThenWhatCatenaOpens) {
   EXPECT_NE(none.error().message.find("nowhere"), std::string::npos);
 }
 
-TEST_F(FileBrowser, ADroppedFolderIsWhatLiesInIt) {
+TEST_F(FileBrowser, ADroppedFolderResolvesToItsFileOrSeries) {
   const std::string data = folder_ / "data";
   EXPECT_EQ(resolve_dropped_folder(data), data) << "who reads it says what is wrong";
   test::write_file(data + "/notes.txt", "");
@@ -53,7 +53,7 @@ TEST_F(FileBrowser, ADroppedFolderIsWhatLiesInIt) {
   EXPECT_EQ(resolve_dropped_folder(data), data);
 }
 
-TEST_F(FileBrowser, TypedPathsAreCompletedAsFarAsTheyAgree) {
+TEST_F(FileBrowser, TypedPathsAreCompletedToTheCommonPrefix) {
   EXPECT_EQ(complete_path(folder_.path(), "bra"), "brain");
   EXPECT_EQ(complete_path(folder_.path(), "brain."), "brain.nii.gz");
   EXPECT_EQ(complete_path(folder_.path(), "Sc"), "Scenes/");
@@ -65,7 +65,7 @@ TEST_F(FileBrowser, TypedPathsAreCompletedAsFarAsTheyAgree) {
   EXPECT_EQ(resolve_typed_path("/a", "~/c.json"), std::filesystem::path(std::getenv("HOME")) / "c.json");
 }
 
-TEST_F(FileBrowser, PicturesGetTheNextFreeNumber) {
+TEST_F(FileBrowser, ImagesGetTheNextUnusedNumber) {
   EXPECT_EQ(unused_file_name(folder_.path(), "b", ".png"), folder_ / "b-001.png");
   test::write_file(folder_ / "b-001.png", "");
   test::write_file(folder_ / "b-003.png", "");
@@ -76,5 +76,5 @@ TEST_F(FileBrowser, PicturesGetTheNextFreeNumber) {
   EXPECT_EQ(path_stem(""), "catena");
 }
 
-}  // namespace file_list_test
+}  // namespace file_browser_test
 }  // namespace catena::app

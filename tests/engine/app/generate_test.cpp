@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `generate`, `info`, `import` from the outside.
+/// The commands `generate`, `info` and `import`.
 #include <gtest/gtest.h>
 
 #include "engine/base/json.h"
@@ -13,7 +13,7 @@ namespace generate_test {
 
 using namespace catena;
 
-TEST(Generate, InfoTellsWhatWasWritten) {
+TEST(Generate, InfoDescribesTheWrittenGrid) {
   const test::TemporaryFolder folder;
   const auto made = test::run_catena({"generate", "linear", "-o", folder / "a.vdb", "--resolution", "5", "--box", "-1", "3"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
@@ -24,7 +24,7 @@ TEST(Generate, InfoTellsWhatWasWritten) {
     EXPECT_NE(info.out.find(part), std::string::npos) << part << " in\n" << info.out;
 }
 
-TEST(Generate, LeftVentricleHasItsPartsAndAMask) {
+TEST(Generate, TheLeftVentricleHasItsGridsAndAMask) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(test::run_catena({"generate", "left-ventricle", "-o", folder / "lv.vdb", "--resolution", "24"}).exit_code, 0);
   const auto info = test::run_catena({"info", folder / "lv.vdb"});
@@ -32,7 +32,7 @@ TEST(Generate, LeftVentricleHasItsPartsAndAMask) {
     EXPECT_NE(info.out.find(part), std::string::npos) << part << " in\n" << info.out;
 }
 
-TEST(Generate, EveryNameOfTheContractWorks) {
+TEST(Generate, EveryDocumentedNameWorks) {
   const test::TemporaryFolder folder;
   for (const char* name : {"circle", "saddle", "node", "rankine", "lamb-oseen", "hill", "abc", "helix", "uniform", "sphere", "plane",
                            "torus", "constant", "linear", "gaussian", "marschner-lobb", "tanh", "left-ventricle", "vortices"}) {
@@ -43,7 +43,7 @@ TEST(Generate, EveryNameOfTheContractWorks) {
   }
 }
 
-TEST(Generate, VoxelsSmallerThanAVdbCanHoldAreRefusedInOneSentence) {
+TEST(Generate, VoxelsTooSmallForVdbAreRefused) {
   const test::TemporaryFolder folder;
   const auto run = test::run_catena({"generate", "sphere", "-o", folder / "a.vdb", "--resolution", "5", "--box", "-2e-9", "2e-9"});
   EXPECT_EQ(run.exit_code, 2);
@@ -52,7 +52,7 @@ TEST(Generate, VoxelsSmallerThanAVdbCanHoldAreRefusedInOneSentence) {
   EXPECT_EQ(test::run_catena({"generate", "sphere", "-o", folder / "a.vdb", "--resolution", "5", "--box", "-4e-5", "4e-5"}).exit_code, 0);
 }
 
-TEST(Generate, WritesThroughALink) {
+TEST(Generate, OutputsAreWrittenThroughSymbolicLinks) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "real.csv", "old");
   std::filesystem::create_symlink(folder / "real.csv", folder / "link.csv");
@@ -63,7 +63,7 @@ TEST(Generate, WritesThroughALink) {
   EXPECT_NE(test::read_file(folder / "real.csv"), "old");
 }
 
-TEST(Import, NiftiOfTheDistributionBecomesAVdb) {
+TEST(Import, ANiftiFileOfADebianPackageBecomesAVdb) {
   const std::string brain = "/usr/share/mricron/templates/ch2bet.nii.gz";
   if (!test::exists(brain)) GTEST_SKIP() << "package mricron-data is not installed";
   const test::TemporaryFolder folder;
@@ -95,7 +95,7 @@ TEST(Info, PrintsTheSchemaOfScenes) {
   EXPECT_NE(info.out.find("\"isosurface\""), std::string::npos);
 }
 
-TEST(Info, ChecksTheDeviceToo) {
+TEST(Info, ChecksTheDevice) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", "{\n\"device\": {\"type\": \"mouse\", \"rate\": 99}}");
   const auto info = test::run_catena({"info", folder / "s.json"});

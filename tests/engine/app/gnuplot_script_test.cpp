@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Impl of the scripts that draw a report's plots.
+/// The gnuplot scripts of a report's plots.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,11 +11,11 @@
 #include "engine/app/tuning/report/gnuplot_script.h"
 #include "engine/base/numbers.h"
 
-namespace report_plot_test {
+namespace gnuplot_script_test {
 
 using namespace catena;
 
-/// The numbers of "set xtics (1, 2, 5)".
+/// The numbers of a line like "set xtics (1, 2, 5)".
 std::vector<double> listed(const std::string& text) {
   std::vector<double> all;
   const auto open = text.find('('), close = text.find(')');
@@ -29,7 +29,7 @@ std::vector<double> listed(const std::string& text) {
   return all;
 }
 
-TEST(ReportPlot, TheShortestAxisHasNumbers) {
+TEST(ReportPlot, TheShortestAxisHasTickLabels) {
   for (const double lo : {3e-7, 0.9, 24.0, 610.0})
     for (const double times : {1.6, 2.0, 5.0, 30.0, 900.0}) {
       const std::string text = app::log_tics('x', lo, lo * times);
@@ -41,4 +41,4 @@ TEST(ReportPlot, TheShortestAxisHasNumbers) {
   EXPECT_EQ(app::log_tics('x', 0.7, 14), "set xtics (1, 3, 10)\n");
 }
 
-}  // namespace report_plot_test
+}  // namespace gnuplot_script_test

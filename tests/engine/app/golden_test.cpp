@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Pictures that were opened, looked at and kept (tests/golden), with two tolerances: the whole may be off by little on average, single
-/// pixels by much, but few of them. CATENA_GOLDEN_WRITE=1 writes them anew: open them before you commit.
+/// Images against reviewed golden images (tests/golden), with two tolerances: on the RMS error of the whole image, and on the fraction of
+/// pixels with a large error. CATENA_GOLDEN_WRITE=1 writes the golden images: review them before a commit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,9 +14,9 @@
 namespace catena {
 namespace golden_test {
 
-constexpr double kMaxRmse = 0.5;   // of 8-bit RGB
-constexpr int kFar = 8;            // a pixel further off than this
-constexpr double kMaxFar = 0.002;  // share of such pixels
+constexpr double kMaxRmse = 0.5;   // maximum RMS error of 8-bit RGB
+constexpr int kFar = 8;            // a pixel with a larger error counts as far
+constexpr double kMaxFar = 0.002;  // maximum fraction of far pixels
 
 struct Golden {
   const char* name;
@@ -43,7 +43,7 @@ std::string scene_of(const Golden& golden) {
 
 class GoldenImage : public testing::TestWithParam<Golden> {};
 
-TEST_P(GoldenImage, IsAsItWasLookedAt) {
+TEST_P(GoldenImage, EqualsTheReviewedImage) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", scene_of(GetParam()));
   const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "o.png", "--size", "192x144", "--quality", "step=0.5",

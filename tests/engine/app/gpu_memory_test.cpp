@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// `catena render --gpu-memory`: what does not fit is drawn coarser, said on stderr and in the statistics; what fits at no resolution is
-/// one line.
+/// `catena render --gpu-memory`: a grid that does not fit is drawn at a lower resolution, with a note and an entry in the statistics; a
+/// grid that fits at no resolution is a one-line error.
 #include <gtest/gtest.h>
 
 #include "engine/base/json.h"
@@ -30,7 +30,7 @@ TEST(GpuMemory, AGridThatDoesNotFitIsDrawnCoarser) {
   EXPECT_NE(stats.find("\"validation_messages\": 0"), std::string::npos) << run.err;
 }
 
-TEST(GpuMemory, AGridThatFitsIsWhole) {
+TEST(GpuMemory, AGridThatFitsKeepsItsResolution) {
   const test::TemporaryFolder folder;
   const auto run = render(folder, "20");
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -38,7 +38,7 @@ TEST(GpuMemory, AGridThatFitsIsWhole) {
   EXPECT_NE(test::read_file(folder / "o.json").find("\"mirror_coarsening\": []"), std::string::npos);
 }
 
-TEST(GpuMemory, NothingIsWrittenWhereNothingFits) {
+TEST(GpuMemory, NoImageIsWrittenIfNoResolutionFits) {
   const test::TemporaryFolder folder;
   const auto run = render(folder, "1.1");
   EXPECT_NE(run.exit_code, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What holds the probe in the window, without a window: programs, devices and recordings change while the servo runs.
+// The haptic session of the window, without a window: programs, devices and recordings change while the servo runs.
 #include "engine/app/viewer/input/haptic_session.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace hand_host_test {
+namespace haptic_session_test {
 
 constexpr const char* kScene = R"({
   "fields": {"ball": {"analytic": "sphere"}},
@@ -43,7 +43,7 @@ struct Rig {
     EXPECT_TRUE(hand.start());
   }
   RecordedScene recorded() const { return {host->document().path(), host->document().text(), {}, scene_input_files(host->scene())}; }
-  /// An edit as the window makes it.
+  /// Applies an edit as the window does.
   void edit(const std::string& pointer, const std::string& value) {
     const Outcome done = host->set(pointer, value, "edit");
     ASSERT_TRUE(done) << done.error().message;
@@ -78,7 +78,7 @@ HapticSession::Options asking_for(const std::string& device) {
   return options;
 }
 
-TEST(HapticSession, LinksThatAnEditDoesNotTouchKeepTheirState) {
+TEST(HapticSession, AnEditKeepsTheStateOfTheOtherLinks) {
   Rig rig;
   rig.start();
   rig.hand.move_mouse(rig.host->scene(), Vec3(1, 0.5, 0.5), 0);
@@ -92,14 +92,14 @@ TEST(HapticSession, LinksThatAnEditDoesNotTouchKeepTheirState) {
   EXPECT_NEAR(norm(rig.hand.latest_state().links[0].proxy - lag), 0, 1e-12);
   EXPECT_NEAR(rig.hand.latest_state().links[1].proxy.z, 0.2, 1e-9);
 
-  // switched off it follows the probe; the other one has its state
+  // A disabled link follows the probe; the other link keeps its state.
   rig.edit("/chain/1/enabled", "false");
   ASSERT_TRUE(rig.has_run());
   EXPECT_NEAR(norm(rig.hand.latest_state().links[0].proxy - lag), 0, 1e-12);
   EXPECT_EQ(rig.hand.latest_state().links[1].status, LinkStatus::free);
   EXPECT_FALSE(rig.hand.latest_state().links[1].active);
 
-  // its own keys begin it anew: at the hand
+  // An edit of a link's own keys resets the link at the hand.
   rig.edit("/chain/0/threshold", "0.31");
   ASSERT_TRUE(rig.has_run());
   EXPECT_LT(norm(rig.hand.latest_state().links[0].proxy - rig.hand.latest_state().probe), 0.1);
@@ -108,7 +108,7 @@ TEST(HapticSession, LinksThatAnEditDoesNotTouchKeepTheirState) {
   EXPECT_FALSE(rig.host->set("/chain/0/enabled", "3", "edit"));
 }
 
-TEST(HapticSession, ARecordingOfThePanelWithEditsInItRunsAgainToTheBit) {
+TEST(HapticSession, ARecordingWithEditsReplaysBitExactly) {
   Rig rig;
   rig.start();
   rig.hand.move_mouse(rig.host->scene(), Vec3(1, 0.5, 0.5), 0);
@@ -116,7 +116,7 @@ TEST(HapticSession, ARecordingOfThePanelWithEditsInItRunsAgainToTheBit) {
   const std::string path = rig.folder / "a.catlog";
   EXPECT_FALSE(rig.hand.record(rig.folder / "scene.json", rig.recorded())) << "not over an input";
   EXPECT_FALSE(rig.hand.recording().is_recording());
-  rig.edit("/chain/1/normal", "[0, 1, 1]");  // before: only the text knows
+  rig.edit("/chain/1/normal", "[0, 1, 1]");  // an edit before the recording is in the document's text only
   const Outcome began = rig.hand.record(path, rig.recorded());
   ASSERT_TRUE(began) << began.error().message;
   ASSERT_TRUE(rig.runs_on(60));
@@ -147,7 +147,7 @@ TEST(HapticSession, ARecordingOfThePanelWithEditsInItRunsAgainToTheBit) {
   EXPECT_EQ(test::read_file(replay.stats).find("\"ticks\": 0"), std::string::npos);
 }
 
-TEST(HapticSession, AnotherDeviceTakesOverAndOneThatCannotLeavesTheOldOne) {
+TEST(HapticSession, AFailedDeviceSwitchKeepsTheOldDevice) {
   Rig rig;
   rig.start();
   rig.hand.move_mouse(rig.host->scene(), Vec3(1, 0.5, 0.5), 0);
@@ -175,8 +175,8 @@ TEST(HapticSession, AnotherDeviceTakesOverAndOneThatCannotLeavesTheOldOne) {
   EXPECT_TRUE(rig.until([&] { return norm(rig.hand.latest_state().probe - Vec3(0.5)) < 1e-9; }));
 }
 
-/// While the world moves under it: no force whatever is wished, and none before the servo runs what the world has become.
-TEST(HapticSession, AHandThatIsHeldOffHasNoForceAndItRisesAgainFromZero) {
+/// While the world moves, the force is zero even if forces are enabled, and stays zero until the servo runs the new program.
+TEST(HapticSession, SuspendedForcesAreZeroAndRampUpWhenResumed) {
   Rig mouse;
   mouse.start();
   EXPECT_TRUE(mouse.hand.suspend_forces(true)) << "what cannot push is off already";
@@ -202,7 +202,7 @@ TEST(HapticSession, AHandThatIsHeldOffHasNoForceAndItRisesAgainFromZero) {
   ASSERT_TRUE(rig.runs_on(50));
   EXPECT_EQ(norm(hand.latest_state().force_n), 0);
 
-  // the world has moved: the servo has not said yet that it runs so
+  // The world has moved, and the servo does not report the new program yet.
   rig.edit("/chain/1/point", "[0, 0, 0.1]");
   EXPECT_FALSE(hand.suspend_forces(false));
   EXPECT_FALSE(hand.servo().forces_enabled());
@@ -217,7 +217,7 @@ TEST(HapticSession, AHandThatIsHeldOffHasNoForceAndItRisesAgainFromZero) {
   EXPECT_LT(first_n, 0.8 * pressed_n) << "it rises";
 }
 
-TEST(HapticSession, ADeviceSwitchEndsARecordingThatIsWhole) {
+TEST(HapticSession, ADeviceSwitchCompletesTheRecording) {
   Rig rig;
   rig.start();
   ASSERT_TRUE(rig.runs_on(20));
@@ -231,18 +231,18 @@ TEST(HapticSession, ADeviceSwitchEndsARecordingThatIsWhole) {
   EXPECT_NO_THROW(EXPECT_TRUE(replay_log_file(replay)));
 }
 
-TEST(HapticSession, WhatIsKnownAndNotPluggedInLeavesTheMouseAndOneSentence) {
+TEST(HapticSession, AnAbsentDeviceLeavesTheMouseAndANotice) {
   Rig rig(asking_for("falcon:7"));
   rig.start();
   EXPECT_TRUE(rig.hand.is_mouse());
-  EXPECT_NE(rig.hand.open_notice().find("the mouse holds the probe"), std::string::npos) << rig.hand.open_notice();
+  EXPECT_NE(rig.hand.open_notice().find("the mouse moves the probe"), std::string::npos) << rig.hand.open_notice();
   Rig unknown(asking_for("sextant"));
   EXPECT_FALSE(unknown.hand.open_device(unknown.host->scene()));
   Rig file(asking_for("recorded:none.csv"));
   EXPECT_FALSE(file.hand.open_device(file.host->scene())) << "a file that is not there is no device that is not plugged in";
 }
 
-TEST(HapticSession, TheScenesDeviceIsTriedWhereNoneIsAskedFor) {
+TEST(HapticSession, TheScenesDeviceIsTheDefault) {
   Rig named({}, R"({"device": {"type": "simulated"}})");
   named.start();
   EXPECT_TRUE(named.hand.is_mouse()) << "what is simulated would keep the hand off the probe";
@@ -250,5 +250,5 @@ TEST(HapticSession, TheScenesDeviceIsTriedWhereNoneIsAskedFor) {
   EXPECT_FALSE(wrong.hand.open_device(wrong.host->scene()));
 }
 
-}  // namespace hand_host_test
+}  // namespace haptic_session_test
 }  // namespace catena::app

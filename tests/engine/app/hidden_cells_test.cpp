@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// One small file with a layer of hidden cells, one cell thick, asked by every command at the same places.
+/// Hidden cells: a small file with a layer of hidden cells, one cell thick, sampled by every command at the same positions.
 #include <gtest/gtest.h>
 
 #include "engine/base/numbers.h"
@@ -9,14 +9,14 @@
 #include "tests/support/support.h"
 
 namespace catena {
-namespace holes_commands_test {
+namespace hidden_cells_test {
 
 #ifdef CATENA_TEST_VTK
 namespace files = test::vtk_files;
 using test::Table;
 
 /// Points 0 .. 6 along each axis; the cells from x = 3 to 4 are hidden. v = y + 0.05 x, w = (1, 0, 0).
-TEST(HiddenCells, ValuesLinesSurfacesSlicesAndTheHandAgree) {
+TEST(HiddenCells, ValuesLinesSurfacesSlicesAndLinksAgree) {
   const test::TemporaryFolder folder;
   files::Flags flags;
   flags.cells = [](int i) { return i % 6 == 3 ? 32 : 0; };
@@ -33,7 +33,7 @@ TEST(HiddenCells, ValuesLinesSurfacesSlicesAndTheHandAgree) {
     EXPECT_EQ(result.exit_code, 0) << result.err;
   };
   const auto in_hole = [](double x, double slack) { return x > 3 + slack && x < 4 - slack; };
-  // values
+  // Field values.
   std::string probe = "t,x,y,z\n";
   constexpr int kTicks = 500;
   for (int i = 0; i < kTicks; ++i) probe += fmt::format("{},{},2.3,2.5\n", to_text(0.001 * i), to_text(1 + 0.008 * i));
@@ -46,22 +46,22 @@ TEST(HiddenCells, ValuesLinesSurfacesSlicesAndTheHandAgree) {
     if (std::fabs(x - 3) < 1e-6 || std::fabs(x - 4) < 1e-6) continue;
     EXPECT_EQ(values.text(row, "v").empty() || values.text(row, "v") == "nan", in_hole(x, 0)) << x << " " << values.text(row, "v");
   }
-  // lines
+  // Streamlines.
   test::write_file(folder / "seeds.csv", "x,y,z\n1,2,2\n5,2,2\n");
   run({"trace", folder / "s.json", "--field", "w", "--seeds", folder / "seeds.csv", "-o", folder / "l.csv"});
   const Table lines = Table::read(folder / "l.csv");
-  double least[2] = {9, 9}, most[2] = {0, 0};
+  double min_x[2] = {9, 9}, max_x[2] = {0, 0};
   for (std::size_t row = 0; row < lines.rows(); ++row) {
     const double x = lines.number(row, "x");
     const int side = x > 3.5 ? 1 : 0;
-    least[side] = std::min(least[side], x);
-    most[side] = std::max(most[side], x);
+    min_x[side] = std::min(min_x[side], x);
+    max_x[side] = std::max(max_x[side], x);
   }
-  EXPECT_NEAR(least[0], 0, 1e-6);
-  EXPECT_NEAR(most[0], 3, 1e-3);
-  EXPECT_NEAR(least[1], 4, 1e-3);
-  EXPECT_NEAR(most[1], 6, 1e-6);
-  // surfaces and slices, of the file and of what was exported
+  EXPECT_NEAR(min_x[0], 0, 1e-6);
+  EXPECT_NEAR(max_x[0], 3, 1e-3);
+  EXPECT_NEAR(min_x[1], 4, 1e-3);
+  EXPECT_NEAR(max_x[1], 6, 1e-6);
+  // Surfaces and slices, of the original file and of exported files.
   for (const char* name : {"again.vti", "again.vdb"}) run({"export", folder / "s.json", "--field", "v", "-o", folder / name});
   for (const char* name : {"layer.vti", "again.vti", "again.vdb"}) {
     test::write_file(folder / "t.json", fmt::format(R"({{"fields": {{"v": {{"file": "{}", "grid": "v"}}}},
@@ -83,19 +83,19 @@ TEST(HiddenCells, ValuesLinesSurfacesSlicesAndTheHandAgree) {
     EXPECT_EQ(holes, 0) << name;
     EXPECT_GT(slice.rows(), 100u);
   }
-  // the hand on the surface and on a line
+  // The proxy on the isosurface and on a streamline.
   const std::string links[] = {R"({"name": "link", "type": "isosurface", "field": "v", "level": 2.6})",
                                R"({"name": "link", "type": "streamline", "field": "w", "seed": [1, 2.3, 2.5]})"};
   for (const std::string& link : links) {
     test::write_file(folder / "h.json", R"({"fields": {"v": {"file": "layer.vti", "grid": "v"}, "w": {"file": "layer.vti", "grid": "w"}},
       "chain": [)" + link + "]}");
     run({"replay", folder / "h.json", "--probe", folder / "p.csv", "-o", folder / "h.csv"});
-    const Table felt = Table::read(folder / "h.csv");
-    for (std::size_t row = 0; row < felt.rows(); ++row)
-      EXPECT_FALSE(in_hole(felt.number(row, "link_x"), 1e-3) && felt.text(row, "link_status") == "OK") << link << row;
+    const Table ticks = Table::read(folder / "h.csv");
+    for (std::size_t row = 0; row < ticks.rows(); ++row)
+      EXPECT_FALSE(in_hole(ticks.number(row, "link_x"), 1e-3) && ticks.text(row, "link_status") == "OK") << link << row;
   }
 }
 #endif
 
-}  // namespace holes_commands_test
+}  // namespace hidden_cells_test
 }  // namespace catena

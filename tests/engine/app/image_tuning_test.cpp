@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Plans of the eye: the servo of pictures, and the settings that are offered.
+/// Tuning of image quality: adaptation to frame times, and the candidate settings.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -9,32 +9,32 @@
 #include "render/quality/quality.h"
 #include "tests/engine/app/tuning_fixtures.h"
 
-namespace plan_test {
+namespace tuning_test {
 
-TEST(ImageTuning, AdaptsWhereTimesDiffer) {
+TEST(ImageTuning, AdaptsToFrameTimes) {
   ImageTuning plan(image_curve(), parse_target("time=11"));
   EXPECT_EQ(plan.settings().step_voxels, 1);
   EXPECT_EQ(plan.expected_ms(), 10);
-  // the machine has become three times as slow
+  // The machine is three times as slow.
   for (int k = 0; k < 20; ++k) plan.record_frame_time(3 * four_point_curve().points[static_cast<std::size_t>(plan.current())].time.median);
   EXPECT_EQ(plan.settings().step_voxels, 4);
   EXPECT_NEAR(plan.expected_ms(), 3, 1);
-  // and quick again
+  // The machine has its original speed.
   for (int k = 0; k < 40; ++k) plan.record_frame_time(four_point_curve().points[static_cast<std::size_t>(plan.current())].time.median);
   EXPECT_LE(plan.settings().step_voxels, 2);
 }
 
-TEST(ImageTuning, KeepsItsErrorWhateverTheTimes) {
+TEST(ImageTuning, MeetsItsErrorAtAnyFrameTime) {
   ImageTuning plan(image_curve(), parse_target("error=1"));
   for (int k = 0; k < 20; ++k) {
     plan.record_frame_time(k % 2 ? 300 : 1);
     EXPECT_LE(plan.expected_error(), 1);
   }
   plan.set_targets(parse_target("error=0.01"));
-  EXPECT_NE(plan.summary().find("none is as exact"), std::string::npos) << plan.summary();
+  EXPECT_NE(plan.summary().find("the target is not reached: most accurate setting"), std::string::npos) << plan.summary();
 }
 
-TEST(ImageTuning, SettingsComeFromTheProgramAlone) {
+TEST(ImageTuning, OnlyTheProgramsSettingsAreAccepted) {
   const render::QualityLevelOptions kind{true, false};
   const std::vector<render::RenderSettings> all = candidate_image_settings(kind);
   Curve curve;
@@ -42,14 +42,14 @@ TEST(ImageTuning, SettingsComeFromTheProgramAlone) {
   const auto back = to_image_curve(curve, kind);
   ASSERT_TRUE(back);
   for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(render::describe(back->settings[i]), render::describe(all[i]));
-  curve.points[1].error = 1e308;  // no picture is so far off
+  curve.points[1].error = 1e308;  // no image has such an error
   EXPECT_FALSE(to_image_curve(curve, kind));
   curve.points[1].error = 1;
   curve.points[1].setting = "fast, step -1";
   EXPECT_FALSE(to_image_curve(curve, kind));
 }
 
-TEST(ImageTuning, OfTwoFormatsOfVoxelsTakesTheOneOfFewerBytes) {
+TEST(ImageTuning, TakesTheVoxelFormatOfFewerBytes) {
   ImageCurve made_curve;
   const auto add = [&](double error, double time, double bytes, render::TexelFormat texels) {
     made_curve.settings.push_back(render::exact_level(1));
@@ -62,8 +62,8 @@ TEST(ImageTuning, OfTwoFormatsOfVoxelsTakesTheOneOfFewerBytes) {
   made_curve.curve.discretization_error = 0.4;
   const auto texels = [&](const char* words) { return ImageTuning(made_curve, parse_target(words)).settings().texel_format; };
   EXPECT_EQ(texels("error=1"), render::TexelFormat::r16f);
-  EXPECT_EQ(texels("error=0.6"), render::TexelFormat::automatic);  // too coarse
-  EXPECT_EQ(texels("time=20"), render::TexelFormat::automatic);    // the least error
+  EXPECT_EQ(texels("error=0.6"), render::TexelFormat::automatic);  // error too large
+  EXPECT_EQ(texels("time=20"), render::TexelFormat::automatic);    // smallest error
   EXPECT_NE(
       ImageTuning(made_curve, parse_target("error=1")).summary().find("16 bits a voxel; expected: error 0.8/255 in 10.3 ms, 1.91 MiB"),
       std::string::npos)
@@ -72,7 +72,7 @@ TEST(ImageTuning, OfTwoFormatsOfVoxelsTakesTheOneOfFewerBytes) {
   EXPECT_EQ(texels("error=1"), render::TexelFormat::automatic);  // much slower
 }
 
-TEST(ImageTuning, OffersFormatsOfVoxelsWhereRaysReadThem) {
+TEST(ImageTuning, OffersVoxelFormatsOnlyWhereRaysReadVoxels) {
   using render::TexelFormat;
   const auto grid = field::make_scalar_grid("g", {}, {8, 8, 8}, std::vector<float>(512, 1));
   const auto labels = grid->with_interpolation(field::Interpolation::nearest);
@@ -88,21 +88,21 @@ TEST(ImageTuning, OffersFormatsOfVoxelsWhereRaysReadThem) {
   packet.volumes.emplace_back().grid = grid;
   EXPECT_EQ(offered(packet), (std::set{TexelFormat::automatic, TexelFormat::r32f}));
   packet.isosurfaces.emplace_back().grid = grid;
-  packet.isosurfaces[0].opacity = 0.5;  // its voxels have 32 bits by themselves
+  packet.isosurfaces[0].opacity = 0.5;  // a translucent isosurface needs 32-bit voxels by default
   EXPECT_EQ(offered(packet), (std::set{TexelFormat::automatic, TexelFormat::r16f}));
-  packet.isosurfaces[0].opacity = 1;  // no rays see it
+  packet.isosurfaces[0].opacity = 1;  // an opaque isosurface is not sampled along rays
   EXPECT_EQ(offered(packet), one);
   packet.isosurfaces[0].opacity = 0.5;
-  packet.volumes[0].grid = labels;  // a label that is rounded is another one
+  packet.volumes[0].grid = labels;  // rounding would change labels
   EXPECT_EQ(offered(packet), one);
-  // fast rays keep words of their own
+  // Fast rays have a format of their own.
   for (const render::RenderSettings& s : candidate_image_settings({true, true}))
     if (s.fast) {
       EXPECT_EQ(s.texel_format, TexelFormat::automatic);
     }
 }
 
-TEST(ImageTuning, TimeBuysNothingThatRoundingHides) {
+TEST(ImageTuning, ErrorsBelowTheReportedMinimumAreEqual) {
   auto scene = scene::parse_scene(R"({"fields": {"ball": {"analytic": "sphere", "resolution": 24}},
     "volumes": [{"field": "ball", "color": "viridis", "range": [0.2, 2], "opacity": [[0.2, 0.3], [2, 0]]}]})",
                                   "s.json");
@@ -116,7 +116,7 @@ TEST(ImageTuning, TimeBuysNothingThatRoundingHides) {
   ASSERT_TRUE(kind);
   auto measured = measure_image_curve(**renderer, *packet, *kind, [](double) {});
   ASSERT_TRUE(measured) << measured.error().message;
-  // of settings of which no picture shows which one is better, the cheapest, whatever time there is
+  // Among settings whose errors are below the reported minimum, the cheapest is chosen for any time.
   measured->curve.discretization_error = app::tuning::kNotMeasured;
   auto& points = measured->curve.points;
   ASSERT_GE(points.size(), 3u);
@@ -131,4 +131,4 @@ TEST(ImageTuning, TimeBuysNothingThatRoundingHides) {
   EXPECT_EQ(ImageTuning(*measured, parse_target("error=0.01")).current(), cheapest);
 }
 
-}  // namespace plan_test
+}  // namespace tuning_test

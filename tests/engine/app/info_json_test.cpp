@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena info --json`: what info tells, for programs.
+/// `catena info --json`: the output of `info` for programs.
 #include <gtest/gtest.h>
 
 #include "engine/base/json.h"
@@ -33,7 +33,7 @@ class InfoJson : public ::testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(InfoJson, OfADataFileHasItsGrids) {
+TEST_F(InfoJson, ADataFileHasItsGrids) {
   ASSERT_EQ(test::run_catena({"generate", "linear", "-o", folder_ / "a.vdb", "--resolution", "5", "--box", "-1", "3"}).exit_code, 0);
   const json::Node info_of = info(folder_ / "a.vdb");
   EXPECT_EQ(word(info_of, "kind"), "data");
@@ -49,7 +49,7 @@ TEST_F(InfoJson, OfADataFileHasItsGrids) {
   EXPECT_TRUE(grid.find("usable")->boolean);
 }
 
-TEST_F(InfoJson, OfAMeshOfCellsCountsItsPoints) {
+TEST_F(InfoJson, AnUnstructuredGridHasItsNumbersOfPointsAndCells) {
   test::write_file(folder_ / "m.vtu", test::vtk_files::vtu_mixed([](const Vec3& p) { return p.x; }));
   const json::Node meshed = info(folder_ / "m.vtu");
   const json::Node& points = meshed.find("grids")->items.at(0);
@@ -61,7 +61,7 @@ TEST_F(InfoJson, OfAMeshOfCellsCountsItsPoints) {
   EXPECT_NE(text.find("active       2 cells\n"), std::string::npos) << text;
 }
 
-TEST_F(InfoJson, OfAMeshAndOfASceneHasTheirParts) {
+TEST_F(InfoJson, AMeshAndASceneHaveTheirParts) {
   test::write_file(folder_ / "t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
   test::write_file(folder_ / "s.json", R"({"fields": {"r": {"analytic": "sphere"}}, "meshes": [{"name": "t", "file": "t.obj"}],
     "isosurfaces": [{"field": "r", "level": 1}], "chain": [{"name": "skin", "type": "isosurface", "field": "r", "level": 1}],
@@ -81,7 +81,7 @@ TEST_F(InfoJson, OfAMeshAndOfASceneHasTheirParts) {
   EXPECT_EQ(number(*scene.find("coupling"), "stiffness_n_per_m"), 500);
 }
 
-TEST_F(InfoJson, OfARecordingHasItsTicks) {
+TEST_F(InfoJson, ARecordingHasItsTicks) {
   test::write_file(folder_ / "s.json", "{}");
   ASSERT_EQ(
       test::run_catena({"feel", folder_ / "s.json", "--seconds", "0.02", "--realtime", "off", "--record", folder_ / "l.catlog"}).exit_code,
@@ -92,7 +92,7 @@ TEST_F(InfoJson, OfARecordingHasItsTicks) {
   EXPECT_EQ(number(recording, "rate_hz"), 1000);
 }
 
-TEST_F(InfoJson, SaysWhatIsWrongAsInfoDoes) {
+TEST_F(InfoJson, ErrorsEqualThoseOfInfo) {
   const test::ProgramResult run = test::run_catena({"info", "--json", folder_ / "none.vdb"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_TRUE(run.out.empty());

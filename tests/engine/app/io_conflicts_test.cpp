@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every command with every output over every input, and with every input something that is no file: one line, exit code 2, nothing written,
-// nothing waited for.
+// Conflicts of inputs and outputs: every command with each output on each input, and with each input replaced by a pipe or a device. Each
+// run fails with one line and exit code 2, writes nothing, and does not block.
 #include <gtest/gtest.h>
 
 #include <sys/stat.h>
@@ -14,7 +14,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace run_files_test {
+namespace io_conflicts_test {
 
 namespace fs = std::filesystem;
 
@@ -35,14 +35,14 @@ endfacet
 endsolid s
 )";
 
-/// One way to run a command. A word of the command line may name a file of the folder: "{grid.vdb}"; "{OUT}" is the output that is tried,
+/// One way to run a command. A word of the command line may name a file of the folder: "{grid.vdb}"; "{OUT}" is the tested output,
 /// "{X.png}" another output.
 struct Try {
   const char* name;
   std::vector<std::string> words;
-  std::vector<std::string> inputs;     ///< files that no output may be
-  std::vector<std::string> hostile{};  ///< of those, the words in which a pipe or a device can stand
-  std::string ending{};                ///< that the output's name must have: then it is a link of such a name
+  std::vector<std::string> inputs;     ///< files that no output may overwrite
+  std::vector<std::string> hostile{};  ///< those of the inputs that may be replaced by a pipe or a device
+  std::string ending{};                ///< required extension of the output; the output is then a link with this extension
 };
 
 void PrintTo(const Try& run, std::ostream* out) { *out << run.name; }
@@ -53,7 +53,7 @@ class OutputConflicts : public testing::Test {
     if (originals_.empty()) make_originals();
     for (const auto& [name, bytes] : originals_) test::write_file(folder_ / name, bytes);
   }
-  /// The files that all runs read; made once.
+  /// Makes once the files that all runs read.
   static void make_originals() {
     const test::TemporaryFolder made;
     ASSERT_EQ(test::run_catena({"generate", "sphere", "-o", made / "grid.vdb", "--resolution", "8"}).exit_code, 0);
@@ -66,9 +66,9 @@ class OutputConflicts : public testing::Test {
     test::write_file(made / "pattern.json", R"({"line": {"from": [0.5, 0, 0], "to": [1, 0, 0], "count": 2}})");
     test::write_file(made / "camera.csv", "t,px,py,pz,tx,ty,tz\n0,0,-6,3,0,0,0\n1,0,-7,3,0,0,0\n");
     test::write_file(made / "image.bin", "no firmware");
-    const auto felt =
+    const auto feel_run =
         test::run_catena({"feel", made / "scene.json", "--device", "null", "--seconds", "0.05", "--record", made / "old.catlog"});
-    ASSERT_EQ(felt.exit_code, 0) << felt.err;
+    ASSERT_EQ(feel_run.exit_code, 0) << feel_run.err;
     for (const auto& entry : fs::directory_iterator(made.path()))
       originals_[entry.path().filename().string()] = test::read_file(entry.path().string());
   }
@@ -102,7 +102,7 @@ class OutputConflicts : public testing::Test {
 };
 class IoConflicts : public OutputConflicts, public testing::WithParamInterface<Try> {};
 
-TEST_P(IoConflicts, NoOutputIsAnInput) {
+TEST_P(IoConflicts, AnOutputOnAnInputIsRefused) {
   const Try& run = GetParam();
   fs::create_directory(folder_ / "sub");
   for (const std::string& input : run.inputs) {
@@ -111,7 +111,7 @@ TEST_P(IoConflicts, NoOutputIsAnInput) {
     fs::remove(folder_ / hard);
     fs::create_symlink(input, folder_ / link);
     fs::create_hard_link(folder_ / input, folder_ / hard);
-    // one spelling after the other: the name itself, a longer one, links of both kinds
+    // Takes the spellings in turn: the name itself, a longer path, and links of both kinds.
     static std::size_t turn = 0;
     std::vector<std::string> spellings = {folder_ / link, folder_ / hard};
     if (run.ending.empty())
@@ -125,12 +125,12 @@ TEST_P(IoConflicts, NoOutputIsAnInput) {
   }
 }
 
-TEST_P(IoConflicts, NoInputIsAPipeOrADevice) {
+TEST_P(IoConflicts, APipeOrDeviceAsInputIsRefused) {
   const Try& run = GetParam();
   ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   for (const std::string& input : run.hostile)
     for (const std::string& hostile : {folder_ / "pipe", std::string("/dev/zero")}) {
-      // under the name of the file: what it ends in counts
+      // The pipe or device has the file's name: the link's target counts.
       fs::remove(folder_ / input);
       fs::create_symlink(hostile, folder_ / input);
       const auto done = test::run_program("/usr/bin/env", [&] {
@@ -230,8 +230,8 @@ INSTANTIATE_TEST_SUITE_P(
         Try{"InfoLog", {"info", "{old.catlog}"}, {}, {"old.catlog"}}, Try{"InfoMesh", {"info", "{shape.stl}"}, {}, {"shape.stl"}}),
     [](const auto& one) { return one.param.name; });
 
-/// Two outputs of one run in one file.
-TEST_F(OutputConflicts, NoTwoOutputsAreOne) {
+/// Two outputs of one run must not be one file.
+TEST_F(OutputConflicts, TwoOutputsInOneFileAreRefused) {
   const std::vector<std::vector<std::string>> runs = {
       {"render", "{scene.json}", "-o", "{x.png}", "--size", "16x16", "--stats", "{OUT}"},
       {"render", "{scene.json}", "-o", "{OUT}", "--size", "16x16", "--ids", "{x.png}"},
@@ -255,5 +255,5 @@ TEST_F(OutputConflicts, NoTwoOutputsAreOne) {
   }
 }
 
-}  // namespace run_files_test
+}  // namespace io_conflicts_test
 }  // namespace catena::app

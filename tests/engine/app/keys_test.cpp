@@ -21,74 +21,74 @@ KeyEvent event(What what, int key, std::uint32_t character = 0) {
   return e;
 }
 
-/// An interface as Dear ImGui 1.86 is one: keys and modifiers as they are when a frame begins, text before keys within a frame.
+/// A model of Dear ImGui 1.86: keys and modifiers have their state at the beginning of a frame, and text is read before keys.
 struct Interface {
   KeyFrameScheduler frames;
   std::set<int> down, down_before;
-  std::string text_told, text_read, strokes_read;
+  std::string pending_text, text_read, strokes_read;
   int mixed = 0;
 
   void frame() {
-    // a stroke is a key that was up in the frame before
-    strokes_read += text_told;
+    // A keystroke is a key that was up in the frame before.
+    strokes_read += pending_text;
     for (const int key : down)
       if (!down_before.contains(key)) strokes_read += "<" + std::to_string(key) + ">";
-    text_read += text_told;
-    text_told.clear();
+    text_read += pending_text;
+    pending_text.clear();
     down_before = down;
     frames.end_frame();
   }
-  void tell(const KeyEvent& e) {
+  void send(const KeyEvent& e) {
     if (!frames.fits_current_frame(e)) frame();
     EXPECT_TRUE(frames.fits_current_frame(e)) << "after a frame anything joins";
     frames.add(e);
     if (e.type == What::press) down.insert(e.key);
     if (e.type == What::release) down.erase(e.key);
     if (e.type == What::focus_lost) down.clear();
-    if (e.type == What::character) text_told += static_cast<char>(e.character);
+    if (e.type == What::character) pending_text += static_cast<char>(e.character);
   }
 };
 
-TEST(Keys, AShortStrokeIsDownInOneFrameAndUpInALaterOne) {
+TEST(Keys, AShortKeystrokeIsPressedAndReleasedInDifferentFrames) {
   Interface ui;
-  ui.tell(event(What::press, kBackspace));
-  ui.tell(event(What::release, kBackspace));
-  ui.tell(event(What::press, kBackspace));
-  ui.tell(event(What::release, kBackspace));
+  ui.send(event(What::press, kBackspace));
+  ui.send(event(What::release, kBackspace));
+  ui.send(event(What::press, kBackspace));
+  ui.send(event(What::release, kBackspace));
   ui.frame();
   EXPECT_EQ(ui.strokes_read, "<259><259>");
 }
 
 TEST(Keys, TextAndEditingKeysKeepTheirOrder) {
   Interface ui;
-  for (const char c : std::string("ab")) ui.tell(event(What::character, 0, static_cast<std::uint32_t>(c)));
-  ui.tell(event(What::press, kBackspace));
-  ui.tell(event(What::character, 0, 'c'));
-  ui.tell(event(What::press, kEnter));
-  ui.tell(event(What::character, 0, 'd'));
+  for (const char c : std::string("ab")) ui.send(event(What::character, 0, static_cast<std::uint32_t>(c)));
+  ui.send(event(What::press, kBackspace));
+  ui.send(event(What::character, 0, 'c'));
+  ui.send(event(What::press, kEnter));
+  ui.send(event(What::character, 0, 'd'));
   ui.frame();
   EXPECT_EQ(ui.strokes_read, "ab<259>c<257>d");
 }
 
-TEST(Keys, AHeldBackspaceRepeatsAndAHeldReturnDoesNot) {
+TEST(Keys, BackspaceRepeatsAndReturnDoesNot) {
   const auto repeated = resolve_repeats(event(What::repeat, kBackspace));
   ASSERT_EQ(repeated.size(), 2u);
   EXPECT_EQ(repeated[0].type, What::release);
   EXPECT_EQ(repeated[1].type, What::press);
   for (const int key : {kEnter, kEscape, kA, kControl}) EXPECT_TRUE(resolve_repeats(event(What::repeat, key)).empty());
   Interface ui;
-  ui.tell(event(What::press, kBackspace));
-  for (const KeyEvent& e : repeated) ui.tell(e);
-  ui.tell(event(What::release, kBackspace));
+  ui.send(event(What::press, kBackspace));
+  for (const KeyEvent& e : repeated) ui.send(e);
+  ui.send(event(What::release, kBackspace));
   ui.frame();
   EXPECT_EQ(ui.strokes_read, "<259><259>");
 }
 
-TEST(Keys, AnyInterleavingOfStrokesRepeatsFocusAndFramesLosesNothing) {
+TEST(Keys, NoInterleavingOfKeysRepeatsFocusAndFramesLosesInput) {
   std::mt19937 random(20240611);
   for (int run = 0; run < 3000; ++run) {
     Interface ui;
-    std::set<int> held;  // by the person
+    std::set<int> down_keys;  // keys that are down
     std::string expected_text, expected_strokes;
     const auto modifiers = [](const std::set<int>& keys) {
       std::set<int> some;
@@ -96,16 +96,16 @@ TEST(Keys, AnyInterleavingOfStrokesRepeatsFocusAndFramesLosesNothing) {
         if (key == kShift || key == kControl) some.insert(key);
       return some;
     };
-    // what a frame reads was made with the modifiers that the frame has
+    // The text and keys of a frame are entered with the modifiers that the frame has.
     std::vector<std::set<int>> made_with;
     const auto check_frame = [&] {
       for (const std::set<int>& with : made_with)
         if (with != modifiers(ui.down)) ++ui.mixed;
       made_with.clear();
     };
-    const auto tell = [&](const KeyEvent& e) {
+    const auto send = [&](const KeyEvent& e) {
       if (!ui.frames.fits_current_frame(e)) check_frame();
-      ui.tell(e);
+      ui.send(e);
     };
     for (int step = 0; step < 60; ++step) {
       constexpr int kKeys[] = {kA, kB, kEscape, kBackspace, kShift, kControl};
@@ -113,31 +113,31 @@ TEST(Keys, AnyInterleavingOfStrokesRepeatsFocusAndFramesLosesNothing) {
       const auto dice = random() % 20;
       const bool is_modifier = key == kShift || key == kControl;
       if (dice == 0) {
-        // GLFW tells the loss, then lets every key go
-        tell(event(What::focus_lost, 0));
-        for (const int k : held) tell(event(What::release, k));
-        held.clear();
-        tell(event(What::focus_gained, 0));
+        // GLFW reports the loss of focus, then releases every key.
+        send(event(What::focus_lost, 0));
+        for (const int k : down_keys) send(event(What::release, k));
+        down_keys.clear();
+        send(event(What::focus_gained, 0));
       } else if (dice == 1) {
         check_frame();
         ui.frame();
-      } else if (dice < 4 && held.contains(key)) {
-        for (const KeyEvent& e : resolve_repeats(event(What::repeat, key))) tell(e);
+      } else if (dice < 4 && down_keys.contains(key)) {
+        for (const KeyEvent& e : resolve_repeats(event(What::repeat, key))) send(e);
         if (key == kBackspace) expected_strokes += "<259>";
-      } else if (held.erase(key) > 0) {
-        tell(event(What::release, key));
+      } else if (down_keys.erase(key) > 0) {
+        send(event(What::release, key));
       } else {
         KeyEvent press = event(What::press, key);
-        press.shift = held.contains(kShift);
-        press.control = held.contains(kControl);
-        tell(press);
-        held.insert(key);
-        if (!is_modifier) made_with.push_back(modifiers(held));
+        press.shift = down_keys.contains(kShift);
+        press.control = down_keys.contains(kControl);
+        send(press);
+        down_keys.insert(key);
+        if (!is_modifier) made_with.push_back(modifiers(down_keys));
         if (!is_modifier && key != kA && key != kB) expected_strokes += "<" + std::to_string(key) + ">";
         if ((key == kA || key == kB) && !press.control) {
           const char c = static_cast<char>(press.shift ? key : key + 32);
-          tell(event(What::character, 0, static_cast<std::uint32_t>(c)));
-          made_with.push_back(modifiers(held));
+          send(event(What::character, 0, static_cast<std::uint32_t>(c)));
+          made_with.push_back(modifiers(down_keys));
           expected_text += c;
           expected_strokes += c;
         }
@@ -147,8 +147,8 @@ TEST(Keys, AnyInterleavingOfStrokesRepeatsFocusAndFramesLosesNothing) {
     ui.frame();
     ASSERT_EQ(ui.text_read, expected_text) << "run " << run;
     ASSERT_EQ(ui.mixed, 0) << "run " << run << ": a modifier changed between a stroke and its frame";
-    ASSERT_EQ(ui.down, held) << "run " << run;
-    // letters and modifiers themselves make no difference to who reads text; all else comes once each, in order with the text
+    ASSERT_EQ(ui.down, down_keys) << "run " << run;
+    // Letter and modifier keys have no effect on text input; each other key is read exactly once, in order with the text.
     std::string strokes = ui.strokes_read;
     for (const int key : {kA, kB, kShift, kControl})
       for (const std::string word = "<" + std::to_string(key) + ">"; strokes.find(word) != std::string::npos;)

@@ -6,7 +6,7 @@
 namespace catena::app {
 namespace layout_test {
 
-TEST(Layout, ThePictureFillsWhatPanelsLeave) {
+TEST(Layout, TheImageFillsTheAreaBesideThePanels) {
   const Area area = compute_image_area(1000, 700, {320, 20, 25});
   EXPECT_EQ(area, (Area{320, 20, 680, 655}));
   EXPECT_TRUE(area.contains(320, 20));
@@ -15,7 +15,7 @@ TEST(Layout, ThePictureFillsWhatPanelsLeave) {
   EXPECT_EQ(compute_image_area(1000, 700, {}), (Area{0, 0, 1000, 700}));
 }
 
-TEST(Layout, SomethingIsLeftHoweverSmallTheWindow) {
+TEST(Layout, TheImageAreaIsNeverEmpty) {
   for (const double size : {1.0, 2.0, 10.0, 300.0}) {
     const Area area = compute_image_area(size, size, {320, 20, 25});
     EXPECT_GE(area.width, 1);
@@ -28,7 +28,7 @@ TEST(Layout, SomethingIsLeftHoweverSmallTheWindow) {
   }
 }
 
-TEST(Layout, PixelsFollowTheFramesScale) {
+TEST(Layout, PixelsFollowTheFramebufferScale) {
   const Area area = compute_image_area(1000, 700, {320, 20, 25});
   EXPECT_EQ(to_pixel_rect(area, 1000, 700, 1000, 700), (std::array<std::uint32_t, 4>{320, 20, 1000, 675}));
   EXPECT_EQ(to_pixel_rect(area, 1000, 700, 2000, 1400), (std::array<std::uint32_t, 4>{640, 40, 2000, 1350}));

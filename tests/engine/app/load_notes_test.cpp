@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What became of a file's values is told by every command that loads it, and once; the range of a resampled field is the file's own.
+/// Notes about a file's values are printed once by every command that loads the file; the range of a resampled field is that of the file.
 #include <gtest/gtest.h>
 
 #include "engine/base/vec.h"
@@ -8,7 +8,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace notes_test {
+namespace load_notes_test {
 
 std::size_t count_of(const std::string& text, const std::string& words) {
   std::size_t count = 0;
@@ -16,9 +16,9 @@ std::size_t count_of(const std::string& text, const std::string& words) {
   return count;
 }
 
-TEST(LoadNotes, AreToldOnceByEveryCommandThatLoads) {
+TEST(LoadNotes, ArePrintedOnceByEveryCommandThatLoads) {
   const test::TemporaryFolder folder;
-  // one missing value among radii of 0.5 to 1.5
+  // One missing value among radii of 0.5 to 1.5.
   const auto radius = [](const Vec3& p) {
     const double r = std::hypot(p.x, p.y);
     return norm(p - Vec3(0, 1, 0)) < 1e-9 ? -9999.0 : r;
@@ -40,10 +40,10 @@ TEST(LoadNotes, AreToldOnceByEveryCommandThatLoads) {
            {"view", scene, "--screenshot", folder / "v.png", "--frames", "1", "--size", "64x48"}}) {
     const auto run = test::run_catena(command);
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_EQ(count_of(run.err, "cells resampled to"), 1u) << command[0] << ": " << run.err;
-    EXPECT_EQ(count_of(run.err, "the least value, -9999, is lost"), 1u) << command[0] << ": " << run.err;
+    EXPECT_EQ(count_of(run.err, "cells were resampled to"), 1u) << command[0] << ": " << run.err;
+    EXPECT_EQ(count_of(run.err, "the minimum, -9999, is lost"), 1u) << command[0] << ": " << run.err;
   }
-  // one range, of the file's own values
+  // The reported range is that of the file's values.
   const std::string range = "0.5 .. 1.5 (1 value of -9999 beyond)";
   for (const std::string& of : {folder / "ring.vts", scene}) {
     const auto run = test::run_catena({"info", of});
@@ -51,7 +51,7 @@ TEST(LoadNotes, AreToldOnceByEveryCommandThatLoads) {
   }
 }
 
-TEST(LoadNotes, FormatsOf32BitsSayWhatTheyMoveFarFromTheOrigin) {
+TEST(LoadNotes, FormatsOf32BitsReportRoundedPositionsFarFromTheOrigin) {
   const test::TemporaryFolder folder;
   for (const double far : {0.0, 6e6 + 0.033}) {
     test::write_file(folder / "s.json", fmt::format(R"({{"fields": {{"f": {{"file": "f.raw", "shape": [8, 8, 8], "spacing": [0.1, 0.1, 0.1],
@@ -63,7 +63,7 @@ TEST(LoadNotes, FormatsOf32BitsSayWhatTheyMoveFarFromTheOrigin) {
       bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
     }
     test::write_file(folder / "f.raw", bytes);
-    for (const auto& [output, words] : {std::pair{"a.stl", "two corners at one place"}, {"a.nii", "32-bit places move voxels"}}) {
+    for (const auto& [output, words] : {std::pair{"a.stl", "two coincident corners"}, {"a.nii", "32-bit positions displace voxels"}}) {
       std::vector<std::string> command{"export", folder / "s.json", "-o", folder / output};
       if (std::string(output) == "a.stl")
         command.insert(command.end(), {"--isosurface", "0"});
@@ -76,5 +76,5 @@ TEST(LoadNotes, FormatsOf32BitsSayWhatTheyMoveFarFromTheOrigin) {
   }
 }
 
-}  // namespace notes_test
+}  // namespace load_notes_test
 }  // namespace catena::app

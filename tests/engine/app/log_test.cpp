@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena replay --log`, `export` and `info` of a recording, from the outside: every kind of link, switches, maps, program changes.
+/// `catena replay --log`, `export` and `info` of a recording: every kind of link, switches, maps and program changes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -20,13 +20,13 @@ using test::ProgramChange;
 
 test::ProgramResult catena_program(const std::vector<std::string>& arguments) { return test::run_catena(arguments); }
 
-struct Felt {
+struct TestedScene {
   const char* name;
   const char* scene;
 };
-void PrintTo(const Felt& felt, std::ostream* out) { *out << felt.name; }
+void PrintTo(const TestedScene& scene, std::ostream* out) { *out << scene.name; }
 
-const Felt kFelt[] = {
+const TestedScene kScenes[] = {
     {"Modes", R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
   "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1], "snap": 0.1, "release": 0.25,
              "release_cue": {"type": "vibration", "amplitude": 0.3, "frequency": 130}},
@@ -59,8 +59,8 @@ const Felt kFelt[] = {
   "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1], "stiffness": 50},
             {"name": "surface", "type": "isosurface", "field": "s", "level": 0.55}], "coupling": {"method": "balance"}})"},
 };
-// What the hand feels for a while in the middle of each recording.
-constexpr const char* kBetween = R"({"fields": {"s": {"analytic": "sphere"}},
+// The scene of a part in the middle of each recording.
+constexpr const char* kOtherScene = R"({"fields": {"s": {"analytic": "sphere"}},
   "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.4}, {"name": "pin", "type": "point", "position": [0, 0, 0.2]}]})";
 
 void make_data(const std::string& folder) {
@@ -73,13 +73,14 @@ void make_data(const std::string& folder) {
                    "v -0.4 -0.4 -0.3\nv 0.4 -0.4 -0.3\nv 0 0.5 -0.3\nv 0 0 0.4\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
 }
 
-/// As a session at a device: a fitted workspace, limits, four programs: the scene, the same again, another one, the scene again.
+/// Program changes like those of a session with a device: a fitted workspace, limits, and four programs (the scene, an equal one,
+/// another one, the scene).
 std::vector<ProgramChange> session(const std::string& scene_path, const std::string& text) {
   DeviceLimits limits;
   limits.max_force_n = 6;
   limits.max_stiffness_n_per_m = 450;
   std::vector<ProgramChange> changes;
-  auto scene = scene::parse_scene(text, scene_path), between = scene::parse_scene(kBetween, scene_path);
+  auto scene = scene::parse_scene(text, scene_path), between = scene::parse_scene(kOtherScene, scene_path);
   EXPECT_TRUE(scene) << scene.error().message;
   EXPECT_TRUE(between) << between.error().message;
   for (scene::Scene* s : {&*scene, &*between}) {
@@ -91,7 +92,7 @@ std::vector<ProgramChange> session(const std::string& scene_path, const std::str
   for (const auto& [tick, other] : plan) {
     auto program = build_program(other ? *between : *scene, limits);
     EXPECT_TRUE(program) << program.error().message;
-    changes.push_back({tick, *program, other ? std::optional<std::string>(kBetween) : std::nullopt});
+    changes.push_back({tick, *program, other ? std::optional<std::string>(kOtherScene) : std::nullopt});
   }
   return changes;
 }
@@ -107,7 +108,7 @@ std::uint64_t record_session(const std::string& log, const std::string& scene_pa
   return hash;
 }
 
-/// A tick table without the cells of its last columns, which a recording does not keep.
+/// The text of a tick table without its "_curve" columns, which a recording does not contain.
 std::string without_curves(const std::string& path) {
   const test::Table table = test::Table::read(path);
   std::string text;
@@ -117,10 +118,10 @@ std::string without_curves(const std::string& path) {
   return text;
 }
 
-TEST(Upgrade, ARecordingOfVersion02ReplaysToTheSameHash) {
+TEST(Upgrade, AnUpgradedRecordingOfVersion02ReplaysToTheSameHash) {
   const test::TemporaryFolder folder;
   make_data(folder.path());
-  test::write_file(folder / "s.json", kFelt[0].scene);
+  test::write_file(folder / "s.json", kScenes[0].scene);
   const std::uint64_t hash = record_session(folder / "new.catlog", folder / "s.json");
   const std::string old = folder / "old.catlog";
   const auto old_names = [](std::string_view scene_text) -> Result<std::string> {
@@ -145,15 +146,15 @@ TEST(Upgrade, ARecordingOfVersion02ReplaysToTheSameHash) {
 
   test::write_file(folder / "a.json", R"({"fog": {"most": 0.5}})");
   test::write_file(folder / "a.json.bak", "mine");
-  EXPECT_EQ(catena_program({"upgrade", folder / "a.json"}).exit_code, 2);  // nothing is overwritten
+  EXPECT_EQ(catena_program({"upgrade", folder / "a.json"}).exit_code, 2);  // no file is overwritten
   EXPECT_EQ(test::read_file(folder / "a.json") + test::read_file(folder / "a.json.bak"), R"({"fog": {"most": 0.5}}mine)");
   test::write_file(old, bytes.substr(0, 100) + "x" + bytes.substr(101));
   EXPECT_EQ(catena_program({"upgrade", "--no-backup", old}).exit_code, 2);
 }
 
-class RecordedScene : public testing::TestWithParam<Felt> {};
+class RecordedScene : public testing::TestWithParam<TestedScene> {};
 
-TEST_P(RecordedScene, ReplaysToTheBitAndExportsTheSameTable) {
+TEST_P(RecordedScene, ReplaysBitExactlyAndExportsTheSameTable) {
   const test::TemporaryFolder folder;
   make_data(folder.path());
   test::write_file(folder / "s.json", GetParam().scene);
@@ -161,7 +162,7 @@ TEST_P(RecordedScene, ReplaysToTheBitAndExportsTheSameTable) {
   const auto run = catena_program(
       {"replay", "--log", folder / "l.catlog", "-o", folder / "t.csv", "--details", folder / "d.csv", "--stats", folder / "s.txt"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("1200 ticks, all equal to the bit; ends cleanly with tick 1200"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("1200 ticks, all bit-identical; ends cleanly with tick 1200"), std::string::npos) << run.out;
   char text[32];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
   EXPECT_NE(test::read_file(folder / "s.txt").find(text), std::string::npos);
@@ -188,12 +189,12 @@ TEST_P(RecordedScene, ReplaysToTheBitAndExportsTheSameTable) {
   EXPECT_EQ(all.text(5, "probe_time"), "0.005");
   EXPECT_EQ(all.text(1199, "tick"), "1200");
   EXPECT_EQ(all.text(100, "period_us"), "1000.5");
-  // a link that only the program between has: cells for its ticks only
+  // The link of the other program has cells for its ticks only.
   EXPECT_EQ(all.text(600, "pin_gap"), "");
   EXPECT_NE(all.text(800, "pin_gap"), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, RecordedScene, testing::ValuesIn(kFelt),
+INSTANTIATE_TEST_SUITE_P(Scenes, RecordedScene, testing::ValuesIn(kScenes),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 class Recording : public testing::Test {
@@ -201,37 +202,37 @@ class Recording : public testing::Test {
   Recording() {
     std::filesystem::create_directory(folder_ / "a");
     make_data(folder_ / "a");
-    test::write_file(folder_ / "a/s.json", kFelt[1].scene);
+    test::write_file(folder_ / "a/s.json", kScenes[1].scene);
     record_session(log_, folder_ / "a/s.json");
   }
   test::TemporaryFolder folder_;
   std::string log_ = folder_ / "l.catlog";
 };
 
-TEST_F(Recording, IsReplayedFromAnotherPlaceIfTheSceneIsGiven) {
+TEST_F(Recording, IsReplayedWithAMovedSceneIfThatIsGiven) {
   std::filesystem::rename(folder_ / "a", folder_ / "b");
   const auto lost = catena_program({"replay", "--log", log_, "-o", folder_ / "t.csv"});
   EXPECT_EQ(lost.exit_code, 2);
   EXPECT_NE(lost.err.find("circle.vdb"), std::string::npos) << lost.err;
   EXPECT_FALSE(test::exists(folder_ / "t.csv"));
-  // the scene beside its files; the recording needs no output
+  // The scene is next to its files; a replay needs no output.
   const auto found = catena_program({"replay", folder_ / "b/s.json", "--log", log_});
   EXPECT_EQ(found.exit_code, 0) << found.err;
-  EXPECT_NE(found.out.find("all equal to the bit"), std::string::npos);
-  // tables need none of it
+  EXPECT_NE(found.out.find("all bit-identical"), std::string::npos);
+  // Tables need neither the scene nor its files.
   std::filesystem::remove_all(folder_ / "b");
   EXPECT_EQ(catena_program({"export", log_, "-o", folder_ / "e.csv"}).exit_code, 0);
   EXPECT_EQ(test::Table::read(folder_ / "e.csv").rows(), 1200u);
 }
 
-TEST_F(Recording, WithoutAWorkspaceTheScaleThatWasTakenIsSaid) {
+TEST_F(Recording, WithoutAWorkspaceTheScaleIsReported) {
   const std::string sentence = "the scene states no workspace: 1 world unit is ";
   const auto own = catena_program({"replay", "--log", log_});
-  EXPECT_NE(own.out.find(sentence + "0.07 m of the hand, as recorded\n"), std::string::npos) << own.out;
+  EXPECT_NE(own.out.find(sentence + "0.07 m of the device, as recorded\n"), std::string::npos) << own.out;
   test::write_file(folder_ / "p.csv", "t,x,y,z\n0,0,0,0\n");
   const auto path = catena_program({"replay", folder_ / "a/s.json", "--probe", folder_ / "p.csv", "-o", folder_ / "t.csv"});
-  EXPECT_NE(path.out.find(sentence + "1 m of the hand\n"), std::string::npos) << path.out;
-  std::string text = kFelt[1].scene;
+  EXPECT_NE(path.out.find(sentence + "1 m of the device\n"), std::string::npos) << path.out;
+  std::string text = kScenes[1].scene;
   text.insert(1, R"("workspace": {"metres_per_unit": 0.07}, )");
   test::write_file(folder_ / "a/stated.json", text);
   const auto stated = catena_program({"replay", folder_ / "a/stated.json", "--probe", folder_ / "p.csv", "-o", folder_ / "t.csv"});
@@ -239,8 +240,8 @@ TEST_F(Recording, WithoutAWorkspaceTheScaleThatWasTakenIsSaid) {
   EXPECT_EQ(stated.out.find(sentence), std::string::npos) << stated.out;
 }
 
-TEST_F(Recording, AnotherSceneDiffersAndSaysWhere) {
-  std::string text = kFelt[1].scene;
+TEST_F(Recording, AnotherSceneIsReportedWithTheFirstDifferentTick) {
+  std::string text = kScenes[1].scene;
   text.replace(text.find("0.02, 0.03]"), 4, "0.03");
   test::write_file(folder_ / "a/other.json", text);
   const auto run = catena_program({"replay", folder_ / "a/other.json", "--log", log_, "-o", folder_ / "t.csv"});
@@ -252,51 +253,51 @@ TEST_F(Recording, AnotherSceneDiffersAndSaysWhere) {
   test::write_file(folder_ / "a/none.json", R"({"chain": []})");
   const auto none = catena_program({"replay", folder_ / "a/none.json", "--log", log_});
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_NE(none.err.find("other links"), std::string::npos) << none.err;
+  EXPECT_NE(none.err.find("links or widgets of the scene differ"), std::string::npos) << none.err;
 }
 
-TEST_F(Recording, CutOffItIsStillReplayedAndDescribed) {
+TEST_F(Recording, ATruncatedLogIsReplayedAndDescribed) {
   const std::string bytes = test::read_file(log_);
   test::write_file(log_, bytes.substr(0, bytes.size() - 100));
   const auto run = catena_program({"replay", "--log", log_, "-o", folder_ / "t.csv"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("all equal to the bit; cut off after tick "), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("all bit-identical; truncated after tick "), std::string::npos) << run.out;
   const auto info = catena_program({"info", log_});
   EXPECT_EQ(info.exit_code, 0) << info.err;
   for (const char* part :
-       {"a/s.json", "simulated at 1000 Hz", "cut off after tick", "from tick 1: curve, surface", "from tick 700: surface, pin", "ticks "})
+       {"a/s.json", "simulated at 1000 Hz", "truncated after tick", "from tick 1: curve, surface", "from tick 700: surface, pin", "ticks "})
     EXPECT_NE(info.out.find(part), std::string::npos) << part << " in\n" << info.out;
 }
 
-TEST_F(Recording, AHoleIsToldAndIsNoSuccess) {
+TEST_F(Recording, AGapIsReportedAndTheReplayFails) {
   std::string bytes = test::read_file(log_);
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
   test::write_file(log_, bytes);
   const auto run = catena_program({"replay", "--log", log_});
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_NE(run.out.find("all equal to the bit"), std::string::npos) << run.out;
-  EXPECT_NE(run.err.find("are lost: the log is damaged there; what follows cannot be run again"), std::string::npos) << run.err;
+  EXPECT_NE(run.out.find("all bit-identical"), std::string::npos) << run.out;
+  EXPECT_NE(run.err.find("are lost: the log is damaged at this point; the rest cannot be replayed"), std::string::npos) << run.err;
   const auto table = catena_program({"export", log_, "-o", folder_ / "e.csv"});
   EXPECT_EQ(table.exit_code, 0);
   EXPECT_NE(table.err.find("are lost"), std::string::npos);
   EXPECT_NE(catena_program({"info", log_}).out.find("gap "), std::string::npos);
 }
 
-TEST_F(Recording, BadUseIsOneLineAndNoFile) {
+TEST_F(Recording, BadArgumentsAreOneLineAndNoFile) {
   test::write_file(folder_ / "no.catlog", "this is no recording");
   test::write_file(folder_ / "p.csv", "t,x,y,z\n0,0,0,0\n");
   const std::string o = folder_ / "o.csv";
   const std::pair<std::vector<std::string>, std::string> bad[] = {
-      {{"replay", "--log", folder_ / "no.catlog", "-o", o}, "no recording"},
+      {{"replay", "--log", folder_ / "no.catlog", "-o", o}, "not a recording"},
       {{"replay", "--log", folder_ / "none.catlog", "-o", o}, "none.catlog"},
       {{"replay", "--log", log_, "--probe", folder_ / "p.csv", "-o", o}, "--probe and --log"},
       {{"replay", "--log", log_, "-o", log_}, "input"},
       {{"replay", "--log", log_, "-o", folder_ / "a/s.json"}, "input"},
       {{"replay", "--log", log_, "-o", o, "--details", o}, "one file"},
-      {{"export", folder_ / "no.catlog", "-o", o}, "no recording"},
+      {{"export", folder_ / "no.catlog", "-o", o}, "not a recording"},
       {{"export", log_, "-o", log_}, "input"},
       {{"export", log_, "-o", o, "--details", folder_ / "./o.csv"}, "one file"},
-      {{"info", folder_ / "no.catlog"}, "no recording"},
+      {{"info", folder_ / "no.catlog"}, "not a recording"},
       {{"replay", "-o", o}, "SCENE is required"},
       {{"replay", folder_ / "a/s.json", "-o", o}, "--probe or --log"},
       {{"replay", folder_ / "a/s.json", "--probe", folder_ / "p.csv"}, "--output is required"}};
@@ -307,12 +308,12 @@ TEST_F(Recording, BadUseIsOneLineAndNoFile) {
     EXPECT_NE(run.err.find(expected), std::string::npos) << expected << " in " << run.err;
     EXPECT_FALSE(test::exists(o));
   }
-  EXPECT_EQ(test::read_file(folder_ / "a/s.json"), kFelt[1].scene);
+  EXPECT_EQ(test::read_file(folder_ / "a/s.json"), kScenes[1].scene);
 }
 
-TEST_F(Recording, ReplacedFieldsAreFoundFromWhereItWasRecorded) {
-  // --field s=a/sphere.vdb, recorded in the folder
-  std::string text = kFelt[1].scene;
+TEST_F(Recording, ReplacedFieldsAreRelativeToTheRecordedWorkingFolder) {
+  // The option --field s=a/sphere.vdb, recorded in the working folder.
+  std::string text = kScenes[1].scene;
   text.replace(text.find("sphere.vdb"), 10, "circle.vdb:x");
   auto header = app::make_log_header(folder_ / "a/s.json", {"s=a/sphere.vdb"}, "null", 1000);
   header->working_folder = folder_.path();
@@ -329,8 +330,8 @@ TEST_F(Recording, ReplacedFieldsAreFoundFromWhereItWasRecorded) {
   EXPECT_NE(catena_program({"info", log_}).out.find("s=a/sphere.vdb"), std::string::npos);
 }
 
-// a log that begins in mid-run holds the chain's raw state: with good hashes it is not believed either
-TEST(ForgedRecording, IsOneSentenceAndExitCodeTwo) {
+// A log that begins during a run contains the chain's raw state, which is validated even if the hashes are right.
+TEST(ForgedRecording, IsOneErrorLineAndExitCodeTwo) {
   const test::TemporaryFolder folder;
   const std::string scene_path = folder / "s.json", log_path = folder / "l.catlog";
   test::write_file(scene_path, R"({"chain": [{"name": "path", "type": "polyline", "points": [[-1, -1, 0], [1, -1, 0], [1, 1, 0]]}]})");
@@ -360,7 +361,7 @@ TEST(ForgedRecording, IsOneSentenceAndExitCodeTwo) {
   const auto good = catena_program({"replay", "--log", log_path});
   EXPECT_EQ(good.exit_code, 0) << good.err;
 
-  // the piece of the polyline that is held, far outside of it
+  // Sets the polyline's current segment to an index far out of range.
   std::string bytes = test::read_file(log_path);
   for (std::size_t at = log::kPreambleBytes; at < bytes.size();) {
     log::BlockHeader head;
@@ -374,7 +375,9 @@ TEST(ForgedRecording, IsOneSentenceAndExitCodeTwo) {
   test::write_file(log_path, bytes);
   const auto forged = catena_program({"replay", "--log", log_path, "-o", folder / "t.csv"});
   EXPECT_EQ(forged.exit_code, 2) << forged.out << forged.err;
-  EXPECT_NE(forged.err.find("l.catlog: before tick 61: the state of link \"path\" is damaged or forged"), std::string::npos) << forged.err;
+  EXPECT_NE(forged.err.find("l.catlog: before tick 61: the state of link \"path\" is damaged, forged or from another scene"),
+            std::string::npos)
+      << forged.err;
   EXPECT_EQ(std::count(forged.err.begin(), forged.err.end(), '\n'), 1) << forged.err;
   EXPECT_FALSE(test::exists(folder / "t.csv"));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// FuzzInputs that lie in several files: no part is overwritten, and no part that is a pipe is waited for.
+// Inputs that consist of several files: no part is overwritten, and no part that is a pipe blocks the program.
 #include <gtest/gtest.h>
 
 #include <sys/stat.h>
@@ -10,7 +10,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace parts_test {
+namespace multi_file_input_test {
 
 namespace fs = std::filesystem;
 
@@ -32,7 +32,7 @@ std::string piece(int from, int to) {
 
 std::string ensight(const std::string& description, const std::string& values) { return description + "\npart\n1\nblock\n" + values; }
 
-/// The named file, and the others that belong to it.
+/// The named file, and the other files that belong to it.
 struct Data {
   std::string name;
   std::vector<std::string> parts;
@@ -57,7 +57,7 @@ std::vector<Data> make_data(const test::TemporaryFolder& folder) {
         "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet><DataSet index=\"0\" "
         "file=\"d0.vti\"/></vtkMultiBlockDataSet></VTKFile>\n");
   write("d0.vti", piece(0, 3));
-  // two steps in time, of which one is read
+  // Two time steps, of which one is read.
   write("e.case",
         "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: e.geo\nVARIABLE\nscalar per node: v e.v**\nTIME\ntime set: 1\nnumber of steps: 2\n"
         "filename start number: 0\nfilename increment: 1\ntime values: 0 1\n");
@@ -79,7 +79,7 @@ test::ProgramResult import(const test::TemporaryFolder& folder, const std::strin
   return test::run_catena({"render", folder / name, "-o", folder / "x.png", "--size", "16x16", "--stats", folder / stats});
 }
 
-TEST(MultiFileInput, NoOutputIsAPart) {
+TEST(MultiFileInput, AnOutputOnAPartIsRefused) {
   const test::TemporaryFolder folder;
   for (const Data& data : make_data(folder)) {
     test::write_file(folder / "own", "an earlier output");
@@ -114,7 +114,7 @@ TEST(MultiFileInput, APipeIsRefused) {
   }
 }
 
-TEST(MultiFileInput, APipeThatNobodyReadsIsNoOutput) {
+TEST(MultiFileInput, AnOutputPipeWithoutAReaderIsRefused) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   const auto run = test::run_program("/usr/bin/env", {"timeout", "30", test::program_path(), "render", folder / make_data(folder)[0].name,
@@ -123,8 +123,8 @@ TEST(MultiFileInput, APipeThatNobodyReadsIsNoOutput) {
   EXPECT_NE(run.err.find("nothing reads"), std::string::npos) << run.err;
 }
 
-/// Before: 120 s of processor time.
-TEST(MultiFileInput, AHeaderCostsSeconds) {
+/// Declared sizes in a header must not cost processor time.
+TEST(MultiFileInput, AHugeDeclaredSizeFailsInTime) {
   const test::TemporaryFolder folder;
   const std::string many = "2000000000", head = "<?xml version=\"1.0\"?>\n<VTKFile version=\"1.0\" byte_order=\"LittleEndian\" type=\"";
   const std::string extent = "\"0 " + many + " 0 " + many + " 0 " + many + "\"";
@@ -146,8 +146,8 @@ TEST(MultiFileInput, AHeaderCostsSeconds) {
   }
 }
 
-/// Before: loaded whole. 4 GB, none of which are on the disk, and 50 MB of memory.
-TEST(MultiFileInput, FilesOfHolesAreNotRead) {
+/// A sparse file of 4 GB must not be loaded.
+TEST(MultiFileInput, SparseFilesAreNotRead) {
   const test::TemporaryFolder folder;
   for (const char* name : {"a.stl", "a.obj", "a.trk", "a.tck"}) {
     test::write_file(folder / name, "");
@@ -158,8 +158,8 @@ TEST(MultiFileInput, FilesOfHolesAreNotRead) {
   }
 }
 
-/// Before: 789 kB.
-TEST(MultiFileInput, MessagesAreShort) {
+/// A message must not list thousands of names.
+TEST(MultiFileInput, ErrorMessagesAreBounded) {
   const test::TemporaryFolder folder;
   std::string fields;
   for (int i = 0; i < 2000; ++i) fields += std::string(i == 0 ? "" : ", ") + "\"f" + std::to_string(i) + "\": {\"analytic\": \"sphere\"}";
@@ -170,5 +170,5 @@ TEST(MultiFileInput, MessagesAreShort) {
   EXPECT_LT(run.err.size(), 2001u);
 }
 
-}  // namespace parts_test
+}  // namespace multi_file_input_test
 }  // namespace catena::app

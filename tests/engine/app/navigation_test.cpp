@@ -11,7 +11,7 @@
 #include "engine/base/camera_limits.h"
 
 namespace catena::app {
-namespace controls_test {
+namespace navigation_test {
 
 Navigation controls() {
   Navigation c;
@@ -19,7 +19,7 @@ Navigation controls() {
   return c;
 }
 
-/// A notch of the wheel at the distance 10: 1 % of the height that the picture shows there.
+/// A notch of the wheel at the distance 10: 1 % of the image's height at that distance.
 const double kNotch = 0.01 * 2 * 10 * std::tan(15 * std::numbers::pi / 180);
 
 Input input(double dx, double dy, double wheel = 0) {
@@ -38,7 +38,7 @@ TEST(Navigation, MotionWithoutAButtonDoesNothing) {
   EXPECT_EQ(c.view.position, c.home.position);
 }
 
-TEST(Navigation, ALeftDragOrbitsAtTheSameDistance) {
+TEST(Navigation, ALeftDragOrbitsAtAConstantDistance) {
   Navigation c = controls();
   Input i = input(50, 0);
   i.left = true;
@@ -46,10 +46,10 @@ TEST(Navigation, ALeftDragOrbitsAtTheSameDistance) {
   EXPECT_TRUE(changed.view);
   EXPECT_FALSE(changed.probe);
   EXPECT_NEAR(norm(c.view.position), 10, 1e-12);
-  EXPECT_LT(c.view.position.x, -1);  // the scene follows the pointer to the right: the eye goes left
+  EXPECT_LT(c.view.position.x, -1);  // the scene follows the pointer to the right: the camera moves to the left
   EXPECT_NEAR(c.view.position.z, 0, 1e-12);
 
-  // dragging down shows the scene from above, and stops short of the pole
+  // Dragging down shows the scene from above, and stops before the pole.
   i = input(0, 1000);
   i.left = true;
   apply(c, i);
@@ -73,7 +73,7 @@ TEST(Navigation, PanMovesTheSceneWithThePointer) {
   i.middle = true;
   EXPECT_TRUE(apply(c, i).view);
   const auto camera = render::make_camera(c.view, 320, 240, {});
-  const auto p = render::project(camera, Vec3(0.0));  // was in the middle
+  const auto p = render::project(camera, Vec3(0.0));  // was in the center
   ASSERT_TRUE(p);
   EXPECT_NEAR(p->x, 160 + 24, 1e-9);
   EXPECT_NEAR(p->y, 120 - 12, 1e-9);
@@ -89,7 +89,7 @@ TEST(Navigation, TheWheelZooms) {
   EXPECT_NEAR(norm(c.view.position), 9, 1e-12);
 }
 
-TEST(Navigation, NeitherEyeNorHandLeavesTheWorld) {
+TEST(Navigation, CameraAndProbeStayWithinTheLimits) {
   for (const double notches : {30.0, -30.0})
     for (const bool flat : {false, true})
       for (const bool as_hand : {false, true}) {
@@ -105,7 +105,7 @@ TEST(Navigation, NeitherEyeNorHandLeavesTheWorld) {
       }
 }
 
-TEST(Navigation, TheNumberKeysLookAlongTheAxesAtAllThatIsDrawn) {
+TEST(Navigation, TheNumberKeysLookAlongTheAxesAtTheWholeScene) {
   for (int axis = 0; axis < 3; ++axis)
     for (const bool back : {false, true})
       for (const bool flat : {false, true}) {
@@ -121,19 +121,19 @@ TEST(Navigation, TheNumberKeysLookAlongTheAxesAtAllThatIsDrawn) {
         EXPECT_LE(norm(direction(c.view.target - c.view.position) - along), 1e-12);
         EXPECT_EQ(c.view.orthographic, flat);
         const auto camera = render::make_camera(c.view, 320, 240, c.bounds);
-        double most_x = 0, most_y = 0;
+        double max_x = 0, max_y = 0;
         for (int k = 0; k < 8; ++k) {
           const auto p = render::project(camera, c.bounds.corner(k));
           ASSERT_TRUE(p);
-          most_x = std::max(most_x, std::fabs(p->x - 160) / 160);
-          most_y = std::max(most_y, std::fabs(p->y - 120) / 120);
+          max_x = std::max(max_x, std::fabs(p->x - 160) / 160);
+          max_y = std::max(max_y, std::fabs(p->y - 120) / 120);
         }
-        EXPECT_LE(std::max(most_x, most_y), 1);
-        EXPECT_GE(std::max(most_x, most_y), 0.8) << "and it fills the picture";
+        EXPECT_LE(std::max(max_x, max_y), 1);
+        EXPECT_GE(std::max(max_x, max_y), 0.8) << "and it fills the picture";
       }
 }
 
-TEST(Navigation, FitKeepsTheDirectionAndWithoutBoundsNothingHappens) {
+TEST(Navigation, FitKeepsTheDirectionAndNeedsBounds) {
   Navigation c = controls();
   EXPECT_FALSE(apply(c, Action::fit_view, 4.0 / 3));
   EXPECT_FALSE(apply(c, Action::view_along_plus_y, 4.0 / 3));
@@ -145,7 +145,7 @@ TEST(Navigation, FitKeepsTheDirectionAndWithoutBoundsNothingHappens) {
   EXPECT_LE(norm(direction(c.view.target - c.view.position) - Vec3(0.0, 1.0, 0.0)), 1e-12);
 }
 
-TEST(Navigation, OKeepsTheSizeOfThingsInTheTargetsPlane) {
+TEST(Navigation, TogglingTheProjectionKeepsSizesInTheTargetsPlane) {
   Navigation c = controls();
   const Vec3 corner(1.5, 0.0, 1.0);
   const auto place = [&] { return render::project(render::make_camera(c.view, 320, 240, {}), corner); };
@@ -160,7 +160,7 @@ TEST(Navigation, OKeepsTheSizeOfThingsInTheTargetsPlane) {
   EXPECT_NEAR(norm(c.view.position), 5, 1e-9) << "what was zoomed stays zoomed";
 }
 
-TEST(Navigation, TheHandFollowsThePointerInThePicturesPlane) {
+TEST(Navigation, TheProbeFollowsThePointerInTheImagePlane) {
   for (const int way : {0, 1}) {
     Navigation c = controls();
     c.probe = {0.2, 1.0, -0.3};
@@ -179,11 +179,11 @@ TEST(Navigation, TheHandFollowsThePointerInThePicturesPlane) {
   }
 }
 
-TEST(Navigation, InHandModeTheWheelIsDepthAndTheButtonIsTheDevices) {
+TEST(Navigation, InProbeModeTheWheelIsDepthAndTheLeftButtonIsButton1) {
   Navigation c = controls();
   c.probe_mode = true;
   EXPECT_TRUE(apply(c, input(0, 0, 2)).probe);
-  EXPECT_NEAR(c.probe.y, 2 * kNotch, 1e-12);  // 1 % of the picture's height at the distance 10, twice, away from the eye
+  EXPECT_NEAR(c.probe.y, 2 * kNotch, 1e-12);  // twice 1 % of the image's height at the distance 10, away from the camera
   EXPECT_EQ(c.view.position, c.home.position);
   Input i = input(0, 0);
   i.left = true;
@@ -195,7 +195,7 @@ TEST(Navigation, InHandModeTheWheelIsDepthAndTheButtonIsTheDevices) {
   EXPECT_EQ(c.buttons, 0u);
 }
 
-TEST(Navigation, AHandBehindTheEyeComesBackIntoThePicture) {
+TEST(Navigation, AProbeBehindTheCameraReturnsToTheTargetsDepth) {
   Navigation c = controls();
   c.probe = {0.0, -50.0, 0.0};
   Input i = input(1, 0);
@@ -204,7 +204,7 @@ TEST(Navigation, AHandBehindTheEyeComesBackIntoThePicture) {
   EXPECT_NEAR(c.probe.y, 0, 1e-12);
 }
 
-TEST(WorkspaceSetup, TheWorkspaceFillsTheDevicesReach) {
+TEST(WorkspaceSetup, TheWorkspaceFillsTheDevicesRange) {
   auto scene = scene::parse_scene(R"({"fields": {}, "chain": []})", "test.json");
   ASSERT_TRUE(scene);
   Bounds bounds;
@@ -217,7 +217,7 @@ TEST(WorkspaceSetup, TheWorkspaceFillsTheDevicesReach) {
   EXPECT_EQ(initial_probe_position(*scene, bounds), Vec3(30.0, 2.0, 1.0));
 }
 
-TEST(WorkspaceSetup, TheMiddleOfTheDevicesReachIsTheMiddleOfTheScene) {
+TEST(WorkspaceSetup, TheCenterOfTheDevicesRangeIsTheScenesCenter) {
   auto scene = scene::parse_scene(R"({"fields": {}, "chain": []})", "test.json");
   ASSERT_TRUE(scene);
   Bounds bounds;
@@ -228,7 +228,7 @@ TEST(WorkspaceSetup, TheMiddleOfTheDevicesReachIsTheMiddleOfTheScene) {
   EXPECT_LE(norm(device_from_world(scene->workspace, bounds.center()) - centre_m), 1e-15);
 }
 
-TEST(WorkspaceSetup, AGivenWorkspaceAndRampStay) {
+TEST(WorkspaceSetup, AStatedWorkspaceAndRampAreKept) {
   auto scene =
       scene::parse_scene(R"({"fields": {}, "chain": [], "workspace": {"metres_per_unit": 3}, "coupling": {"ramp_s": 0.5}})", "test.json");
   ASSERT_TRUE(scene);
@@ -239,7 +239,7 @@ TEST(WorkspaceSetup, AGivenWorkspaceAndRampStay) {
   EXPECT_EQ(scene->coupling.ramp_s, 0.5);
 }
 
-TEST(WorkspaceSetup, TheHandBeginsAtTheFirstSeed) {
+TEST(WorkspaceSetup, TheProbeStartsAtTheFirstSeed) {
   auto scene = scene::parse_scene(
       R"({"fields": {"v": {"analytic": "circle"}}, "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0.5, 0]}]})",
       "test.json");
@@ -247,7 +247,7 @@ TEST(WorkspaceSetup, TheHandBeginsAtTheFirstSeed) {
   EXPECT_EQ(initial_probe_position(*scene, {}), Vec3(1.0, 0.5, 0.0));
 }
 
-/// The pointer moves to the pixel (x, y) of the picture, from dx to the left.
+/// Moves the pointer to the pixel (x, y) of the image, from dx to the left.
 Input to_pixel(double x, double y, double dx = 1) {
   Input i = input(dx, 0);
   i.x = x - dx;
@@ -255,7 +255,7 @@ Input to_pixel(double x, double y, double dx = 1) {
   return i;
 }
 
-TEST(Navigation, InHandModeTheHandIsUnderThePointerAsDeepAsWhatIsSeenThere) {
+TEST(Navigation, InProbeModeTheProbeIsOnTheSurfaceUnderThePointer) {
   Navigation c = controls();
   c.probe_mode = true;
   c.pointer_hit = Vec3(0.7, 2, 0.3);
@@ -265,7 +265,7 @@ TEST(Navigation, InHandModeTheHandIsUnderThePointerAsDeepAsWhatIsSeenThere) {
   c.pointer_hit = render::unproject(camera, 80, 60, 7.5);
   EXPECT_TRUE(apply(c, to_pixel(80, 60)).probe);
   EXPECT_LE(norm(c.probe - *c.pointer_hit), 1e-12);
-  // pushed in, it stays as deep below what is seen
+  // A probe that is pushed with the wheel keeps its depth below the surface.
   Input wheel = to_pixel(80, 60, 0);
   wheel.wheel = 3;
   apply(c, wheel);
@@ -276,7 +276,7 @@ TEST(Navigation, InHandModeTheHandIsUnderThePointerAsDeepAsWhatIsSeenThere) {
   c.pointer_hit = render::unproject(camera, 90, 65, 7.2);
   apply(c, to_pixel(90, 65));
   EXPECT_NEAR(render::project(camera, c.probe)->z, 7.2 + push, 1e-12);
-  // where nothing is seen the depth stays, and a button holds it over whatever is seen
+  // Where the pointer hits nothing, the depth stays; while a button is pressed, the depth stays over any surface.
   c.pointer_hit.reset();
   apply(c, to_pixel(200, 100));
   EXPECT_NEAR(render::project(camera, c.probe)->z, 7.2 + push, 1e-12);
@@ -288,7 +288,7 @@ TEST(Navigation, InHandModeTheHandIsUnderThePointerAsDeepAsWhatIsSeenThere) {
   EXPECT_NEAR(render::project(camera, c.probe)->x, 210, 1e-9);
 }
 
-TEST(Navigation, TheHandsDepthFollowsWhatHoldsIt) {
+TEST(Navigation, TheProbesDepthFollowsTheProxy) {
   const auto at = [](double depth) {
     Navigation c = controls();
     c.probe_mode = true;
@@ -307,7 +307,7 @@ TEST(Navigation, TheHandsDepthFollowsWhatHoldsIt) {
   EXPECT_NEAR(depth(c), 12, 1e-9) << "half the way";
   apply(c, to_pixel(190, 120, 10 * Navigation::kDepthBlendPixels));
   EXPECT_NEAR(depth(c), 13, 1e-9) << "all of it, and no further";
-  // what is seen far before or behind is not what holds
+  // A hit far in front of or behind the proxy is not used as the depth.
   c = at(13);
   c.pointer_hit = Vec3(0, -4, 0);
   apply(c, to_pixel(161, 120));
@@ -315,7 +315,7 @@ TEST(Navigation, TheHandsDepthFollowsWhatHoldsIt) {
   c.pointer_hit = Vec3(0, 3.2, 0);
   apply(c, to_pixel(160, 120));
   EXPECT_NEAR(depth(c), 13.2, 1e-9);
-  // only in hand mode
+  // The depth follows the proxy in probe mode only.
   c = at(11);
   c.probe_mode = false;
   Input drag = input(30, 0);
@@ -324,14 +324,14 @@ TEST(Navigation, TheHandsDepthFollowsWhatHoldsIt) {
   EXPECT_NEAR(depth(c), 11, 1e-9);
 }
 
-TEST(Navigation, InHandModeTheMouseYieldsToTheForceButNotAwayFromIt) {
+TEST(Navigation, InProbeModeMotionAgainstTheForceIsReduced) {
   const Vec3 force(0, 0, 4);
   EXPECT_EQ(compliant_motion({0, 0, -1}, force, 8), Vec3(0, 0, -1 + 0.375)) << "half the greatest force takes half of three quarters";
   EXPECT_EQ(compliant_motion({0, 0, -1}, 10.0 * force, 8), Vec3(0, 0, -0.25)) << "the hand is never stuck";
   EXPECT_EQ(compliant_motion({0, 0, 1}, force, 8), Vec3(0, 0, 1));
   EXPECT_EQ(compliant_motion({2, 1, 0}, force, 8), Vec3(2, 1, 0));
   EXPECT_EQ(compliant_motion({0, 0, -1}, Vec3(0.0), 8), Vec3(0, 0, -1));
-  // the wheel pushes less where something pushes back, and pulls out as it is turned
+  // The wheel pushes less against a force, and pulls out at full speed.
   Navigation c = controls();
   c.probe_mode = true;
   c.force_n = {0, -8, 0};
@@ -345,7 +345,7 @@ TEST(Navigation, InHandModeTheMouseYieldsToTheForceButNotAwayFromIt) {
   EXPECT_NEAR(c.probe.y, 0.25 * kNotch - (1 + 0.025 * kNotch) * kNotch, 1e-12);
 }
 
-TEST(Navigation, InFlightALeftDragLooksAboutAndTheWheelSetsThePace) {
+TEST(Navigation, InFlyModeALeftDragLooksAroundAndTheWheelSetsTheSpeed) {
   Navigation c = controls();
   c.fly = true;
   Input i = input(40, 0);
@@ -358,5 +358,5 @@ TEST(Navigation, InFlightALeftDragLooksAboutAndTheWheelSetsThePace) {
   EXPECT_EQ(c.view.position, c.home.position);
 }
 
-}  // namespace controls_test
+}  // namespace navigation_test
 }  // namespace catena::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena render` beyond one 8-bit picture: 16 bits, EXR, depth, ids, tiles, antialiasing, sequences, cameras, outputs that cannot be.
+/// `catena render` beyond one 8-bit image: 16 bits, EXR, depth, ids, tiles, antialiasing, sequences, cameras and refused outputs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using render::Image8;
 class Offscreen : public testing::Test {
  protected:
   void scene(const std::string& text) { test::write_file(folder_ / "s.json", text); }
-  /// catena render s.json ..., with the validation layers.
+  /// Runs `catena render s.json ...` with the validation layers.
   test::ProgramResult render(const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"render", folder_ / "s.json", "--validation"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -33,7 +33,7 @@ class Offscreen : public testing::Test {
     const auto run = render(more);
     ASSERT_EQ(run.exit_code, 0) << run.err;
   }
-  /// A shell about a sphere, within which values differ by `width`.
+  /// Sets a scene with a shell about a sphere, in which values differ by `width` from the shell's radius.
   void shell(double width) {
     scene(R"({"fields": {"f": {"analytic": "sphere", "resolution": 32}}, "volumes": [{"field": "f", "shade": true, "extinction": [[)" +
           std::to_string(0.5 - width) + ", 0], [0.5, 60], [" + std::to_string(0.5 + width) + R"(, 0]],
@@ -42,7 +42,7 @@ class Offscreen : public testing::Test {
   void refused(const std::vector<std::string>& more, const std::vector<std::string>& expects) {
     const int before = files();
     const auto run = render(more);
-    // a full disk is the machine's failure
+    // A full disk is an error of the machine: exit code 1.
     EXPECT_EQ(run.exit_code, run.err.find("No space left on device") != std::string::npos ? 1 : 2) << run.err;
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
     for (const std::string& part : expects) EXPECT_NE(run.err.find(part), std::string::npos) << "\"" << part << "\" in: " << run.err;
@@ -54,7 +54,7 @@ class Offscreen : public testing::Test {
     return read ? std::move(*read) : Image8();
   }
   int files() const { return int(std::distance(std::filesystem::directory_iterator(folder_.path()), {})); }
-  /// Kept in the build folder, to look at.
+  /// Copies the image to the build folder, for review.
   void keep(const std::string& name, const std::string& as) {
     const std::string pictures = test::binary_dir() + "/pictures";
     std::filesystem::create_directories(pictures);
@@ -64,29 +64,30 @@ class Offscreen : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-int most_different(const Image8& a, const Image8& b) {
+int max_pixel_difference(const Image8& a, const Image8& b) {
   EXPECT_EQ(a.rgba.size(), b.rgba.size());
-  int most = 0;
-  for (std::size_t i = 0; i < std::min(a.rgba.size(), b.rgba.size()); ++i) most = std::max(most, std::abs(int(a.rgba[i]) - int(b.rgba[i])));
-  return most;
+  int max_difference = 0;
+  for (std::size_t i = 0; i < std::min(a.rgba.size(), b.rgba.size()); ++i)
+    max_difference = std::max(max_difference, std::abs(int(a.rgba[i]) - int(b.rgba[i])));
+  return max_difference;
 }
 
-// a box of constant extinction, seen straight on by parallel rays: alpha = 1 - exp(-0.25 * 2)
+// A box of constant extinction, seen head-on by parallel rays: alpha = 1 - exp(-0.25 * 2).
 constexpr const char* kSlab = R"({"fields": {"d": {"analytic": "constant", "resolution": 9, "box": [-1, 1]}},
   "volumes": [{"field": "d", "color": [[1, 0.8, 0.4, 0.2]], "extinction": [[1, 0.25]]}],
   "camera": {"position": [0, -5, 0], "target": [0, 0, 0], "up": [0, 0, 1], "projection": "orthographic", "height": 4}, "background": "transparent"})";
-// what the tile tests draw: a shaded volume
+// The scene of the tile tests: a shaded volume.
 constexpr const char* kLobes = R"({"fields": {"d": {"analytic": "marschner-lobb", "resolution": 40}},
   "volumes": [{"field": "d", "color": [[0, 0.1, 0.2, 0.9], [1, 1, 0.6, 0]], "opacity": [[0.3, 0], [1, 0.2]], "shade": true}],
   "camera": {"position": [3, -5, 2.5], "target": [0, 0, 0], "up": [0, 0, 1], "fovy_deg": 35}, "background": [0.1, 0.1, 0.15]})";
-// a ball of radius 0.75 before a ball in the back
+// A sphere of radius 0.75 in front of a translucent volume.
 constexpr const char* kBalls =
     R"({"fields": {"near": {"analytic": "sphere", "resolution": 33}, "far": {"analytic": "sphere", "resolution": 33}},
   "isosurfaces": [{"field": "near", "level": 0.75, "color": [0.9, 0.5, 0.2]}],
   "volumes": [{"field": "far", "color": [[0, 0.2, 0.3, 0.9], [2, 0.2, 0.3, 0.9]], "extinction": [[0, 0.05], [2, 0.05]]}],
   "camera": {"position": [0, -6, 0], "target": [0, 0, 0], "up": [0, 0, 1], "fovy_deg": 40}, "background": [0, 0, 0]})";
 
-TEST_F(Offscreen, SixteenBitsHoldTheClosedFormToALevelOfSixteenBits) {
+TEST_F(Offscreen, SixteenBitImagesEqualTheClosedForm) {
   scene(kSlab);
   rendered({"-o", folder_ / "o.png", "--size", "64x64", "--bits", "16", "--quality", "reference"});
   const test::DeepPng png = test::read_deep_png(folder_ / "o.png");
@@ -100,7 +101,7 @@ TEST_F(Offscreen, SixteenBitsHoldTheClosedFormToALevelOfSixteenBits) {
   EXPECT_NEAR(middle[2], 0.2 * 65535, 3);
   const std::uint16_t* corner = png.values.data();
   EXPECT_EQ(corner[3], 0);
-  // 8 bits of the same picture
+  // The same image in 8 bits.
   rendered({"-o", folder_ / "o8.png", "--size", "64x64", "--quality", "reference"});
   const Image8 eight = picture("o8.png");
   for (std::size_t i = 0; i < eight.rgba.size(); ++i) ASSERT_LE(std::abs(eight.rgba[i] - png.values[i] / 257.0), 1) << i;
@@ -118,14 +119,14 @@ TEST_F(Offscreen, ExrIsLinearAndPremultiplied) {
   EXPECT_NEAR(exr.channels.at("G")[middle], alpha * linear(0.4), 1e-4);
   EXPECT_NEAR(exr.channels.at("B")[middle], alpha * linear(0.2), 1e-4);
   EXPECT_EQ(exr.channels.at("R")[0], 0);
-  // a background that is seen: no alpha
+  // An image with an opaque background has no alpha channel.
   scene(R"({"background": [0.1, 0.1, 0.15]})");
   rendered({"-o", folder_ / "b.exr", "--size", "32x24"});
   EXPECT_EQ(test::read_exr(folder_ / "b.exr").channels.count("A"), 0u);
   EXPECT_NEAR(test::read_exr(folder_ / "b.exr").channels.at("R")[0], linear(0.1), 1e-6);
 }
 
-TEST_F(Offscreen, DepthIsTheDistanceAlongTheAxisAndInfiniteWhereNothingIs) {
+TEST_F(Offscreen, DepthIsTheDistanceAlongTheViewAxisAndInfiniteForTheBackground) {
   scene(kBalls);
   rendered({"-o", folder_ / "o.png", "--depth", folder_ / "z.exr", "--size", "96x64", "--quality", "reference"});
   const test::ExrImage exr = test::read_exr(folder_ / "z.exr");
@@ -135,13 +136,13 @@ TEST_F(Offscreen, DepthIsTheDistanceAlongTheAxisAndInfiniteWhereNothingIs) {
   int hits = 0, misses = 0;
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 96; ++x) {
-      // the ball by a ray of unit depth: |o + t d| = 0.75
+      // The sphere's intersection with a ray of unit depth: |o + t d| = 0.75.
       const Vec3 o(0.0, -6.0, 0.0), d((2 * (x + 0.5) / 96 - 1) * half * 1.5, 1.0, (1 - 2 * (y + 0.5) / 64) * half);
       const double b = dot(o, d) / dot(d, d), c = (dot(o, o) - 0.75 * 0.75) / dot(d, d), disc = b * b - c;
       const float z = exr.channels.at("Z")[std::size_t(y) * 96 + std::size_t(x)];
       if (disc > 0.05) {
         ++hits;
-        EXPECT_NEAR(z, -b - std::sqrt(disc), 0.02) << x << " " << y;  // of a trilinear ball of 33 nodes
+        EXPECT_NEAR(z, -b - std::sqrt(disc), 0.02) << x << " " << y;  // tolerance for a trilinear sphere of 33 nodes
       } else if (disc < -0.005) {
         ++misses;
         EXPECT_TRUE(std::isinf(z) && z > 0) << x << " " << y;
@@ -151,7 +152,7 @@ TEST_F(Offscreen, DepthIsTheDistanceAlongTheAxisAndInfiniteWhereNothingIs) {
   EXPECT_GT(misses, 3000) << "the translucent volume has no depth";
 }
 
-TEST_F(Offscreen, IdsAreThoseOfTheLegend) {
+TEST_F(Offscreen, IdsEqualThoseOfTheLegend) {
   scene(kBalls);
   rendered({"-o", folder_ / "o.png", "--ids", folder_ / "i.png", "--stats", folder_ / "o.json", "--size", "96x64"});
   const test::DeepPng ids = test::read_deep_png(folder_ / "i.png");
@@ -170,13 +171,13 @@ TEST_F(Offscreen, IdsAreThoseOfTheLegend) {
   const auto legend = json::parse(ids.text.at("Objects"), "legend");
   ASSERT_TRUE(legend);
   EXPECT_EQ(legend->items.size(), objects->items.size());
-  // the edge of the ids is the edge of the picture
+  // The sphere's area in the id image equals the area of its projection.
   const auto area = std::count(ids.values.begin(), ids.values.end(), std::uint16_t(ball));
   const double radius = 0.75 / std::sqrt(36 - 0.75 * 0.75) / std::tan(20 * M_PI / 180) * 32;
   EXPECT_NEAR(double(area), M_PI * radius * radius, 0.04 * M_PI * radius * radius);
 }
 
-TEST_F(Offscreen, TilesMakeTheSamePicture) {
+TEST_F(Offscreen, TilesMakeTheSameImage) {
   const std::string o = folder_ / "o.png", t = folder_ / "t.png";
   for (const char* text : {kLobes, kBalls}) {
     scene(text);
@@ -185,7 +186,7 @@ TEST_F(Offscreen, TilesMakeTheSamePicture) {
       rendered({"-o", t, "--depth", folder_ / "t.exr", "--ids", folder_ / "ti.png", "--size", "200x150", "--quality", quality, "--tile",
                 "64", "--stats", folder_ / "t.json"});
       EXPECT_NE(test::read_file(folder_ / "t.json").find("\"tiles\": 12,"), std::string::npos);
-      EXPECT_LE(most_different(picture("o.png"), picture("t.png")), 1) << quality;
+      EXPECT_LE(max_pixel_difference(picture("o.png"), picture("t.png")), 1) << quality;
       EXPECT_EQ(test::read_deep_png(folder_ / "oi.png").values, test::read_deep_png(folder_ / "ti.png").values) << quality;
       const auto whole = test::read_exr(folder_ / "o.exr").channels.at("Z"), tiled = test::read_exr(folder_ / "t.exr").channels.at("Z");
       for (std::size_t i = 0; i < whole.size(); ++i) {
@@ -199,8 +200,8 @@ TEST_F(Offscreen, TilesMakeTheSamePicture) {
   }
 }
 
-/// Few pixels, but longer than an image of many devices may be: the settings are chosen on a tile, too.
-TEST_F(Offscreen, StripsLongerThanImages) {
+/// An image of few pixels, but longer than the maximum of many devices: the settings are chosen on a tile.
+TEST_F(Offscreen, AnImageLongerThanTheDevicesMaximumIsRendered) {
   scene(kLobes);
   rendered({"-o", folder_ / "o.png", "--size", "16400x6"});
   const auto strip = picture("o.png");
@@ -210,7 +211,7 @@ TEST_F(Offscreen, StripsLongerThanImages) {
   EXPECT_GT(std::abs(red(8200) - red(100)), 20);
 }
 
-TEST_F(Offscreen, TextAndBarsLieInTheWholePictureNotInEachTile) {
+TEST_F(Offscreen, TheOverlayCoversTheWholeImageNotEachTile) {
   std::string text = kBalls;
   text.insert(text.rfind('}'),
               R"(, "title": "Two balls, one of them seen through", "orientation_marker": true, "scalar_bars": [{"field": "far"}],
@@ -224,8 +225,8 @@ TEST_F(Offscreen, TextAndBarsLieInTheWholePictureNotInEachTile) {
   };
   draw("o.png", {});
   draw("t.png", {"--tile", "64"});
-  EXPECT_LE(most_different(picture("o.png"), picture("t.png")), 1);
-  // in 16 bits, too: the overlay is blended into floats
+  EXPECT_LE(max_pixel_difference(picture("o.png"), picture("t.png")), 1);
+  // The same in 16 bits: the overlay is blended into floats.
   draw("d.png", {"--bits", "16"});
   const Image8 eight = picture("o.png");
   const test::DeepPng deep = test::read_deep_png(folder_ / "d.png");
@@ -242,22 +243,22 @@ TEST_F(Offscreen, AntialiasingIsTheMeanOfTheSamples) {
   rendered({"-o", folder_ / "tiled.png", "--size", "60x40", "--antialias", "3", "--quality", "reference", "--tile", "48"});
   rendered({"-o", folder_ / "rough.png", "--size", "60x40", "--quality", "reference"});
   const Image8 big = picture("big.png"), small = picture("small.png"), rough = picture("rough.png");
-  int most = 0, edge = 0;
+  int max_difference = 0, edge = 0;
   for (std::uint32_t y = 0; y < 40; ++y)
     for (std::uint32_t x = 0; x < 60; ++x)
       for (int c = 0; c < 3; ++c) {
         double mean = 0;
         for (std::uint32_t j = 0; j < 3; ++j)
           for (std::uint32_t i = 0; i < 3; ++i) mean += big.pixel(3 * x + i, 3 * y + j)[c] / 9.0;
-        most = std::max(most, int(std::ceil(std::fabs(small.pixel(x, y)[c] - mean) - 1e-9)));
+        max_difference = std::max(max_difference, int(std::ceil(std::fabs(small.pixel(x, y)[c] - mean) - 1e-9)));
         edge = std::max(edge, std::abs(small.pixel(x, y)[c] - rough.pixel(x, y)[c]));
       }
-  EXPECT_LE(most, 1);
+  EXPECT_LE(max_difference, 1);
   EXPECT_GT(edge, 15) << "the ball's edge is smooth now";
-  EXPECT_LE(most_different(small, picture("tiled.png")), 1);
+  EXPECT_LE(max_pixel_difference(small, picture("tiled.png")), 1);
   keep("small.png", "antialias-3.png");
   keep("rough.png", "antialias-1.png");
-  // depth and ids: the nearest sample's
+  // Depth and id are those of the nearest sample.
   rendered({"-o", folder_ / "a.png", "--size", size, "--antialias", "3", "--depth", folder_ / "a.exr", "--ids", folder_ / "ai.png"});
   rendered({"-o", folder_ / "b.png", "--size", "180x120", "--depth", folder_ / "b.exr"});
   const auto a = test::read_exr(folder_ / "a.exr").channels.at("Z"), b = test::read_exr(folder_ / "b.exr").channels.at("Z");
@@ -276,9 +277,9 @@ TEST_F(Offscreen, AntialiasingIsTheMeanOfTheSamples) {
     }
 }
 
-TEST_F(Offscreen, AVeryWidePictureIsWrittenInBands) {
+TEST_F(Offscreen, AVeryWideImageIsWrittenInBands) {
   scene(kBalls);
-  // wider than what the CPU device holds in one image
+  // The image is wider than the CPU device's maximum.
   rendered({"-o", folder_ / "o.png", "--size", "20000x4", "--stats", folder_ / "o.json", "--quality", "draft", "--zoom", "3"});
   const Image8 wide = picture("o.png");
   EXPECT_EQ(wide.width, 20000u);
@@ -288,7 +289,7 @@ TEST_F(Offscreen, AVeryWidePictureIsWrittenInBands) {
   EXPECT_NEAR(wide.pixel(9999, 1)[0], wide.pixel(10000, 1)[0], 2) << "left and right of the middle";
 }
 
-TEST_F(Offscreen, ASequenceNumbersEveryOutput) {
+TEST_F(Offscreen, ASequenceNumbersItsOutputs) {
   scene(kBalls);
   rendered({"-o", folder_ / "p_%02d.png", "--depth", folder_ / "z_%d.exr", "--ids", folder_ / "i.png", "--frames", "3", "--orbit", "90",
             "--size", "32x24"});
@@ -298,14 +299,14 @@ TEST_F(Offscreen, ASequenceNumbersEveryOutput) {
 }
 
 TEST_F(Offscreen, ACameraPathIsFollowed) {
-  // a marker left of the middle that the camera passes
+  // The path passes the same camera positions as an orbit.
   scene(kBalls);
   test::write_file(folder_ / "c.csv", "t,px,py,pz,tx,ty,tz\n0,0,-6,0,0,0,0\n1,6,0,0,0,0,0\n2,0,6,0,0,0,0\n");
   rendered({"-o", folder_ / "c_%d.png", "--camera", folder_ / "c.csv", "--frames", "3", "--size", "64x48", "--quality", "reference"});
   rendered({"-o", folder_ / "o_%d.png", "--orbit", "270", "--frames", "3", "--size", "64x48", "--quality", "reference"});
   for (const char* k : {"0", "1", "2"})
-    EXPECT_LE(most_different(picture(std::string("c_") + k + ".png"), picture(std::string("o_") + k + ".png")), 1) << k;
-  // as many frames as its duration has
+    EXPECT_LE(max_pixel_difference(picture(std::string("c_") + k + ".png"), picture(std::string("o_") + k + ".png")), 1) << k;
+  // The default number of frames follows from the path's duration.
   const auto run = render({"-o", folder_ / "d_%d.png", "--camera", folder_ / "c.csv", "--fps", "2", "--size", "16x12"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(test::exists(folder_ / "d_4.png"));
@@ -316,8 +317,8 @@ TEST_F(Offscreen, ACameraPathIsFollowed) {
   refused({"-o", folder_ / "c.csv", "--camera", folder_ / "c.csv"}, {"c.csv", ".png"});
 }
 
-TEST_F(Offscreen, ViewsAlongTheAxesShowTheirSide) {
-  // red below, blue above: who looks up from below sees red
+TEST_F(Offscreen, AxisViewsShowTheirSide) {
+  // Red below and blue above: a view upwards from below shows red.
   scene(R"({"fields": {"z": {"analytic": "plane", "resolution": 17, "box": [-1, 1]}},
     "volumes": [{"field": "z", "color": [[-0.01, 1, 0, 0], [0.01, 0, 0, 1]], "extinction": [[-1, 8], [1, 8]]}], "background": [0, 0, 0]})");
   const auto seen = [&](const char* view, std::uint32_t row) {
@@ -352,7 +353,7 @@ TEST_F(Offscreen, ZoomElevationAndFitMoveTheCamera) {
   refused({"-o", folder_ / "n.png", "--elevation", "91"}, {"--elevation"});
 }
 
-TEST_F(Offscreen, OutputsThatCannotBe) {
+TEST_F(Offscreen, InvalidOutputsAreRefused) {
   scene(kBalls);
   const std::string o = folder_ / "o.png";
   refused({"-o", folder_ / "o.jpg"}, {"o.jpg", ".png, .exr"});
@@ -369,12 +370,12 @@ TEST_F(Offscreen, OutputsThatCannotBe) {
   refused({"-o", o, "--size", "70000x10"}, {"65536"});
   refused({"-o", o, "--fps", "nan"}, {"--fps"});
   refused({"-o", o, "--depth", "/dev/full", "--size", "16x16"}, {"/dev/full", "space"});
-  // an input is never written over, by no numbered name either
+  // An input is never overwritten, not even through a numbered name.
   test::write_file(folder_ / "p_1.png", "t,x,y,z\n0,0,0,0\n");
   refused({"-o", folder_ / "p_%d.png", "--frames", "2", "--probe", folder_ / "p_1.png"}, {"p_1.png", "input"});
 }
 
-TEST_F(Offscreen, AReferenceThatHasNotConvergedSaysSo) {
+TEST_F(Offscreen, AReferenceThatHasNotConvergedHasANote) {
   const std::vector<std::string> options{"-o",        folder_ / "o.png", "--size",  "160x120",
                                          "--quality", "reference",       "--stats", folder_ / "o.json"};
   for (const double width : {0.2, 0.0005}) {
@@ -382,7 +383,7 @@ TEST_F(Offscreen, AReferenceThatHasNotConvergedSaysSo) {
     const auto run = render(options);
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const bool steep = width < 0.1;
-    EXPECT_EQ(run.err.find("note: reference has not converged here") != std::string::npos, steep) << run.err;
+    EXPECT_EQ(run.err.find("note: reference has not converged") != std::string::npos, steep) << run.err;
     const auto stats = json::read(folder_ / "o.json");
     ASSERT_TRUE(stats);
     const double stated = stats->find("quality")->find("estimated_rmse")->number;
@@ -390,7 +391,7 @@ TEST_F(Offscreen, AReferenceThatHasNotConvergedSaysSo) {
   }
 }
 
-TEST_F(Offscreen, StandardOutputIsThePictureAlone) {
+TEST_F(Offscreen, StandardOutputContainsOnlyTheImage) {
   scene(kBalls);
   rendered({"-o", folder_ / "o.png", "--size", "32x24"});
   const auto run = render({"-o", "/dev/stdout", "--size", "32x24"});

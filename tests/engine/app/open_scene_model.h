@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A scene from its text, open for editing as the window has it.
+/// A scene from a text, open for editing as in the window.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 namespace catena::test {
 
-/// ImageWriteResult into the folder as scene.json.
+/// Writes the text to scene.json in the folder, and opens the scene.
 inline void open_scene(const TemporaryFolder& folder, const std::string& text, std::optional<app::SceneModel>& host) {
   write_file(folder / "scene.json", text);
   auto document = scene::Document::open(folder / "scene.json");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Standard output and standard error that cannot be written: what is lost is said, and nothing else changes.
+// Write errors on standard output and standard error: lost output is an error, and nothing else changes.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -10,7 +10,7 @@
 #include "tests/support/support.h"
 
 namespace catena {
-namespace lost_output_test {
+namespace output_write_failure_test {
 
 class LostOutput : public testing::Test {
  protected:
@@ -18,7 +18,7 @@ class LostOutput : public testing::Test {
     const auto made = test::run_catena({"generate", "sphere", "-o", folder_ / "g.vdb", "--resolution", "8"});
     EXPECT_EQ(made.exit_code, 0) << made.err;
   }
-  /// The exit code of "catena WORDS"; `redirection` as a shell has it.
+  /// Runs "catena WORDS" with a shell's `redirection`, and returns the exit code.
   int run(const std::string& words, const std::string& redirection) {
     const std::string command = "cd " + folder_.path() + " && " + test::program_path() + " " + words + " 2> err " + redirection;
     const int status = std::system(("bash -c '" + command + "'").c_str());
@@ -30,8 +30,7 @@ class LostOutput : public testing::Test {
   std::string err_;
 };
 
-// before: exit code 0, and not a word
-TEST_F(LostOutput, IsSaid) {
+TEST_F(LostOutput, IsAnError) {
   for (const char* words : {"info g.vdb", "devices --json", "--help", "info --colormaps", "--version"}) {
     EXPECT_EQ(run(words, "> /dev/full"), 1) << words;
     EXPECT_TRUE(err_.starts_with("catena: standard output cannot be written")) << words << ": " << err_;
@@ -45,29 +44,29 @@ TEST_F(LostOutput, IsSaid) {
   EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_;
 }
 
-TEST_F(LostOutput, AReaderThatHasGoneIsNoNews) {
+TEST_F(LostOutput, AClosedPipeEndsTheProgramWithoutAMessage) {
   for (const bool ignored : {false, true}) {
     const std::string late =
         std::string(ignored ? "trap \"\" PIPE; " : "") + "sleep 0.3; exec " + test::program_path() + " info g.vdb 2> err";
     const int status = std::system(("cd " + folder_.path() + " && bash -c '(" + late + ") | true; exit ${PIPESTATUS[0]}'").c_str());
-    // with the signal ignored, the write itself fails
+    // If SIGPIPE is ignored, the write itself fails.
     EXPECT_EQ(WEXITSTATUS(status), ignored ? 1 : 128 + 13);
     EXPECT_EQ(test::read_file(folder_ / "err"), "");
   }
 }
 
-// before: exit code 1, as if the machine had failed
-TEST_F(LostOutput, AnErrorThatNobodyCanReadIsTheSameError) {
+// An error that cannot be printed must keep its exit code.
+TEST_F(LostOutput, AnErrorThatCannotBePrintedKeepsItsExitCode) {
   for (const char* redirection : {"2> /dev/full", "2>&-"}) {
     EXPECT_EQ(run("info none.vdb", redirection), 2) << redirection;
     EXPECT_EQ(run("info --nonsense", redirection), 2) << redirection;
     EXPECT_EQ(run("info g.vdb > out", redirection), 0) << redirection;
   }
-  // no file is taken for standard error
+  // A closed standard error must not become the descriptor of an opened file.
   EXPECT_EQ(run("import g.vdb -o h.vdb --grid absent", "2>&-"), 2);
   EXPECT_EQ(run("generate sphere -o i.vdb --resolution 8", ">&- 2>&- <&-"), 1) << "its line on standard output is lost";
   EXPECT_EQ(run("info i.vdb", "> out"), 0) << err_;
 }
 
-}  // namespace lost_output_test
+}  // namespace output_write_failure_test
 }  // namespace catena

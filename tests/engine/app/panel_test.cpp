@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Pointing at a panel: the pixel that a ray means, and what a press does at its edges.
+/// Pointing at a panel: the pixel that a ray hits, and presses at the panel's edges.
 #include "engine/app/viewer/xr/panel.h"
 
 #include <gtest/gtest.h>
@@ -11,13 +11,13 @@ using namespace catena::xr_interaction;
 
 const Panel kPanel{{0.3, 1.4, -1.0}, rotation_from_vector({0, 0.4, 0}), 0.8, 0.6, 800, 600};
 
-/// The room place of a pixel.
+/// The position of a pixel in the room.
 Vec3 place_of(const Panel& p, double x, double y) {
   return p.center_m + rotate(p.orientation, Vec3((x / p.width_px - 0.5) * p.width_m, (0.5 - y / p.height_px) * p.height_m, 0));
 }
 AimRay aimed(const Vec3& from, const Vec3& at) { return {from, direction(at - from)}; }
 
-TEST(Panel, TheRayMeansThePixelThatItMeets) {
+TEST(Panel, ARayHitsThePixelAtItsIntersection) {
   const Vec3 hand(0.1, 1.1, 0.2);
   for (double x = 0.5; x < 800; x += 61)
     for (double y = 0.5; y < 600; y += 47) {
@@ -38,9 +38,9 @@ TEST(Panel, TheRayMeansThePixelThatItMeets) {
   EXPECT_LT(norm(aim_ray(hand, rotation_from_vector({0, M_PI / 2, 0})).direction - Vec3(-1, 0, 0)), 1e-15);
 }
 
-TEST(Panel, StandsLevelBeforeTheHead) {
+TEST(Panel, IsPlacedUprightInFrontOfTheHead) {
   const Vec3 head(1, 1.7, 2);
-  // looking to the left and down
+  // The head looks to the left and down.
   const Panel p = place_in_front(head, rotation_from_vector({0, M_PI / 2, 0}) * rotation_from_vector({-0.5, 0, 0}), 1.2, 0.2, kPanel);
   EXPECT_LT(norm(p.center_m - Vec3(-0.2, 1.5, 2)), 1e-12);
   EXPECT_LT(norm(rotate(p.orientation, Vec3(0, 0, 1)) - Vec3(1, 0, 0)), 1e-12) << "it is read from where the head is";
@@ -48,7 +48,7 @@ TEST(Panel, StandsLevelBeforeTheHead) {
   EXPECT_TRUE(is_finite(place_in_front(head, rotation_from_vector({-M_PI / 2, 0, 0}), 1, 0, kPanel).center_m)) << "straight down";
 }
 
-TEST(PanelPointer, APressKeepsThePanelItBeganOn) {
+TEST(PanelPointer, APressStaysWithThePanelOrTheDataWhereItBegan) {
   const Vec3 hand(0.1, 1.1, 0.2);
   PanelPointer pointer;
   const auto at = [&](double x, double y, bool selects) { return pointer.step(kPanel, aimed(hand, place_of(kPanel, x, y)), selects); };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Places under the pointer against closed forms.
+// Picked positions against closed forms.
 #include "engine/app/viewer/input/pick.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace pick_test {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// f(world) on 33^3 nodes of the box -2..2.
+/// The grid of f(world) on 33^3 nodes of the box -2..2.
 std::shared_ptr<const field::ScalarGrid> grid_of(const std::function<double(const Vec3&)>& f) {
   constexpr int n = 33;
   Mat3 j(4.0 / (n - 1));
@@ -42,7 +42,7 @@ render::FramePacket packet_with(const std::function<double(const Vec3&)>& f, con
 
 const render::Ray kAlongX{{-6, 0, 0}, {1, 0, 0}};
 
-TEST(Pick, AUniformMistIsPickedWhereHalfOfItIsCrossed) {
+TEST(Pick, AUniformVolumeIsPickedAtHalfOpacity) {
   const double sigma = 0.4;
   const auto packet = packet_with([](const Vec3&) { return 1.0; }, {{0, sigma}, {2, sigma}});
   const auto place = pick_volume(packet, kAlongX, kNone);
@@ -52,8 +52,8 @@ TEST(Pick, AUniformMistIsPickedWhereHalfOfItIsCrossed) {
   EXPECT_EQ(object_label(packet, place->id), "volume f");
 }
 
-TEST(Pick, AMistThatThickensLinearlyIsPickedAtTheRootOfItsSquare) {
-  // sigma = a (x + 2): 1 - exp(-a t^2 / 2) = 1/2
+TEST(Pick, ALinearExtinctionIsPickedAtHalfOpacity) {
+  // With sigma = a (x + 2), the opacity is half where 1 - exp(-a t^2 / 2) = 1/2.
   const double a = 0.3;
   const auto packet = packet_with([](const Vec3& p) { return p.x; }, {{-2, 0}, {2, 4 * a}});
   const auto place = pick_volume(packet, kAlongX, kNone);
@@ -61,8 +61,8 @@ TEST(Pick, AMistThatThickensLinearlyIsPickedAtTheRootOfItsSquare) {
   EXPECT_NEAR(place->world.x, -2 + std::sqrt(2 * std::log(2) / a), 2e-3);
 }
 
-TEST(Pick, AFaintShellIsPickedWhereItContributesMost) {
-  // a bump of sigma at x = 0.7 whose integral stays below a half
+TEST(Pick, AFaintShellIsPickedAtItsMaximumContribution) {
+  // A peak of sigma at x = 0.7, with an opacity below a half.
   const auto packet = packet_with([](const Vec3& p) { return p.x; }, {{0.2, 0}, {0.7, 0.3}, {1.2, 0}});
   const auto place = pick_volume(packet, kAlongX, kNone);
   ASSERT_TRUE(place);
@@ -72,7 +72,7 @@ TEST(Pick, AFaintShellIsPickedWhereItContributesMost) {
   EXPECT_FALSE(pick_volume(nothing, kAlongX, kNone));
 }
 
-TEST(Pick, AProjectionIsPickedAtItsValue) {
+TEST(Pick, AMaximumProjectionIsPickedAtTheMaximum) {
   auto packet = packet_with([](const Vec3& p) { return -(p.x - 0.5) * (p.x - 0.5); }, {{-10, 0}, {0, 9}});
   packet.volumes[0].projection = render::Projection::maximum;
   const auto place = pick_volume(packet, kAlongX, kNone);
@@ -80,7 +80,7 @@ TEST(Pick, AProjectionIsPickedAtItsValue) {
   EXPECT_NEAR(place->world.x, 0.5, 0.07);
 }
 
-TEST(Pick, ClipPlanesCountUnlessTheVolumeIgnoresThem) {
+TEST(Pick, ClipPlanesApplyUnlessTheVolumeIgnoresThem) {
   auto packet = packet_with([](const Vec3&) { return 1.0; }, {{0, 2}, {2, 2}});
   packet.clip_planes.push_back({{0.3, 0, 0}, {1, 0, 0}});
   EXPECT_NEAR(pick_volume(packet, kAlongX, kNone)->world.x, 0.3 + std::log(2) / 2, 1e-6);
@@ -88,9 +88,9 @@ TEST(Pick, ClipPlanesCountUnlessTheVolumeIgnoresThem) {
   EXPECT_NEAR(pick_volume(packet, kAlongX, kNone)->world.x, -2 + std::log(2) / 2, 1e-6);
 }
 
-TEST(Pick, ASolidThingShowsThroughMistAndHidesWhatIsBehindIt) {
+TEST(Pick, ASurfaceIsPickedInFrontOfHalfOpacityOnly) {
   const auto packet = packet_with([](const Vec3&) { return 1.0; }, {{0, 0.4}, {2, 0.4}});
-  // half is crossed at -2 + 1.73; a solid thing at x = -1 comes first, one at x = 1 is hidden
+  // The volume is half opaque at -2 + 1.73: a surface at x = -1 is nearer, and one at x = 1 is hidden.
   const auto before = pick(packet, 50.5, 50.5, 5, 7), behind = pick(packet, 50.5, 50.5, 7, 7);
   ASSERT_TRUE(before && behind);
   EXPECT_FALSE(before->is_volume);
@@ -100,7 +100,7 @@ TEST(Pick, ASolidThingShowsThroughMistAndHidesWhatIsBehindIt) {
   EXPECT_NEAR(behind->world.x, -2 + std::log(2) / 0.4, 1e-6);
 }
 
-TEST(Pick, DepthsBecomePlacesOfASphereAndAPlane) {
+TEST(Pick, DepthsBecomePositionsOnASphereAndAPlane) {
   render::FramePacket packet;
   packet.width = 160;
   packet.height = 120;
@@ -109,7 +109,7 @@ TEST(Pick, DepthsBecomePlacesOfASphereAndAPlane) {
   const render::Camera camera = render::make_camera(packet.view, 160, 120, Bounds());
   for (const auto& [x, y] : {std::pair{80.5, 60.5}, std::pair{95.5, 50.5}, std::pair{70.5, 72.5}}) {
     const render::Ray ray = render::pixel_ray(camera, x, y);
-    // |o + t d| = 1
+    // The intersection with the unit sphere: |o + t d| = 1.
     const double b = dot(ray.origin, ray.direction), c = dot(ray.origin, ray.origin) - 1, t = -b - std::sqrt(b * b - c);
     const Vec3 truth = ray.origin + t * ray.direction;
     const auto sphere = pick(packet, x, y, -dot(camera.back, truth - camera.position), 3);
@@ -121,7 +121,7 @@ TEST(Pick, DepthsBecomePlacesOfASphereAndAPlane) {
   EXPECT_FALSE(pick(packet, 80, 60, kNone, 0));
 }
 
-TEST(Pick, AnArrowIsMetOnItsShaftAndItsHead) {
+TEST(Pick, AnArrowIsPickedOnItsShaftAndItsHead) {
   render::FramePacket packet;
   render::GlyphItem item;
   item.glyphs = {{{0, -2, 0}, {0, 2, 0}, {1, 0, 0}}, {{3, -1, 0}, {3, 1, 0}, {1, 0, 0}}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The program under limits that a shell or a service manager sets: one sentence and a defined exit code, never a signal.
+// The program under limits that a shell or a service manager sets: one error line and a defined exit code, never a signal.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -22,14 +22,14 @@ constexpr const char* kScene = R"({
 
 struct Limit {
   __rlimit_resource what;
-  rlim_t most;
+  rlim_t maximum;
 };
 
 class ProcessLimits : public testing::Test {
  protected:
   ProcessLimits() { test::write_file(scene_, kScene); }
 
-  /// Starts the program under a limit; its output goes to files.
+  /// Starts the program under limits; the output goes to files.
   pid_t start(const std::vector<std::string>& arguments, const std::vector<Limit>& limits) {
     const std::string program = test::program_path(), out = folder_ / "out", err = folder_ / "err";
     std::vector<char*> argv{const_cast<char*>(program.c_str())};
@@ -43,13 +43,13 @@ class ProcessLimits : public testing::Test {
     dup2(err_fd, 2);
     closefrom(3);
     for (const Limit& limit : limits) {
-      const rlimit both{limit.most, limit.most};
+      const rlimit both{limit.maximum, limit.maximum};
       setrlimit(limit.what, &both);
     }
     execv(program.c_str(), argv.data());
     _exit(127);
   }
-  /// Its exit code, 128 + signal if it was killed.
+  /// Waits for the program and returns the exit code, or 128 + signal if it was killed.
   int wait(pid_t child) {
     int status = 0;
     EXPECT_EQ(waitpid(child, &status, 0), child);
@@ -62,51 +62,51 @@ class ProcessLimits : public testing::Test {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
-  void expect_one_sentence() { EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_; }
+  void expect_one_line() { EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_; }
 
   test::TemporaryFolder folder_;
   std::string scene_ = folder_ / "s.json", err_;
 };
 
-// before: SIGSEGV, for a thread's stack is the limit, and the servo touches 256 KiB of its own
-TEST_F(ProcessLimits, ASmallStackIsRefusedOrEnough) {
+// The stack limit is the size of a thread's stack, and the servo needs 256 KiB.
+TEST_F(ProcessLimits, ASmallStackIsRefused) {
   for (const rlim_t kib : {192, 512, 1000}) {
     EXPECT_EQ(run(feel(), {{RLIMIT_STACK, kib << 10}}), 1) << err_;
-    EXPECT_NE(err_.find("catena: the stack is limited to " + std::to_string(kib) + " KiB: at least 1024 (ulimit -s) were expected\n"),
+    EXPECT_NE(err_.find("catena: the stack is limited to " + std::to_string(kib) + " KiB; at least 1024 KiB were expected (ulimit -s)\n"),
               std::string::npos)
         << err_;
-    expect_one_sentence();
+    expect_one_line();
   }
   EXPECT_EQ(run(feel(), {{RLIMIT_STACK, 1u << 20}}), 0) << err_;
 }
 
-// before: SIGXFSZ, with the force on
-TEST_F(ProcessLimits, AFileThatMayNotGrowIsAFullDisk) {
+// SIGXFSZ must not end the program while the force is on.
+TEST_F(ProcessLimits, TheFileSizeLimitIsASystemFailure) {
   const std::string log = folder_ / "l.catlog";
   EXPECT_EQ(run(feel("1", {"--record", log}), {{RLIMIT_FSIZE, 8192}}), 1) << err_;
   EXPECT_NE(
       err_.find("l.catlog: cannot write: File too large (files may have at most 8192 bytes: ulimit -f); the recording ends with tick "),
       std::string::npos)
       << err_;
-  expect_one_sentence();
+  expect_one_line();
   EXPECT_EQ(run({"generate", "sphere", "-o", folder_ / "s.vdb", "--resolution", "32"}, {{RLIMIT_FSIZE, 8192}}), 1) << err_;
-  expect_one_sentence();
+  expect_one_line();
   EXPECT_FALSE(test::exists(folder_ / "s.vdb"));
 }
 
-TEST_F(ProcessLimits, ProcessorTimeThatIsUsedUpIsAnErrorOfTheMachine) {
+TEST_F(ProcessLimits, TheCpuTimeLimitIsASystemFailure) {
   const pid_t child = start(feel("20"), {});
-  // what the kernel sends when the soft limit is passed; "at 1000 Hz" is said when the servo runs
+  // The kernel sends this signal at the soft limit; "forces on" is printed when the servo runs.
   while (test::read_file(folder_ / "out").find("forces on") == std::string::npos) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   kill(child, SIGXCPU);
   EXPECT_EQ(wait(child), 1) << err_;
   EXPECT_NE(err_.find("catena: ended by SIGXCPU (CPU time limit exceeded); the device is off\n"), std::string::npos) << err_;
-  expect_one_sentence();
+  expect_one_line();
 }
 
-#ifndef __SANITIZE_ADDRESS__  // whose checks need descriptors of their own
-// before: exit code 2, and the helper was said to be missing
-TEST_F(ProcessLimits, FewDescriptorsAreALimitOfTheMachine) {
+#ifndef __SANITIZE_ADDRESS__  // AddressSanitizer needs descriptors of its own
+// The error must not be exit code 2, as if the helper program were missing.
+TEST_F(ProcessLimits, TheDescriptorLimitIsASystemFailure) {
   const std::string grid = folder_ / "g.vdb", uses = folder_ / "u.json";
   ASSERT_EQ(run({"generate", "sphere", "-o", grid, "--resolution", "8"}, {}), 0) << err_;
   test::write_file(uses, R"({"fields": {"s": {"file": "g.vdb"}}, "isosurfaces": [{"field": "s", "level": 1}]})");
@@ -114,7 +114,7 @@ TEST_F(ProcessLimits, FewDescriptorsAreALimitOfTheMachine) {
     for (const std::vector<std::string>& arguments :
          {std::vector<std::string>{"info", grid}, {"info", uses}, {"generate", "sphere", "-o", folder_ / "o.vdb", "--resolution", "8"}}) {
       EXPECT_EQ(run(arguments, {{RLIMIT_NOFILE, files}}), 1) << arguments[1] << ": " << err_;
-      expect_one_sentence();
+      expect_one_line();
       if (arguments[0] == "info") {
         EXPECT_NE(err_.find("at most " + std::to_string(files) + " files may be open at a time (ulimit -n)"), std::string::npos) << err_;
       }
@@ -122,15 +122,15 @@ TEST_F(ProcessLimits, FewDescriptorsAreALimitOfTheMachine) {
   EXPECT_FALSE(test::exists(folder_ / "o.vdb"));
 }
 
-// from next to nothing to enough: what a thread, a field or the servo cannot get is a sentence
-TEST_F(ProcessLimits, LittleMemoryIsOneSentence) {
+// From too little memory to enough: a thread, a field or a servo without memory is one error line.
+TEST_F(ProcessLimits, LittleMemoryIsOneErrorLine) {
   int ended = 0, enough = 0;
   for (rlim_t mib = 240; mib <= 640; mib += 40) {
     const int code = run(feel(), {{RLIMIT_AS, mib << 20}});
-    if (code == 127) continue;  // not even its libraries
+    if (code == 127) continue;  // too little for the shared libraries
     EXPECT_TRUE(code == 0 || code == 1) << mib << " MiB: " << code << ": " << err_;
     ++(code == 0 ? enough : ended);
-    if (code == 1) expect_one_sentence();
+    if (code == 1) expect_one_line();
   }
   EXPECT_GT(enough, 0);
   RecordProperty("ended", ended);

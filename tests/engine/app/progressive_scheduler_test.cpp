@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// Which picture the window shows next, told the times; and the phase of pulses, told the clock.
+/// The window's next image, from measured render times; and the phase of animated bands, from the clock.
 #include "engine/app/viewer/window/progressive_scheduler.h"
 
 #include <gtest/gtest.h>
 
 namespace catena::app {
-namespace pacing_test {
+namespace progressive_scheduler_test {
 
 constexpr RayWorkload kFast{true, true, false}, kExact{true, false, false}, kNoRays{false, false, false};
 
@@ -15,7 +15,7 @@ ProgressiveScheduler pacing(const std::string& words) {
   return ProgressiveScheduler(*quality);
 }
 
-/// A machine on which a unit of cost takes `unit_ms` for a picture of full size.
+/// The render time on a machine where a unit of cost takes `unit_ms` for an image of full size.
 double time_of(const FrameRequest& next, double unit_ms) {
   return unit_ms * render::relative_cost(next.settings, false) / (next.pixel_stride * next.pixel_stride);
 }
@@ -29,7 +29,7 @@ FrameRequest settle(ProgressiveScheduler& p, const RayWorkload& kind, double uni
   return next;
 }
 
-/// The pictures of rest.
+/// The images at rest.
 std::vector<FrameRequest> rest(ProgressiveScheduler& p, const RayWorkload& kind, double unit_ms) {
   std::vector<FrameRequest> all;
   while (const auto next = p.refined_frame(kind)) {
@@ -40,7 +40,7 @@ std::vector<FrameRequest> rest(ProgressiveScheduler& p, const RayWorkload& kind,
   return all;
 }
 
-TEST(ProgressiveScheduler, WhileItMovesAPictureComesInTimeAndMoreTimeMakesItBetter) {
+TEST(ProgressiveScheduler, InteractiveImagesMeetTheTimeAndImproveWithMoreTime) {
   double before = 0;
   for (const char* words : {"time=20", "time=50", "time=200"}) {
     ProgressiveScheduler p = pacing(words);
@@ -53,7 +53,7 @@ TEST(ProgressiveScheduler, WhileItMovesAPictureComesInTimeAndMoreTimeMakesItBett
   }
 }
 
-TEST(ProgressiveScheduler, AtRestItGoesToEveryPixelAndEnds) {
+TEST(ProgressiveScheduler, AtRestItRefinesToEveryPixelAndEnds) {
   ProgressiveScheduler p = pacing("time=50");
   settle(p, kFast, 400);
   const auto all = rest(p, kFast, 400);
@@ -69,9 +69,9 @@ TEST(ProgressiveScheduler, AtRestItGoesToEveryPixelAndEnds) {
   EXPECT_TRUE(p.is_finished());
 }
 
-TEST(ProgressiveScheduler, WhereEvenTheCheapestTakesTooLongThereAreFewerPixels) {
+TEST(ProgressiveScheduler, TooSlowAtTheCheapestSettingsReducesTheResolution) {
   ProgressiveScheduler slow = pacing("time=50");
-  const FrameRequest coarse = settle(slow, kExact, 400);  // step 4: some 130 ms
+  const FrameRequest coarse = settle(slow, kExact, 400);  // step 4: about 130 ms
   EXPECT_EQ(coarse.pixel_stride, 2u);
   EXPECT_LE(time_of(coarse, 400), 50);
   for (const FrameRequest& next : rest(slow, kExact, 400)) EXPECT_EQ(next.pixel_stride, 1u);
@@ -82,7 +82,7 @@ TEST(ProgressiveScheduler, WhereEvenTheCheapestTakesTooLongThereAreFewerPixels) 
   EXPECT_EQ(settle(quick, kExact, 20).pixel_stride, 1u);
 }
 
-TEST(ProgressiveScheduler, TheNumberOfPixelsDoesNotComeAndGo) {
+TEST(ProgressiveScheduler, TheResolutionDoesNotOscillate) {
   ProgressiveScheduler p = pacing("time=50");
   const double near = 50 / render::relative_cost(render::quality_levels({false, false}).front(), false);  // step 4 takes the budget
   settle(p, kExact, 1.05 * near);
@@ -97,7 +97,7 @@ TEST(ProgressiveScheduler, TheNumberOfPixelsDoesNotComeAndGo) {
   EXPECT_LE(changes, 1);
 }
 
-TEST(ProgressiveScheduler, ANamedQualityIsThePictureAtRest) {
+TEST(ProgressiveScheduler, ANamedQualityAppliesToTheImageAtRest) {
   for (const auto& [words, settings] :
        {std::pair{"reference", render::reference_settings()}, std::pair{"draft", render::draft_settings()}}) {
     ProgressiveScheduler p = pacing(words);
@@ -126,23 +126,23 @@ TEST(ProgressiveScheduler, AStatedErrorEndsTheRefinement) {
   EXPECT_TRUE(p.is_finished());
 }
 
-TEST(ProgressiveScheduler, APictureThatIsKeptIsAsGoodAsTheLastAndItsTimeTeachesNothing) {
+TEST(ProgressiveScheduler, AReusedImageKeepsItsQualityAndDoesNotChangeTheTimeEstimate) {
   ProgressiveScheduler p = pacing("time=50");
   settle(p, kFast, 400);
   const auto all = rest(p, kFast, 400);
   ASSERT_TRUE(p.is_finished());
   for (int k = 0; k < 20; ++k) {
-    const FrameRequest kept = p.reused_frame();
-    EXPECT_TRUE(kept.settings.reuse_rays);
-    EXPECT_EQ(kept.settings.fast, all.back().settings.fast);
-    EXPECT_EQ(kept.pixel_stride, all.back().pixel_stride);
-    p.on_rendered(0.5);  // hardly anything was marched
+    const FrameRequest reused = p.reused_frame();
+    EXPECT_TRUE(reused.settings.reuse_rays);
+    EXPECT_EQ(reused.settings.fast, all.back().settings.fast);
+    EXPECT_EQ(reused.pixel_stride, all.back().pixel_stride);
+    p.on_rendered(0.5);  // few rays were marched
   }
-  // or the next that moves would come far too late
+  // The short time of reused images must not change the estimate for interactive images.
   EXPECT_LE(time_of(p.interactive_frame(kFast), 400), 50);
 }
 
-TEST(ProgressiveScheduler, WhatIsKeptFarTooLateIsNotKeptAgainBeforeSomethingRests) {
+TEST(ProgressiveScheduler, ReuseThatIsTooSlowEndsUntilTheNextRest) {
   ProgressiveScheduler p = pacing("time=50");
   settle(p, kExact, 400);
   rest(p, kExact, 400);
@@ -150,7 +150,7 @@ TEST(ProgressiveScheduler, WhatIsKeptFarTooLateIsNotKeptAgainBeforeSomethingRest
   p.on_rendered(100);
   EXPECT_TRUE(p.may_reuse());
   p.reused_frame();
-  p.on_rendered(160);  // nearly all of the picture was under what moved
+  p.on_rendered(160);  // nearly the whole image was behind the moving object
   EXPECT_FALSE(p.may_reuse());
   p.on_rendered(time_of(p.interactive_frame(kExact), 400));
   EXPECT_FALSE(p.may_reuse());
@@ -158,7 +158,7 @@ TEST(ProgressiveScheduler, WhatIsKeptFarTooLateIsNotKeptAgainBeforeSomethingRest
   EXPECT_TRUE(p.may_reuse());
 }
 
-TEST(ProgressiveScheduler, BetterPicturesComeBetweenKeptOnesUnlessTheHandsWouldStandForLong) {
+TEST(ProgressiveScheduler, RefinementBetweenReusedImagesNeedsAShortTime) {
   for (const auto& [ms, may] : {std::pair{100.0, true}, {100000.0, false}}) {
     ProgressiveScheduler p = pacing("time=50");
     settle(p, kExact, ms);
@@ -168,7 +168,7 @@ TEST(ProgressiveScheduler, BetterPicturesComeBetweenKeptOnesUnlessTheHandsWouldS
   }
 }
 
-TEST(ProgressiveScheduler, ASceneWithoutRaysIsDrawnOnceMoreAtMost) {
+TEST(ProgressiveScheduler, ASceneWithoutRaysIsRefinedAtMostOnce) {
   ProgressiveScheduler p = pacing("time=50");
   settle(p, kNoRays, 1);
   EXPECT_TRUE(rest(p, kNoRays, 1).empty()) << "what moved was whole already";
@@ -179,20 +179,20 @@ TEST(ProgressiveScheduler, ASceneWithoutRaysIsDrawnOnceMoreAtMost) {
   EXPECT_EQ(all[0].pixel_stride, 1u);
 }
 
-TEST(BandAnimationClock, RunsAtHalfATurnASecondAndStandsWhileNobodyLooks) {
+TEST(BandAnimationClock, RunsAtHalfAPeriodPerSecondAndPausesWhenHidden) {
   BandAnimationClock clock;
   const auto ns = [](double s) { return static_cast<std::int64_t>(1e9 * s); };
   EXPECT_FALSE(clock.advance(ns(10), true, 0.9)) << "it begins";
   EXPECT_FALSE(clock.advance(ns(10.01), true, 0.9)) << "too soon";
   const auto phase = clock.advance(ns(10.4), true, 0.9);
   ASSERT_TRUE(phase);
-  EXPECT_NEAR(*phase, 0.1, 1e-9);  // 0.9 + 0.4 / 2, round
+  EXPECT_NEAR(*phase, 0.1, 1e-9);  // 0.9 + 0.4 / 2, modulo 1
   EXPECT_FALSE(clock.advance(ns(11), false, *phase));
   EXPECT_FALSE(clock.advance(ns(20), true, *phase)) << "the pause does not count";
   EXPECT_NEAR(*clock.advance(ns(20.2), true, *phase), 0.2, 1e-9);
 }
 
-TEST(ProgressiveScheduler, AnyGoalMayHearTheErrorOfItsPictureAtRest) {
+TEST(ProgressiveScheduler, TheErrorAtRestMayBeEstimatedForAnyTarget) {
   for (const char* words : {"time=50", "balanced"}) {
     ProgressiveScheduler p = pacing(words);
     settle(p, kFast, 400);
@@ -209,5 +209,5 @@ TEST(ProgressiveScheduler, AnyGoalMayHearTheErrorOfItsPictureAtRest) {
   }
 }
 
-}  // namespace pacing_test
+}  // namespace progressive_scheduler_test
 }  // namespace catena::app

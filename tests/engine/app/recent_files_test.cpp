@@ -15,7 +15,7 @@ namespace recent_files_test {
 
 using Names = std::vector<std::string>;
 
-TEST(RecentFiles, TheNewestIsFirstAndEachIsThereOnce) {
+TEST(RecentFiles, TheNewestIsFirstAndThereAreNoDuplicates) {
   const test::TemporaryFolder folder;
   for (const char* name : {"a.json", "b.vdb", "c\"\xc3\xa9.json"}) test::write_file(folder / name, "");
   RecentFiles recent(folder / "state/catena/recent.json");
@@ -29,7 +29,7 @@ TEST(RecentFiles, TheNewestIsFirstAndEachIsThereOnce) {
   EXPECT_EQ(RecentFiles(recent.path()).existing_files(), expected);
 }
 
-TEST(RecentFiles, RelativeNamesAreKeptWhole) {
+TEST(RecentFiles, RelativePathsAreStoredAsAbsolutePaths) {
   const test::TemporaryFolder folder;
   RecentFiles recent(folder / "recent.json");
   recent.add("no-such-file.json");
@@ -37,7 +37,7 @@ TEST(RecentFiles, RelativeNamesAreKeptWhole) {
             std::string::npos);
 }
 
-TEST(RecentFiles, MissingFilesAreNotShownButComeBack) {
+TEST(RecentFiles, MissingFilesAreHiddenUntilTheyExist) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "a.json", "");
   RecentFiles recent(folder / "recent.json");
@@ -48,7 +48,7 @@ TEST(RecentFiles, MissingFilesAreNotShownButComeBack) {
   EXPECT_EQ(recent.existing_files().size(), 2u);
 }
 
-TEST(RecentFiles, TenAtMost) {
+TEST(RecentFiles, ThereAreAtMostTen) {
   const test::TemporaryFolder folder;
   RecentFiles recent(folder / "recent.json");
   for (int i = 0; i < 15; ++i) {
@@ -61,7 +61,7 @@ TEST(RecentFiles, TenAtMost) {
   EXPECT_EQ(recent.existing_files().back(), folder / "5.json");
 }
 
-TEST(RecentFiles, TwoProgramsAddToOneList) {
+TEST(RecentFiles, TwoProgramsShareTheList) {
   const test::TemporaryFolder folder;
   for (const char* name : {"a.json", "b.json"}) test::write_file(folder / name, "");
   RecentFiles one(folder / "recent.json"), other(folder / "recent.json");
@@ -83,7 +83,7 @@ TEST(RecentFiles, GarbageIsAnEmptyList) {
   EXPECT_TRUE(RecentFiles(folder.path()).existing_files().empty());
 }
 
-TEST(RecentFiles, APlaceThatCannotBeWrittenIsNoError) {
+TEST(RecentFiles, AnUnwritablePathIsNotAnError) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "a.json", "");
   for (const std::string& path :
@@ -95,7 +95,7 @@ TEST(RecentFiles, APlaceThatCannotBeWrittenIsNoError) {
   EXPECT_EQ(test::read_file(folder / "a.json"), "");
 }
 
-/// Environment variables for as long as it lives.
+/// Sets an environment variable for the lifetime of the object.
 class Environment {
  public:
   Environment(const char* name, const char* value) : name_(name) {
@@ -109,7 +109,7 @@ class Environment {
   std::string before_;
 };
 
-TEST(RecentFiles, LieInTheStateFolderOfTheUser) {
+TEST(RecentFiles, TheListIsInTheUsersStateFolder) {
   {
     const Environment state("XDG_STATE_HOME", "/state"), home("HOME", "/home/me");
     EXPECT_EQ(RecentFiles().path(), "/state/catena/recent.json");

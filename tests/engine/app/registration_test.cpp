@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A device's place in the room from three touches: exact ones, careless ones, and those that say too little.
+/// Registration of a device in the room from three touched points: exact, inexact and degenerate ones.
 #include "engine/app/viewer/xr/registration.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ double squares(const Registration& r, const Places& room) {
   return sum;
 }
 
-TEST(Registration, FindsTheMotion) {
+TEST(Registration, FindsTheRigidMotionOfExactPoints) {
   Dice dice;
   for (int k = 0; k < 200; ++k) {
     const Quat turn = k == 0 ? rotation_from_vector({0, 0, M_PI}) : rotation_from_vector(dice.vec(1.8));
@@ -44,7 +44,7 @@ TEST(Registration, FindsTheMotion) {
   }
 }
 
-TEST(Registration, CarelessTouchesGiveTheLeastSquares) {
+TEST(Registration, InexactPointsGiveTheLeastSquaresFit) {
   Dice dice;
   for (int k = 0; k < 50; ++k) {
     const Quat turn = rotation_from_vector(dice.vec(1.5));
@@ -55,7 +55,7 @@ TEST(Registration, CarelessTouchesGiveTheLeastSquares) {
     const double best = squares(*found, room);
     EXPECT_NEAR(found->residual_m, std::sqrt(best / 3), 1e-12);
     EXPECT_LT(found->residual_m, 0.0052);
-    // no small motion away from it is better
+    // No small motion away from the result has a smaller sum of squares.
     for (int j = 0; j < 60; ++j) {
       Registration other = *found;
       const Quat nudge = rotation_from_vector(dice.vec(0.01));
@@ -66,20 +66,20 @@ TEST(Registration, CarelessTouchesGiveTheLeastSquares) {
   }
 }
 
-TEST(Registration, RefusesWhatSaysTooLittle) {
+TEST(Registration, RefusesDegeneratePoints) {
   const auto refused = [](Places device, Places room, const char* words) {
     const auto found = compute_registration(device, room);
     ASSERT_FALSE(found);
     EXPECT_NE(found.error().message.find(words), std::string::npos) << found.error().message;
   };
   const Places line{Vec3(0.0), Vec3(0.1, 0, 0), Vec3(0.05, 0.005, 0)};
-  refused(line, kTouched, "the device are nearly on one line, 5.0 mm off it");
+  refused(line, kTouched, "the device are nearly on one line, 5.0 mm from it");
   refused(kTouched, line, "the room are nearly on one line");
-  refused({Vec3(0.0), Vec3(0.001, 0, 0), Vec3(0, 0.1, 0)}, kTouched, "places 1 and 2 of the device are 1.0 mm apart");
-  refused(kTouched, {Vec3(0.0), Vec3(0.1, 0, 0), Vec3(0, NAN, 0)}, "place 3 of the room is not finite");
+  refused({Vec3(0.0), Vec3(0.001, 0, 0), Vec3(0, 0.1, 0)}, kTouched, "points 1 and 2 of the device are 1.0 mm apart");
+  refused(kTouched, {Vec3(0.0), Vec3(0.1, 0, 0), Vec3(0, NAN, 0)}, "point 3 of the room is not finite");
 }
 
-TEST(Registration, SaysThatAnEdgeIsWrong) {
+TEST(Registration, ReportsTheErrorOfAnEdge) {
   Places room = kTouched;
   room[1] += 0.02 * direction(kTouched[1] - kTouched[0]);
   const auto found = compute_registration(kTouched, room);

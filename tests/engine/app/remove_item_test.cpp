@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What goes with an item that is removed in the window, and what a second Feel takes over.
+// Removal of an item in the window together with its dependents, and repeated use of Feel.
 #include "engine/app/viewer/edit/remove_item.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace removal_test {
+namespace remove_item_test {
 
 class ItemRemoval : public testing::Test {
  protected:
@@ -28,7 +28,7 @@ class ItemRemoval : public testing::Test {
     const Outcome done = host_->apply(make_binding_edits(host_->scene(), item, *thing), "feel");
     ASSERT_TRUE(done) << done.error().message;
   }
-  /// The value at a place of the text, on one line; empty: there is none.
+  /// The value at a JSON pointer in the text, on one line; empty if there is none.
   std::string at(const std::string& pointer) const {
     const auto root = json::parse(host_->document().text(), "s");
     const json::Node* node = root ? json::find_value(*root, pointer) : nullptr;
@@ -48,7 +48,7 @@ constexpr const char* kNamed = R"({"fields": {"g": {"analytic": "gaussian", "res
   "scalar_bars": [{"slice": 0, "title": "a"}, {"slice": 1, "title": "b"}, {"slice": 2, "title": "c"}, {"glyphs": 1, "title": "d"},
                   {"glyphs": 2, "title": "e"}]})";
 
-TEST_F(ItemRemoval, WhatNamesLaterItemsNamesTheSameOnes) {
+TEST_F(ItemRemoval, IndicesOfLaterItemsAreUpdated) {
   show(kNamed);
   remove("slices[1]");
   EXPECT_EQ(at("/slices/1/axis"), "\"z\"");
@@ -59,7 +59,7 @@ TEST_F(ItemRemoval, WhatNamesLaterItemsNamesTheSameOnes) {
   EXPECT_EQ(at("/scalar_bars/3"), R"({"glyphs": 2, "title": "e"})");
 }
 
-TEST_F(ItemRemoval, GlyphsStayWhereTheirSliceWasAndGoWithTheirSurface) {
+TEST_F(ItemRemoval, GlyphsKeepTheirSlicesPlaneAndAreRemovedWithTheirIsosurface) {
   show(kNamed);
   remove("slices[0]");
   EXPECT_EQ(at("/glyphs/0/on"), R"({"plane": {"axis": "x", "at": 0.1}})");
@@ -70,13 +70,13 @@ TEST_F(ItemRemoval, GlyphsStayWhereTheirSliceWasAndGoWithTheirSurface) {
   EXPECT_EQ(at("/glyphs/2/on"), R"({"slice": 1})");
   EXPECT_EQ(at("/scalar_bars/2"), R"({"glyphs": 1, "title": "e"})");
   EXPECT_EQ(at("/scalar_bars/3"), "");
-  // one step each
+  // Each removal is one undo step.
   ASSERT_TRUE(host_->undo());
   ASSERT_TRUE(host_->undo());
   EXPECT_EQ(host_->document().text(), kNamed);
 }
 
-TEST_F(ItemRemoval, TheLinksThatFeelAThingGoWithIt) {
+TEST_F(ItemRemoval, LinksBoundToAnItemAreRemovedWithIt) {
   test::write_file(folder_ / "ball.stl", test::binary_stl(test::sphere_soup(8, 0.8)));
   show(R"({"fields": {"g": {"analytic": "gaussian", "resolution": 16}, "h": {"analytic": "gaussian", "resolution": 16},
                       "flow": {"analytic": "helix", "resolution": 16}},
@@ -99,7 +99,7 @@ TEST_F(ItemRemoval, TheLinksThatFeelAThingGoWithIt) {
   }
 }
 
-TEST_F(ItemRemoval, ALinkStaysWhileSomethingElseLiesThere) {
+TEST_F(ItemRemoval, ALinkStaysWhileAnotherItemUsesIt) {
   show(R"({"fields": {"g": {"analytic": "gaussian", "resolution": 16}},
     "isosurfaces": [{"field": "g", "level": 0.5, "opacity": 0.5}, {"field": "g", "level": 0.5}], "volumes": [{"field": "g"}],
     "slices": [{"field": "g", "axis": "z", "at": 0.25}, {"field": "g", "axis": "z", "at": 0.25}]})");
@@ -115,7 +115,7 @@ TEST_F(ItemRemoval, ALinkStaysWhileSomethingElseLiesThere) {
   EXPECT_EQ(links(), 0u);
 }
 
-TEST_F(ItemRemoval, ASecondFeelTakesTheFirstOneOver) {
+TEST_F(ItemRemoval, ASecondFeelUpdatesTheExistingLink) {
   show(R"({"fields": {"g": {"analytic": "gaussian", "resolution": 16}, "flow": {"analytic": "helix", "resolution": 16}},
     "isosurfaces": [{"field": "g", "level": 0.5}], "volumes": [{"field": "g"}],
     "streamlines": [{"field": "flow", "seeds": [[0.6, 0, -0.8], [-0.5, 0.2, 0.1]], "length": 1}]})");
@@ -138,5 +138,5 @@ TEST_F(ItemRemoval, ASecondFeelTakesTheFirstOneOver) {
   EXPECT_NE(at("/chain/2/seed"), seed);
 }
 
-}  // namespace removal_test
+}  // namespace remove_item_test
 }  // namespace catena::app

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// "projection" and "color_by" through the program.
+/// The keys "projection" and "color_by" in rendered images.
 #include <gtest/gtest.h>
 
 #include "render/image/image.h"
 #include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
-namespace look_test {
+namespace render_appearance_test {
 
 using namespace catena;
 
@@ -24,8 +24,8 @@ render::Image8 picture_of(const std::string& drawn) {
   return picture ? *picture : render::Image8{64, 64, std::vector<std::uint8_t>(4 * 64 * 64)};
 }
 
-TEST(RenderAppearance, AProjectionHasTheOpacityOfItsValueWhateverTheDepth) {
-  // composite: 1 - 0.5^(2 / 0.25) of two units of fog; projected: one half
+TEST(RenderAppearance, AProjectionsOpacityDoesNotDependOnTheThickness) {
+  // Composite: opacity 1 - 0.5^(2 / 0.25) for a thickness of 2. Projected: opacity 0.5.
   const std::string volume = R"("volumes": [{"field": "d", "color": [[1, 0, 0, 1]], "opacity": [[1, 0.5]], "opacity_unit": 0.25)";
   EXPECT_NEAR(picture_of(volume + "}]").pixel(32, 32)[3], 254, 1);
   for (const char* projection : {"maximum", "minimum", "average"}) {
@@ -44,4 +44,4 @@ TEST(RenderAppearance, AVolumeIsColouredByAnotherField) {
   EXPECT_EQ(picture.pixel(32, 32)[2], 0);
 }
 
-}  // namespace look_test
+}  // namespace render_appearance_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena render` of slices and translucent meshes from the outside.
+/// `catena render` of slices and translucent meshes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,14 +14,14 @@ using namespace catena;
 
 test::ProgramResult program(const std::vector<std::string>& arguments) { return test::run_catena(arguments); }
 
-/// z on the plane y = 0, -2..2, black to blue, a white line at 1; before it a red mesh over the right half, half translucent.
+/// A slice of z at y = 0, -2..2, black to blue, with a white contour at 1; in front of the right half a red mesh of opacity 0.5.
 const std::string kScene = R"({"fields": {"z": {"analytic": "plane", "resolution": 17}},
   "slices": [{"field": "z", "axis": "y", "at": 0, "color": [[-2, 0, 0, 0], [2, 0, 0, 1]], OPACITY
               "contours": {"levels": [1], "width": 2, "color": [1, 1, 1]}}],
   "meshes": [{"name": "m", "file": "quad.obj", "color": [1, 0, 0], "opacity": 0.5, "shading": "smooth"}],
   "camera": {"position": [0, -10, 0], "target": [0, 0, 0], "up": [0, 0, 1], "projection": "orthographic", "height": 4.8}})";
 
-TEST(RenderSlices, ASliceWithALineBehindATranslucentMesh) {
+TEST(RenderSlices, ASliceWithAContourBehindATranslucentMesh) {
   for (const double opacity : {1.0, 0.5}) {
     const test::TemporaryFolder folder;
     std::string scene = kScene;
@@ -39,7 +39,7 @@ TEST(RenderSlices, ASliceWithALineBehindATranslucentMesh) {
       const double z = 2.4 - (y + 0.5) * 0.05, blue = 255 * opacity * (z + 2) / 4;  // 0.05 a pixel
       EXPECT_NEAR(picture->pixel(40, y)[2], blue, 2) << y;
       EXPECT_EQ(picture->pixel(40, y)[0], 0);
-      // before it: 0.5 of the lit red (facing the eye, with the white highlight of 0.2)
+      // The mesh in front: 0.5 of the lit red (facing the camera, with a white highlight of 0.2).
       EXPECT_NEAR(picture->pixel(90, y)[0], 0.5 * 255 * 1.1, 2) << y;
       EXPECT_NEAR(picture->pixel(90, y)[2], 0.5 * 255 * 0.2 + 0.5 * blue, 2) << y;
     }
@@ -48,7 +48,7 @@ TEST(RenderSlices, ASliceWithALineBehindATranslucentMesh) {
   }
 }
 
-TEST(RenderSlices, WhatCannotBeDrawnIsOneLine) {
+TEST(RenderSlices, ASliceOutsideTheDomainIsOneErrorLine) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", R"({"fields": {"z": {"analytic": "plane", "resolution": 9}},
     "slices": [{"field": "z", "axis": "y", "at": 7}]})");

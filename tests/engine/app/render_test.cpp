@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena render` from the outside: pictures with a known answer, statistics, and one scene for both senses.
+/// `catena render`: images with known results, statistics, and a scene that is both rendered and felt.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -37,7 +37,7 @@ Image8 picture_of(const std::string& scene, const std::vector<std::string>& more
   return *picture;
 }
 
-// the chord of a ray through the cube lo..hi
+// The length of a ray's segment in the cube lo..hi.
 double chord(const Vec3& origin, const Vec3& unit, double lo, double hi) {
   double near = 0, far = 1e30;
   for (int a = 0; a < 3; ++a) {
@@ -48,7 +48,7 @@ double chord(const Vec3& origin, const Vec3& unit, double lo, double hi) {
   return std::max(0.0, far - near);
 }
 
-TEST(Import, APipeIsWrittenToByEveryFormat) {
+TEST(Import, EveryFormatCanBeWrittenToAPipe) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(program({"generate", "torus", "-o", folder / "g.vdb", "--resolution", "8"}).exit_code, 0);
   for (const char* ending : {".vdb", ".vti", ".nrrd", ".nii", ".nii.gz"}) {
@@ -67,7 +67,7 @@ TEST(Import, APipeIsWrittenToByEveryFormat) {
   }
 }
 
-TEST(Render, FilesOfASeriesAreItsStepsInEveryCommand) {
+TEST(Render, EveryCommandTakesTheFilesOfASeriesAsSteps) {
   const test::TemporaryFolder folder;
   std::vector<std::string> files;
   for (const char* step : {"10", "2", "1"}) {
@@ -92,7 +92,7 @@ TEST(Render, FilesOfASeriesAreItsStepsInEveryCommand) {
     words.insert(words.end(), lost.begin(), lost.end());
     EXPECT_EQ(with_files("render", words).exit_code, 2) << lost[1];
   }
-  // the values of a step
+  // The values of a step.
   const auto speed_in = [](const std::string& path) {
     const std::string text = program({"info", path, "--json"}).out;
     const std::size_t at = text.find("\"range\":[");
@@ -111,7 +111,7 @@ TEST(Render, FilesOfASeriesAreItsStepsInEveryCommand) {
   EXPECT_NEAR(speed_in(folder / "one.vti") / speed_in(folder / "i00.vti"), 2, 1e-5);
   EXPECT_EQ(with_files("import", {"-o", folder / "none.vti"}).exit_code, 2);
   EXPECT_EQ(with_files("import", {"-o", folder / "none.vti", "--step", "3"}).exit_code, 2);
-  // a file of another step, by another name
+  // An output must not be the file of another step, by any name.
   const std::string later = test::read_file(folder / "w_10.vdb");
   std::filesystem::create_symlink("w_10.vdb", folder / "link.vdb");
   for (const std::string& other :
@@ -119,7 +119,7 @@ TEST(Render, FilesOfASeriesAreItsStepsInEveryCommand) {
     EXPECT_EQ(with_files("import", {"-o", folder.path() + other, "--step", "0"}).exit_code, 2) << other;
     EXPECT_EQ(test::read_file(folder / "w_10.vdb"), later) << other;
   }
-  // nor is any step written where a later one would be
+  // No step is written if the output of another step is an input.
   std::filesystem::create_symlink("w_10.vdb", folder / "s_002.vdb");
   EXPECT_EQ(with_files("import", {"-o", folder / "s_%03d.vdb"}).exit_code, 2);
   EXPECT_FALSE(test::exists(folder / "s_000.vdb"));
@@ -130,11 +130,11 @@ TEST(Render, FilesOfASeriesAreItsStepsInEveryCommand) {
   const std::vector<std::string> trace{"--field", "abc", "--seeds", folder / "seeds.csv", "-o", folder / "l.csv"};
   EXPECT_EQ(with_files("trace", trace).exit_code, 0);
   EXPECT_FALSE(test::exists(folder / "none.vti"));
-  // no series, or no data
+  // Files that are not a series, and files without data.
   files.push_back(folder / "i00.vti");
   const auto mixed = with_files("info", {});
   EXPECT_EQ(mixed.exit_code, 2);
-  EXPECT_NE(mixed.err.find("are no series"), std::string::npos) << mixed.err;
+  EXPECT_NE(mixed.err.find("are not a series"), std::string::npos) << mixed.err;
   EXPECT_EQ(program({"render", folder / "a.json", folder / "b.json", "-o", folder / "o.png"}).exit_code, 2);
 }
 
@@ -159,7 +159,7 @@ TEST(Render, StepsBeyondTheLastAreRefused) {
   }
 }
 
-TEST(Render, AHomogeneousBoxSeenObliquelyIsExactAtEveryStep) {
+TEST(Render, AHomogeneousBoxIsExactAtEveryStepSize) {
   constexpr double sigma = 0.7;
   constexpr std::uint32_t w = 120, h = 90;
   const Vec3 position(3.1, -6.2, 4.3), target(0.1, 0.2, -0.1), up(0, 0, 1);
@@ -181,7 +181,7 @@ TEST(Render, AHomogeneousBoxSeenObliquelyIsExactAtEveryStep) {
   }
 }
 
-TEST(Render, AnErrorThatWasAskedForIsMeasuredAndSaid) {
+TEST(Render, ARequestedErrorIsMeasuredAndReported) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", R"({"fields": {"d": {"analytic": "marschner-lobb", "resolution": 48}},
     "volumes": [{"field": "d", "color": [[0, 0.1, 0.2, 0.9], [1, 1, 0.6, 0]], "opacity": [[0.3, 0], [1, 0.1]]}]})");
@@ -197,7 +197,7 @@ TEST(Render, AnErrorThatWasAskedForIsMeasuredAndSaid) {
     EXPECT_LE(chosen->find("estimated_rmse")->number, 1);
     EXPECT_EQ(stats->find("validation_messages")->number, 0);
   }
-  // a sequence begins with the picture that one alone is
+  // The first image of a sequence equals the single image.
   const auto one = program({"render", folder / "s.json", "-o", folder / "one.png", "--size", "128x96", "--quality", "error=1"});
   const auto many = program({"render", folder / "s.json", "-o", folder / "of_%d.png", "--size", "128x96", "--quality", "error=1", "--orbit",
                              "1", "--frames", "2"});
@@ -209,32 +209,32 @@ TEST(Render, AnErrorThatWasAskedForIsMeasuredAndSaid) {
     EXPECT_EQ(program({"render", folder / "s.json", "-o", folder / "p.png", "--quality", quality}).exit_code, 2) << quality;
 }
 
-TEST(Render, TheGlyphOfTheProxySitsOnTheDrawnLine) {
-  // a streamline seen from above; the probe is off the line, its proxy on it
+TEST(Render, TheProxysGlyphIsOnTheDrawnLine) {
+  // A streamline seen from above; the probe is beside the line, the proxy on the line.
   const std::string scene = R"({"fields": {"v": {"analytic": "circle"}},
     "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [1, 0, 0]}],
     "streamlines": [{"field": "v", "seeds": [[1, 0, 0]], "radius": 0.02, "color": [1, 0, 0]}],
     "camera": {"position": [0, 0, 6], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 40}CURSOR})";
   const auto with = [&](const std::string& cursor) { return std::string(scene).replace(scene.find("CURSOR"), 6, cursor); };
   const Image8 bare = picture_of(with(""), {"--size", "256x192"}, "line");
-  const Image8 held = picture_of(with(R"(, "cursor": {"probe": [0.2, 1.3, 0]})"), {"--size", "256x192"}, "held");
-  // the proxy: the closest point of the circle
+  const Image8 with_cursor = picture_of(with(R"(, "cursor": {"probe": [0.2, 1.3, 0]})"), {"--size", "256x192"}, "held");
+  // The proxy is the closest point of the circle.
   const Vec3 proxy = direction(Vec3(0.2, 1.3, 0));
   const double scale = 96 / (6 * std::tan(20 * M_PI / 180));
   const auto px = static_cast<std::uint32_t>(128 + scale * proxy.x), py = static_cast<std::uint32_t>(96 - scale * proxy.y);
   EXPECT_GT(bare.pixel(px, py)[0], 100) << "the line is drawn there";
   EXPECT_LT(bare.pixel(px, py)[1], 60);
-  const std::uint8_t* glyph = held.pixel(px, py);
+  const std::uint8_t* glyph = with_cursor.pixel(px, py);
   EXPECT_GT(
       std::abs(glyph[0] - bare.pixel(px, py)[0]) + std::abs(glyph[1] - bare.pixel(px, py)[1]) + std::abs(glyph[2] - bare.pixel(px, py)[2]),
       60)
       << "the glyph covers the line";
-  // away from the glyph and its link nothing changed
-  EXPECT_EQ(
-      0, std::memcmp(bare.pixel(128, 96 + static_cast<std::uint32_t>(scale)), held.pixel(128, 96 + static_cast<std::uint32_t>(scale)), 4));
+  // Pixels away from the glyph are unchanged.
+  EXPECT_EQ(0, std::memcmp(bare.pixel(128, 96 + static_cast<std::uint32_t>(scale)),
+                           with_cursor.pixel(128, 96 + static_cast<std::uint32_t>(scale)), 4));
 }
 
-TEST(Render, StatsHaveTheKeysOfTheContract) {
+TEST(Render, StatsHaveTheDocumentedKeys) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", R"({"fields": {"s": {"analytic": "gaussian", "resolution": 24}}, "volumes": [{"field": "s"}]})");
   const auto run =
@@ -252,7 +252,7 @@ TEST(Render, StatsHaveTheKeysOfTheContract) {
   EXPECT_GE(stats->find("first_frame_ms")->number, stats->find("load_ms")->number);
 }
 
-TEST(Render, ABareFileMakesAPictureByItself) {
+TEST(Render, ADataFileIsDrawnWithoutAScene) {
   const test::TemporaryFolder folder;
   for (const char* name : {"torus", "helix"}) {
     const std::string file = folder / (std::string(name) + ".vdb"), out = folder / "o.png";
@@ -269,8 +269,8 @@ TEST(Render, ABareFileMakesAPictureByItself) {
   }
 }
 
-/// A text STL of a tetrahedron: described, drawn by itself, and felt through the program.
-TEST(Render, ABareMeshMakesAPictureAndIsDescribed) {
+/// A text STL of a tetrahedron is described, drawn and felt.
+TEST(Render, AMeshFileIsDrawnDescribedAndFelt) {
   const test::TemporaryFolder folder;
   const char* corners[4] = {"0 0 0", "1 0 0", "0 1 0", "0 0 1"};
   const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
@@ -296,18 +296,18 @@ TEST(Render, ABareMeshMakesAPictureAndIsDescribed) {
   EXPECT_GT(lit, 128 * 96 / 20);
   EXPECT_TRUE(render::write_png(test::binary_dir() + "/app-bare-mesh.png", *picture, false));
 
-  // seen and felt in one scene: pushed 0.1 into the slanted face
+  // One scene draws the mesh and has a link to it: the probe is pushed 0.1 into the slanted face.
   test::write_file(folder / "s.json", R"({"meshes": [{"name": "t", "file": "t.stl", "color": [0.9, 0.5, 0.3]}],
     "chain": [{"name": "touch", "type": "mesh", "mesh": "t", "free": "above"}], "coupling": {"stiffness": 100, "damping": 0}})");
   test::write_file(folder / "p.csv", "t,x,y,z\n0,1,1,1\n0.001,0.3,0.3,0.3\n");
-  const auto felt = program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "o.csv"});
-  ASSERT_EQ(felt.exit_code, 0) << felt.err;
+  const auto replayed = program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "o.csv"});
+  ASSERT_EQ(replayed.exit_code, 0) << replayed.err;
   const std::string csv = test::read_file(folder / "o.csv");
   EXPECT_NE(csv.find("1,OK,0,NONE,3.3333333333"), std::string::npos) << csv;
   EXPECT_EQ(program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.stl"}).exit_code, 2) << "an input is kept";
 }
 
-TEST(Render, AnOrbitNumbersItsPictures) {
+TEST(Render, AnOrbitNumbersItsImages) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json",
                    R"({"fields": {"s": {"analytic": "plane", "resolution": 16}}, "isosurfaces": [{"field": "s", "level": 0.3}]})");
@@ -318,20 +318,20 @@ TEST(Render, AnOrbitNumbersItsPictures) {
   EXPECT_NE(test::read_file(folder / "turn_00.png"), test::read_file(folder / "turn_02.png"));
 }
 
-TEST(Render, TheHandGoesAlongItsPathOverTheFrames) {
+TEST(Render, TheProbeFollowsItsPathOverTheFrames) {
   const test::TemporaryFolder folder;
   const std::string scene = test::source_dir() + "/assets/scenes/hand.json", probe = test::source_dir() + "/assets/probes/hand.csv";
   const auto render = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {"render", scene, "--size", "96x80", "--quality", "draft"});
     return test::run_catena(more);
   };
-  // three frames: the beginning, the middle, and the end, where a still picture has the hand
+  // Three frames: the beginning, the middle and the end of the path; a still image has the probe at the end.
   ASSERT_EQ(render({"--probe", probe, "--play", "--frames", "3", "-o", folder / "p_%d.png"}).exit_code, 0);
   ASSERT_EQ(render({"--probe", probe, "-o", folder / "still.png"}).exit_code, 0);
   EXPECT_EQ(test::read_file(folder / "p_2.png"), test::read_file(folder / "still.png"));
   EXPECT_NE(test::read_file(folder / "p_0.png"), test::read_file(folder / "p_1.png"));
   EXPECT_NE(test::read_file(folder / "p_1.png"), test::read_file(folder / "p_2.png"));
-  // without a number: its 6 s at 0.5 frames a second, both ends
+  // The default number of frames: a path of 6 s at 0.5 frames a second, with both ends.
   ASSERT_EQ(render({"--probe", probe, "--play", "--fps", "0.5", "-o", folder / "q_%d.png"}).exit_code, 0);
   EXPECT_TRUE(test::exists(folder / "q_3.png"));
   EXPECT_FALSE(test::exists(folder / "q_4.png"));
@@ -351,20 +351,20 @@ TEST(Render, AFieldCanBeReplacedFromTheCommandLine) {
       program({"render", folder / "s.json", "-o", folder / "b.png", "--size", "64x48", "--field", "d=" + (folder / "b.vdb") + ":plane"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(test::read_file(folder / "a.png"), test::read_file(folder / "b.png"));
-  // before the scene, too: the option takes one value
+  // The option takes one value, so it may precede the scene.
   const auto first =
       program({"render", "--field", "d=" + (folder / "b.vdb") + ":plane", folder / "s.json", "-o", folder / "c.png", "--size", "64x48"});
   ASSERT_EQ(first.exit_code, 0) << first.err;
   EXPECT_EQ(test::read_file(folder / "c.png"), test::read_file(folder / "b.png"));
 }
 
-TEST(Render, CombustorIsSeenAndFeltFromOneScene) {
+TEST(Render, TheCombustorIsDrawnAndFeltFromOneScene) {
   if (test::shared_data("combustor_cfd.vdb").empty()) GTEST_SKIP() << "the shared data is not there";
   const std::string assets = test::source_dir() + "/assets/";
   const test::TemporaryFolder folder;
-  const auto felt =
+  const auto replayed =
       program({"replay", assets + "scenes/data/combustor.json", "--probe", assets + "probes/combustor.csv", "-o", folder / "t.csv"});
-  ASSERT_EQ(felt.exit_code, 0) << felt.err;
+  ASSERT_EQ(replayed.exit_code, 0) << replayed.err;
   const test::Table ticks = test::Table::read(folder / "t.csv");
   int both = 0;
   for (std::size_t row = 0; row < ticks.rows(); ++row)

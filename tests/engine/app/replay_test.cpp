@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena replay` and `catena trace` from the outside: the acceptance figures of the first scenes.
+/// The commands `catena replay` and `catena trace`, against closed forms and the paper's figures.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ Vec3 vector_at(const Table& table, std::size_t row, const std::string& name) {
   return {table.number(row, name + "_x"), table.number(row, name + "_y"), table.number(row, name + "_z")};
 }
 
-// One lap of the circle of radius 0.05 at 0.2 units/s, 1 kHz: the probe is on the circle.
+// Writes one lap of a circle at a constant speed, at 1 kHz; the probe is at `outward` times the radius.
 void write_lap(const std::string& path, double radius, double speed, double outward = 1) {
   std::string text = "t,x,y,z\n";
   const double lap_s = 2 * M_PI * radius / speed;
@@ -56,7 +56,7 @@ double drift_of_last_tick(const std::string& link_keys) {
   return worst;
 }
 
-TEST(Replay, LinearStreamlineDriftsAsThePaperSays) { EXPECT_NEAR(drift_of_last_tick(R"(, "method": "linear")"), 0.63e-3, 0.02e-3); }
+TEST(Replay, LinearStreamlineDriftsAsInThePaper) { EXPECT_NEAR(drift_of_last_tick(R"(, "method": "linear")"), 0.63e-3, 0.02e-3); }
 
 TEST(Replay, SelectedAndOnlineStreamlinesStayOnTheCircle) {
   EXPECT_LE(drift_of_last_tick(""), 5e-10);
@@ -64,7 +64,7 @@ TEST(Replay, SelectedAndOnlineStreamlinesStayOnTheCircle) {
   EXPECT_LE(drift_of_last_tick(R"(, "method": "dp54")"), 5e-10);
 }
 
-TEST(Replay, SphereIsHeldAtTheLocalClosestPointWithinTheTick) {
+TEST(Replay, TheProxyOnASphereIsTheClosestPoint) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", R"({"fields": {"s": {"analytic": "sphere"}},
     "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.5}]})");
@@ -110,7 +110,7 @@ TEST(Replay, SelectedProxyLiesOnTheTracedCurve) {
   };
   for (std::size_t row = 0; row < ticks.rows(); row += 7) {
     const Vec3 p = vector_at(ticks, row, "curve");
-    // distance to the Hermite curve through knots and tangents: the nearest intervals, densely
+    // The distance to the Hermite curve through knots and tangents, searched in the intervals near the proxy.
     double best = 1e9;
     for (std::size_t i = 0; i + 1 < line.rows(); ++i) {
       const Vec3 a = knot(i, "x", "y", "z"), b = knot(i + 1, "x", "y", "z");
@@ -128,12 +128,12 @@ TEST(Replay, SelectedProxyLiesOnTheTracedCurve) {
       }
       best = std::min(best, norm(p - at(0.5 * (lo + hi))));
     }
-    // ternary search resolves the distance to about its own size: what is left is rounding
+    // The rest is rounding of the ternary search.
     EXPECT_LE(best, 4 * 1e-12) << row;
   }
 }
 
-TEST(Replay, ColumnsAreThoseOfTheContract) {
+TEST(Replay, TheTableHasTheDocumentedColumns) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", R"({"fields": {}, "chain": [{"name": "a", "type": "point", "position": [0, 0, 0]},
      {"name": "b_2", "type": "plane", "point": [0, 0, 1], "normal": [0, 0, 2]}]})");
@@ -151,7 +151,7 @@ TEST(Replay, ColumnsAreThoseOfTheContract) {
     EXPECT_NE(stats.find(key), std::string::npos) << key;
 }
 
-TEST(Replay, AnEmptySceneIsLegalAndOnlyDamps) {
+TEST(Replay, AnEmptySceneIsValidAndOnlyDamps) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", R"({"fields": {}, "chain": [], "coupling": {"damping": 2, "max_force": 100}})");
   test::write_file(folder / "p.csv", "t,x,y,z\n0,0,0,0\n0.5,1,0,0\n");
@@ -162,7 +162,7 @@ TEST(Replay, AnEmptySceneIsLegalAndOnlyDamps) {
 }
 
 TEST(Replay, ReleaseAndReArmOfAOneSidedSurface) {
-  // free above (outside |x| > 0.5); the probe dives along x from outside to the centre and comes back
+  // The surface is free above (|x| > 0.5); the probe moves along x from outside towards the center, and back.
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", R"({"fields": {"s": {"analytic": "sphere"}},
     "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.5, "free": "above", "release": 0.05}],
@@ -181,10 +181,10 @@ TEST(Replay, ReleaseAndReArmOfAOneSidedSurface) {
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const std::string status = table.text(row, "surface_status");
     const double d = depth[row];
-    if (std::fabs(d) < 1e-12) continue;  // on the level to rounding
+    if (std::fabs(d) < 1e-12) continue;  // on the level, within rounding
     if (d < 0) released = false;
     if (!released && d >= 0.05 - 1e-12 && d <= 0.05 + 1e-12) {
-      // at the limit to rounding: either side is right
+      // Within rounding of the limit, either status is correct.
       released = status == "RELEASED";
       continue;
     }
@@ -229,7 +229,7 @@ TEST(Trace, CircleIsOneLap) {
   EXPECT_NEAR(last_s[1], 2 * M_PI, 4e-9);
 }
 
-TEST(Replay, DetailsTellWhatEveryLinkFeels) {
+TEST(Replay, DetailsHaveTheStateOfEveryLink) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", R"({"coupling": {"stiffness": 200, "max_force": 1000}, "workspace": {"metres_per_unit": 0.5},
     "chain": [{"name": "floor", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "free": "above", "release": 0.05},
@@ -262,7 +262,7 @@ TEST(Replay, DetailsTellWhatEveryLinkFeels) {
   EXPECT_EQ(ticks.number(66, "pin_active"), 1);
 }
 
-// A scene that names its device: the force is what that device would give.
+// The force of a scene with a "device" is limited as the device limits it.
 TEST(Replay, ADeviceOfTheSceneLimitsTheForce) {
   const test::TemporaryFolder folder;
   const auto replay_with = [&](const std::string& device) {
@@ -290,7 +290,7 @@ TEST(Replay, ADeviceOfTheSceneLimitsTheForce) {
     EXPECT_NEAR(slewed.number(row, "force_z"), std::min(8.0, 40 * t), 1e-9) << row;
     EXPECT_NEAR(ramped.number(row, "force_z"), std::min(8.0, 8 * t / 0.2), 1e-9) << row;
   }
-  // the ledger: what the ramp has let into the spring
+  // The accounted energy of the spring rises with the ramp.
   const Table links = Table::read(folder / "links.csv");
   EXPECT_NEAR(links.number(399, "pin_accounted"), 0.5 * 800 * 1e-4, 1e-12);
   EXPECT_NEAR(links.number(100, "pin_accounted"), 0.25 * 800 * 1e-4, 1e-12);
@@ -301,7 +301,7 @@ TEST(Replay, ADeviceOfTheSceneLimitsTheForce) {
   EXPECT_NE(bad.err.find("slew"), std::string::npos) << bad.err;
 }
 
-// Every scene that the documents show runs as it stands.
+// Every scene in the documents runs unchanged.
 TEST(Replay, TheExamplesOfTheDocumentsRun) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "p.csv", "t,x,y,z,buttons\n0,0.5,0.01,0,0\n0.001,0.49,0.05,-0.01,1\n0.002,0.45,0.1,-0.02,0\n");
@@ -318,7 +318,7 @@ TEST(Replay, TheExamplesOfTheDocumentsRun) {
   EXPECT_EQ(examples, 8);
 }
 
-TEST(Replay, OrientationsComeBackAsRotationalProxiesAndTorque) {
+TEST(Replay, OrientationsGiveRotationalProxiesAndTorque) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", R"({"chain": [{"name": "floor", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1],
     "align": {"stiffness": 0.25}}, {"name": "rail", "type": "line", "point": [0, 0, 0], "direction": [1, 0, 0]}]})");
@@ -336,30 +336,30 @@ TEST(Replay, OrientationsComeBackAsRotationalProxiesAndTorque) {
   EXPECT_NEAR(turned.number(1, "floor_qw"), 1, 1e-12);
   EXPECT_NEAR(turned.number(1, "rail_qw"), 1, 1e-12);
   EXPECT_EQ(turned.number(1, "force_z"), plain.number(1, "force_z"));
-  // a path without orientations has the columns that it always had
+  // A path without orientations gives no columns of orientation and torque.
   EXPECT_FALSE(plain.has("torque_x"));
   EXPECT_FALSE(plain.has("floor_qw"));
   EXPECT_EQ(plain.header().size(), 4u + 2 * 8 + 3);
 }
 
-TEST(Replay, SaysWhatWasFeltInASentenceForEachLink) {
+TEST(Replay, SummarizesTheContactOfEachLinkInASentence) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", R"({"fields": {"ball": {"analytic": "sphere"}}, "workspace": {"metres_per_unit": 0.05},
     "coupling": {"stiffness": 300, "max_force": 2.5},
     "chain": [{"name": "skin", "type": "isosurface", "field": "ball", "level": 1, "free": "above", "release": 0.25},
               {"name": "rail", "type": "line", "point": [0, 0, 0], "direction": [1, 0, 0]},
               {"name": "far", "type": "sphere", "center": [9, 0, 0], "radius": 1, "free": "above"}]})");
-  // From outside straight in, to a depth of 0.3 units, in half a second: 15 mm of the hand.
+  // From outside straight to a depth of 0.3 units in half a second: 15 mm of the hand.
   std::string path = "t,x,y,z\n";
   for (int k = 0; k <= 500; ++k) path += to_text(1e-3 * k) + "," + to_text(1.2 - 1e-3 * k) + ",0,0\n";
   test::write_file(folder / "p.csv", path);
   const ProgramResult run = catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  // it lets go at 0.25 units, 12.5 mm: 3.8 N, of which the coupling passes 2.5 N
-  EXPECT_NE(run.out.find("  skin: pressed 12.5 mm deep, own share at most 2.5 N; held 0.25 of 0.50 s, let go once. Gap 0.2"),
+  // The surface releases at 0.25 units, 12.5 mm: 3.8 N, which the coupling limits to 2.5 N.
+  EXPECT_NE(run.out.find("  skin: pressed 12.5 mm deep, own force at most 2.5 N; held 0.25 of 0.50 s, released once. Gap 0.2"),
             std::string::npos)
       << run.out;
-  EXPECT_NE(run.out.find("  rail: pulled up to 0 mm off, own share at most 0 N; held 0.50 of 0.50 s. Gap 0 units; ticks OK 501\n"),
+  EXPECT_NE(run.out.find("  rail: pulled up to 0 mm away, own force at most 0 N; held 0.50 of 0.50 s. Gap 0 units; ticks OK 501\n"),
             std::string::npos)
       << run.out;
   EXPECT_NE(run.out.find("  far: not touched. Gap 0 units; ticks FREE 501\n"), std::string::npos) << run.out;

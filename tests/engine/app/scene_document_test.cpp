@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// docs/reference/scene.md and docs/reference/study.md say what the readers read: every table of keys between "<!-- keys: NAME -->" and
-// "<!-- end -->" is the one that the components' own descriptions make, and none is missing. So is every table of options between
-// "<!-- options: COMMAND -->" and "<!-- end -->" of docs/reference/command-line.md. CATENA_WRITE_DOCUMENTS=1 in the environment writes them
-// anew (./run docs).
+// The reference documents are current. Every table of keys between "<!-- keys: NAME -->" and "<!-- end -->" in docs/reference/scene.md
+// and docs/reference/study.md equals the table generated from the components' descriptions, and no table is missing. The same holds for
+// the tables of options between "<!-- options: COMMAND -->" and "<!-- end -->" in docs/reference/command-line.md.
+// CATENA_WRITE_DOCUMENTS=1 in the environment writes the tables (./run docs).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ using namespace catena;
 
 constexpr std::string_view kKeys = "<!-- keys: ", kOptions = "<!-- options: ", kBegun = " -->\n", kEnd = "<!-- end -->";
 
-/// The text with its tables as they should be; the names of those it has. `marker`: what the line before a table begins with.
+/// The text with current tables; `named` gets the names of its tables. `marker` is the beginning of the line before a table.
 std::string with_tables(const std::string& text, std::string_view marker, const std::map<std::string, std::string>& tables,
                         std::set<std::string>& named) {
   std::string out;
@@ -63,7 +63,7 @@ std::map<std::string, std::string> key_tables(const std::vector<schema::Section>
   return tables;
 }
 
-TEST(SceneDocument, SaysWhatTheReadersRead) { check_document("docs/reference/scene.md", kKeys, key_tables(app::scene_file_components())); }
+TEST(SceneDocument, SceneKeysAreCurrent) { check_document("docs/reference/scene.md", kKeys, key_tables(app::scene_file_components())); }
 
 /// Whether a JSON value has the type of the key, with numbers within its limits.
 bool has_type(const json::Node& value, const schema::Key& key) {
@@ -90,7 +90,7 @@ bool has_type(const json::Node& value, const schema::Key& key) {
   }
 }
 
-TEST(SceneDocument, EveryExampleIsAValueOfItsKey) {
+TEST(SceneDocument, EveryExampleHasTheTypeOfItsKey) {
   int checked = 0;
   const auto check = [&](const auto& self, const schema::Keys& keys, const std::string& where) -> void {
     for (const schema::Key& key : keys) {
@@ -109,16 +109,14 @@ TEST(SceneDocument, EveryExampleIsAValueOfItsKey) {
   EXPECT_GT(checked, 300);
 }
 
-TEST(SceneDocument, SaysWhatAStudyMaySay) { check_document("docs/reference/study.md", kKeys, key_tables(study::study_components())); }
+TEST(SceneDocument, StudyKeysAreCurrent) { check_document("docs/reference/study.md", kKeys, key_tables(study::study_components())); }
 
-TEST(SceneDocument, SaysWhichFormatsThereAre) {
-  check_document("docs/reference/formats.md", "<!-- formats: ", {{"all", app::format_table()}});
-}
+TEST(SceneDocument, FormatsAreCurrent) { check_document("docs/reference/formats.md", "<!-- formats: ", {{"all", app::format_table()}}); }
 
-TEST(SceneDocument, SaysWhatTheCommandsTake) {
+TEST(SceneDocument, CommandLineOptionsAreCurrent) {
   std::map<std::string, std::string> tables;
   for (const auto& [name, table] : app::option_tables()) {
-    // every option has a value type, and an example that the table of types has
+    // Every option has a value type that the table of types has.
     EXPECT_EQ(table.find("| ? |"), std::string::npos) << name << table;
     tables.emplace(name, table);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the panels add to a scene, what belongs together, and the values behind histograms.
+// Items that the panels add to a scene, levels shared by surfaces and links, and the values of histograms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,9 +13,9 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace scene_edit_test {
+namespace scene_items_test {
 
-TEST(Histogram, BarsHoldEveryValueOnceWithBothEnds) {
+TEST(Histogram, BarsCountEveryValueOnceIncludingBothEnds) {
   const std::vector<float> sorted{0, 0, 0.5f, 1, 1, 1, 2};
   const auto bars = histogram_bars(sorted, 0, 1, 2);
   ASSERT_EQ(bars.size(), 2u);
@@ -63,7 +63,7 @@ class EditedScene : public testing::Test {
   HistogramCache values_;
 };
 
-TEST_F(EditedScene, ValuesAreMadeOnceAndGoWithTheirField) {
+TEST_F(EditedScene, HistogramValuesAreCachedUntilTheirFieldIsRemoved) {
   const scene::Entity ball = scene::find_field(scene_, "ball"), flow = scene::find_field(scene_, "flow");
   EXPECT_EQ(values_.find_or_request(scene_, ball), nullptr) << "nothing is loaded";
   EXPECT_FALSE(values_.is_busy());
@@ -80,7 +80,7 @@ TEST_F(EditedScene, ValuesAreMadeOnceAndGoWithTheirField) {
   EXPECT_EQ(values_.find_or_request(scene_, flow), nullptr) << "made anew";
 }
 
-TEST_F(EditedScene, EveryWayToShowAFieldMakesAPicture) {
+TEST_F(EditedScene, EveryPresentationOfAFieldIsDrawn) {
   int items = 0;
   for (const char* name : {"ball", "flow", "flat", "exact"}) {
     const auto drawn = scene::resolve_rendered_field(scene_, scene::find_field(scene_, name), {});
@@ -106,17 +106,17 @@ TEST_F(EditedScene, EveryWayToShowAFieldMakesAPicture) {
   EXPECT_GT(packet->glyphs[0].glyphs.size(), 100u) << "on the first slice";
 }
 
-TEST_F(EditedScene, TheFeltLevelIsTheSeenOne) {
-  std::vector<std::vector<std::string>> felt;
+TEST_F(EditedScene, LinkLevelsOfASurfaceHaveItsFieldAndLevel) {
+  std::vector<std::vector<std::string>> link_levels;
   scene_.entities.each<scene::Isosurface>([&](scene::Entity, const scene::Isosurface& surface) {
-    felt.push_back(find_link_levels(scene_, entity_name(scene_, surface.field), surface.level));
+    link_levels.push_back(find_link_levels(scene_, entity_name(scene_, surface.field), surface.level));
   });
-  ASSERT_EQ(felt.size(), 2u);
-  EXPECT_EQ(felt[0], std::vector<std::string>{"/chain/0/level"}) << "not the other field's, not the other level's";
-  EXPECT_TRUE(felt[1].empty());
+  ASSERT_EQ(link_levels.size(), 2u);
+  EXPECT_EQ(link_levels[0], std::vector<std::string>{"/chain/0/level"}) << "not the other field's, not the other level's";
+  EXPECT_TRUE(link_levels[1].empty());
 }
 
-TEST_F(EditedScene, ANewSurfaceIsTheOneThatIsFelt) {
+TEST_F(EditedScene, ANewIsosurfaceHasTheLevelOfTheFirstLink) {
   const auto drawn = scene::resolve_rendered_field(scene_, scene::find_field(scene_, "ball"), {});
   ASSERT_TRUE(drawn);
   const std::string level = first_link_level(scene_, "ball");
@@ -124,11 +124,11 @@ TEST_F(EditedScene, ANewSurfaceIsTheOneThatIsFelt) {
   EXPECT_EQ(make_item_json(scene_, scene::find_field(scene_, "ball"), *drawn, ShowAs::isosurface, {}),
             R"({"field": "ball", "level": 1.25})");
   EXPECT_TRUE(first_link_level(scene_, "flow").empty());
-  auto unfelt = scene::parse_scene(R"({"fields": {"ball": {"analytic": "sphere"}}})", "s.json");
-  ASSERT_TRUE(unfelt);
-  const std::string item = make_item_json(*unfelt, scene::find_field(*unfelt, "ball"), *drawn, ShowAs::isosurface, {});
+  auto without_links = scene::parse_scene(R"({"fields": {"ball": {"analytic": "sphere"}}})", "s.json");
+  ASSERT_TRUE(without_links);
+  const std::string item = make_item_json(*without_links, scene::find_field(*without_links, "ball"), *drawn, ShowAs::isosurface, {});
   EXPECT_EQ(item.find("1.25"), std::string::npos) << "else of its own range: " << item;
 }
 
-}  // namespace scene_edit_test
+}  // namespace scene_items_test
 }  // namespace catena::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena render --stereo` from the outside: sizes, eyes, keys and errors.
+/// `catena render --stereo`: sizes, eyes, keys and errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ Drawn draw(const std::string& more, const std::vector<std::string>& options) {
   return {picture ? *picture : Image8{}, run.out};
 }
 
-/// The mean column of what is not the background.
+/// The mean column of the pixels of the sphere.
 double middle(const Image8& p, std::uint32_t from, std::uint32_t to) {
   double sum = 0, count = 0;
   for (std::uint32_t y = 0; y < p.height; ++y)
@@ -57,7 +57,7 @@ bool same_columns(const Image8& whole, std::uint32_t from, const Image8& part) {
   return true;
 }
 
-TEST(RenderStereo, SideBySideIsTheLeftAndTheRightPicture) {
+TEST(RenderStereo, SideBySideIsTheLeftAndTheRightImage) {
   const std::vector<std::string> apart{"--eye-separation", "0.8", "--zero-parallax", "5"};
   const auto with = [&](const char* mode) {
     std::vector<std::string> options{"--stereo", mode};
@@ -75,7 +75,7 @@ TEST(RenderStereo, SideBySideIsTheLeftAndTheRightPicture) {
   const Image8 crossed = with("cross-eyed").picture;
   EXPECT_TRUE(same_columns(crossed, 0, right));
   EXPECT_TRUE(same_columns(crossed, 80, left));
-  // the ball is beyond the zero-parallax distance: uncrossed
+  // The sphere is beyond the zero-parallax distance: uncrossed disparity.
   EXPECT_GT(middle(right, 0, 80), middle(left, 0, 80) + 1);
   const Image8 top = with("top-bottom").picture, half = with("side-by-side-half").picture, anaglyph = with("anaglyph").picture;
   EXPECT_EQ(top.height, 120u);
@@ -85,10 +85,10 @@ TEST(RenderStereo, SideBySideIsTheLeftAndTheRightPicture) {
 
 TEST(RenderStereo, ByDefaultTheTargetHasNoDisparity) {
   const Image8 pair = draw("", {"--stereo", "side-by-side"}).picture;
-  EXPECT_NEAR(middle(pair, 0, 80), middle(pair, 80, 160), 0.15);  // without zero parallax: 3.7
+  EXPECT_NEAR(middle(pair, 0, 80), middle(pair, 80, 160), 0.15);  // 3.7 pixels without zero parallax
 }
 
-TEST(RenderStereo, TheSceneSaysItAndTheOptionGoesFirst) {
+TEST(RenderStereo, OptionsOverrideTheScene) {
   const std::string keys = R"(, "stereo": {"mode": "side-by-side", "separation": 0.8, "zero_parallax": 5})";
   const Image8 by_scene = draw(keys, {}).picture;
   const Image8 by_option = draw("", {"--stereo", "side-by-side", "--eye-separation", "0.8", "--zero-parallax", "5"}).picture;
@@ -96,13 +96,13 @@ TEST(RenderStereo, TheSceneSaysItAndTheOptionGoesFirst) {
   EXPECT_EQ(draw(keys, {"--stereo", "mono"}).picture.rgba, draw("", {}).picture.rgba);
   const std::string swapped = R"(, "stereo": {"mode": "side-by-side", "separation": 0.8, "zero_parallax": 5, "swap_eyes": true})";
   EXPECT_EQ(draw(swapped, {}).picture.rgba, draw(keys, {"--stereo", "cross-eyed"}).picture.rgba);
-  // three views of their own
+  // Three views.
   const std::string three = R"(, "stereo": {"mode": "side-by-side", "views": 3})";
   EXPECT_EQ(draw(three, {}).picture.width, 240u);
 }
 
-TEST(RenderStereo, AnOrbitTakesTheEyesAlong) {
-  // the ball is round: seen from any side, each eye's picture stays as it is
+TEST(RenderStereo, AnOrbitMovesBothEyes) {
+  // The sphere looks the same from any side, so each eye's image stays the same.
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", scene(R"(, "stereo": {"mode": "side-by-side", "separation": 0.8, "zero_parallax": 5})"));
   const auto run =
@@ -114,7 +114,7 @@ TEST(RenderStereo, AnOrbitTakesTheEyesAlong) {
   EXPECT_GT(middle(*b, 80, 160), middle(*b, 0, 80) + 1);
 }
 
-TEST(RenderStereo, AGoalOfQualityIsMetEyeByEye) {
+TEST(RenderStereo, AQualityTargetIsMetForEachEye) {
   const std::string volume =
       R"(, "volumes": [{"field": "s", "color": [[0, 0.1, 0.2, 0.9], [1, 1, 0.6, 0]], "opacity": [[0.3, 0], [1, 0.1]]}])";
   for (const char* quality : {"error=1", "time=100000"}) {
@@ -129,7 +129,7 @@ TEST(RenderStereo, ATrackedHeadLooksThroughAScreen) {
       R"(, "screens": [{"name": "desk", "lower_left": [-2, -2, -1.5], "lower_right": [2, -2, -1.5], "upper_left": [-2, -2, 1.5]}])";
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", scene(screens));
-  // from the camera's place to the right of it, in five frames
+  // The head moves from the camera's position to the right, in five frames.
   test::write_file(folder / "head.csv", "t,x,y,z\n10,0,-8,2\n10.16,1.6,-8,2\n");
   const auto run = test::run_catena(
       {"render", folder / "s.json", "-o", folder / "o_%d.png", "--size", "80x60", "--screen", "desk", "--head", folder / "head.csv"});
@@ -138,7 +138,7 @@ TEST(RenderStereo, ATrackedHeadLooksThroughAScreen) {
   const auto first = render::read_png(folder / "o_0.png"), last = render::read_png(folder / "o_4.png");
   ASSERT_TRUE(first && last);
   EXPECT_TRUE(same_columns(draw(screens, {"--screen", "desk"}).picture, 0, *first)) << "the camera's own place";
-  // the ball is behind the screen: it follows the head, by the share of the way that the screen is at:  1.6 (1 - 6/8) of 4 units, 80 pixels
+  // The sphere is behind the screen and follows the head by a fraction of 1 - 6/8, with 20 pixels a unit.
   EXPECT_NEAR(middle(*last, 0, 80) - middle(*first, 0, 80), 1.6 * (1 - 6.0 / 8) * 20, 1);
 
   const auto wrong = [&](std::vector<std::string> options, const char* part) {
@@ -148,11 +148,11 @@ TEST(RenderStereo, ATrackedHeadLooksThroughAScreen) {
     EXPECT_EQ(bad.exit_code, 2);
     EXPECT_NE(bad.err.find(part), std::string::npos) << bad.err;
   };
-  wrong({}, "expected --screen");
+  wrong({}, "a display screen was expected (--screen)");
   test::write_file(folder / "head.csv", "t,x,y,z\n10,1e308,-8,2\n");
   wrong({"--screen", "desk"}, "is too far beside the screen");
   test::write_file(folder / "head.csv", "t,x,y,z\n10,0,-8,2\n10.16,1.6,-8,2\n");
-  wrong({"--screen", "desk", "--camera", folder / "c.csv"}, "goes without --camera");
+  wrong({"--screen", "desk", "--camera", folder / "c.csv"}, "excludes --camera");
 }
 
 TEST(RenderStereo, BadInputIsOneLine) {
@@ -173,8 +173,8 @@ TEST(RenderStereo, BadInputIsOneLine) {
   expect({"--size", "9000x10", "--stereo", "side-by-side"}, "18000");
 }
 
-// before: an assertion, "a bug", and SIGABRT
-TEST(RenderStereo, EyesThatNoPictureHasBothOfAreOneSentence) {
+// An extreme eye separation must be an error, not a failed assertion.
+TEST(RenderStereo, AnExtremeEyeSeparationIsOneErrorLine) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", scene(R"(, "stereo": {"mode": "anaglyph", "separation": 1e12, "zero_parallax": 1e-9})"));
   const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "o.png", "--size", "80x60"});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// `catena study analyse` and `study power`: each kind of finding, what is left out and why, subjects with gaps, hostile rows, mistakes in
-/// what is asked, and the commands from the outside.
+/// `catena study analyse` and `study power`: each kind of finding, rejected trials with their reasons, subjects with missing trials,
+/// invalid rows, errors in the analysis plan, and the commands.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 #include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
-namespace study_analyse_test {
+namespace study_analyze_test {
 
 using namespace study_tables;
 
@@ -27,27 +27,27 @@ TEST(StudyFindings, AreJudgedByTheirTests) {
   EXPECT_EQ(find_finding(clear, "they liked it").text(), "nobody was asked");
   EXPECT_TRUE(find_finding(clear, "the times' intervals overlap").text().starts_with("2 of 2: yes: trace: free "));
 
-  // the other way round, and without any
+  // A difference in the opposite direction, and no difference.
   const Analysis turned = run_analysis(make_trial_table(random, {.effect = -3, .haste = 3})),
                  none = run_analysis(make_trial_table(random, {}));
   for (const Analysis* a : {&turned, &none})
     for (const char* paper : {"held is more accurate", "haste costs accuracy", "the gain is largest when tracing"})
       EXPECT_EQ(find_finding(*a, paper).verdict, Verdict::not_supported) << paper;
-  // one subject: nothing can be said
+  // One subject: no finding can be tested.
   const Analysis one = run_analysis(make_trial_table(random, {.effect = 3, .subjects = 1}));
   for (const char* paper : {"held is more accurate", "to follow is less accurate", "haste costs accuracy", "less so when held",
                             "the gain is largest when tracing", "the times' intervals overlap"})
     EXPECT_EQ(find_finding(one, paper).verdict, Verdict::not_testable) << paper;
-  EXPECT_NE(find_finding(one, "held is more accurate").text().find("at least 2 values are needed, there is 1"), std::string::npos);
+  EXPECT_NE(find_finding(one, "held is more accurate").text().find("at least 2 values are required, but there is 1"), std::string::npos);
 }
 
-TEST(StudyRejections, AreCountedOnceByTheirReasonAndKeptOut) {
+TEST(StudyRejections, AreCountedByReasonAndExcluded) {
   std::mt19937_64 random(6);
   std::vector<TrialRow> rows = make_trial_table(random, {});
   rows[0].error_mm = 31, rows[1].time_s = 12.5, rows[2].error_mm = 40, rows[2].time_s = 13, rows[3].reached_target = false,
   rows[3].time_s = 30;
   rows[4].training = true, rows[4].error_mm = 1e6;
-  rows[5].error_mm = 30, rows[6].time_s = 12;  // within the limits, which belong to them
+  rows[5].error_mm = 30, rows[6].time_s = 12;  // at the limits, which are accepted
   const Analysis a = run_analysis(rows);
   const Rejections& r = a.rejections_in({0, 0});
   EXPECT_EQ(r.trials, 199);
@@ -60,7 +60,7 @@ TEST(StudyRejections, AreCountedOnceByTheirReasonAndKeptOut) {
   EXPECT_LT(a.value(0, {0, 0}, Quantity::error), 30);
 }
 
-TEST(StudyMissingTrials, SubjectsAreLeftOutByName) {
+TEST(StudyMissingTrials, SubjectsWithoutTrialsAreExcludedByNumber) {
   std::mt19937_64 random(7);
   std::vector<TrialRow> rows = make_trial_table(random, {.subjects = 12});
   for (TrialRow& row : rows) {
@@ -75,12 +75,12 @@ TEST(StudyMissingTrials, SubjectsAreLeftOutByName) {
   EXPECT_EQ(a.task_comparisons.front().excluded_subjects, std::vector<int>{70});       // free
   EXPECT_EQ(a.task_comparisons.back().excluded_subjects, (std::vector<int>{40, 70}));  // held
   ASSERT_EQ(a.missing_data.size(), 3u);
-  EXPECT_EQ(a.missing_data[0], "subject 40: no kept trial of trace, held (10 done)");
-  EXPECT_EQ(a.missing_data[1], "subject 70: no kept trial of follow, free (0 done)");
+  EXPECT_EQ(a.missing_data[0], "subject 40: no accepted trial of trace, held (10 done)");
+  EXPECT_EQ(a.missing_data[1], "subject 70: no accepted trial of follow, free (0 done)");
   EXPECT_NE(tests_csv(study_fixture().study, a).find(",40 70,"), std::string::npos);
 }
 
-TEST(StudyRows, OfAnotherDesignAreRefusedInALine) {
+TEST(StudyRows, RowsOfAnotherDesignAreRefusedInOneLine) {
   std::mt19937_64 random(8);
   const std::vector<TrialRow> good = make_trial_table(random, {.subjects = 2});
   const auto says = [&](const auto& change, const std::string& words) {
@@ -94,12 +94,12 @@ TEST(StudyRows, OfAnotherDesignAreRefusedInALine) {
   };
   says([](TrialRow& row) { row.task = "tracce"; }, "no task \"tracce\" (did you mean \"trace\"?); trace or follow was expected");
   says([](TrialRow& row) { row.condition = "x\ny"; }, "no condition");
-  says([](TrialRow& row) { row.dimensions = 3; }, "\"tracing\" in 3D; tracing in 2D was expected of the task \"trace\"");
-  says([](TrialRow& row) { row.error_mm = -1; }, "a negative error or time");
-  says([](TrialRow& row) { row.index = 6; }, "is there twice");
+  says([](TrialRow& row) { row.dimensions = 3; }, "\"tracing\" in 3D; tracing in 2D was expected for the task \"trace\"");
+  says([](TrialRow& row) { row.error_mm = -1; }, "the error or time is negative");
+  says([](TrialRow& row) { row.index = 6; }, "the trial is repeated");
 }
 
-TEST(StudyRows, OfAHugeTableAreRefusedWhereMemoryIsShort) {
+TEST(StudyRows, AHugeTableIsRefusedIfMemoryIsShort) {
   set_memory_limit(std::uint64_t{2} << 20);
   const auto rows = study::parse_rows(study::table_header() + std::string(100'000, '\n'), "DIR/trials.csv");
   set_memory_limit(std::nullopt);
@@ -107,7 +107,7 @@ TEST(StudyRows, OfAHugeTableAreRefusedWhereMemoryIsShort) {
   EXPECT_TRUE(rows.error().message.starts_with("DIR/trials.csv: a table of 100001 rows needs ")) << rows.error().message;
 }
 
-TEST(StudyAnalysisPlan, MistakesInTheFileAreNamedByLine) {
+TEST(StudyAnalysisPlan, ErrorsNameTheLine) {
   const auto says = [&](const std::string& from, const std::string& to, const std::string& words) {
     std::string text = kStudy;
     ASSERT_NE(text.find(from), std::string::npos) << from;
@@ -129,7 +129,7 @@ TEST(StudyAnalysisPlan, MistakesInTheFileAreNamedByLine) {
   says("{\"tasks\": [\"follow\", \"trace\"]}", "{\"tasks\": [\"follow\", \"follow\"]}", "stands twice");
 }
 
-/// A data folder as `study run` leaves it.
+/// Writes a data folder as `study run` does.
 void write_data(const std::string& folder, const std::vector<TrialRow>& rows) {
   std::filesystem::create_directories(folder);
   test::write_file(folder + "/study.json", kStudy);
@@ -138,7 +138,7 @@ void write_data(const std::string& folder, const std::vector<TrialRow>& rows) {
   test::write_file(folder + "/trials.csv", text);
 }
 
-TEST(StudyAnalyse, WritesTablesAndAPageThatStandsAlone) {
+TEST(StudyAnalyse, WritesTablesAndASelfContainedPage) {
   test::TemporaryFolder folder;
   std::mt19937_64 random(9);
   std::vector<TrialRow> rows = make_trial_table(random, {.effect = 3, .haste = -3});
@@ -150,7 +150,7 @@ TEST(StudyAnalyse, WritesTablesAndAPageThatStandsAlone) {
     test::write_file(folder / ("data/questionnaire/" + std::string(name) + ".csv"), "question,answer\n" + std::string(text));
   const auto run = test::run_catena({"study", "analyse", folder / "data", "-o", folder / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("20 subjects, 780 trials, 0 left out"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("20 subjects, 780 trials, 0 rejected"), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("supported: held is more accurate"), std::string::npos) << run.out;
   EXPECT_EQ(run.out.find("model"), std::string::npos) << run.out;
 
@@ -177,20 +177,20 @@ TEST(StudyAnalyse, WritesTablesAndAPageThatStandsAlone) {
   EXPECT_EQ(page.find("<script"), std::string::npos);
   for (const char* away : {"src=", "href=\"http", "url(", "@import"}) EXPECT_EQ(page.find(away), std::string::npos) << away;
   EXPECT_NE(page.find("prefers-color-scheme: dark"), std::string::npos);
-  EXPECT_NE(page.find("subject 5: no kept trial of follow, free"), std::string::npos);
+  EXPECT_NE(page.find("subject 5: no accepted trial of follow, free"), std::string::npos);
   EXPECT_NE(page.find("1 of 400 was rejected"), std::string::npos);
 
-  // the same data again: the same tables to the bit; and of a model: it is said wherever the results are
+  // The same data give bit-identical tables; results of a model are marked as such everywhere.
   test::write_file(folder / "data/simulated.json", "{}");
   const auto again = test::run_catena({"study", "analyse", folder / "data", "-o", folder / "again"});
   ASSERT_EQ(again.exit_code, 0) << again.err;
   for (const char* name : {"tests.csv", "means.csv", "correlations.csv", "slopes.csv", "rejections.csv", "findings.csv", "subjects.csv"})
     EXPECT_EQ(test::read_file(folder / ("out/" + std::string(name))), test::read_file(folder / ("again/" + std::string(name)))) << name;
   for (const std::string& text : {again.out, test::read_file(folder / "again/report.html"), test::read_file(folder / "again/results.json")})
-    EXPECT_NE(text.find("cannot stand in for people"), std::string::npos);
+    EXPECT_NE(text.find("do not replace results of people"), std::string::npos);
 }
 
-TEST(StudyAnalyse, BadInputIsALineAndLeavesNothing) {
+TEST(StudyAnalyse, BadInputIsOneLineAndWritesNothing) {
   test::TemporaryFolder folder;
   std::mt19937_64 random(10);
   const std::vector<TrialRow> rows = make_trial_table(random, {.subjects = 2, .trials = 2});
@@ -209,7 +209,7 @@ TEST(StudyAnalyse, BadInputIsALineAndLeavesNothing) {
   test::write_file(folder / "data/trials.csv", "subject,time\n1,2\n");
   refused(folder / "data", folder / "out", "trials.csv:1: ");
   test::write_file(folder / "data/trials.csv", text + "1,2,3\n");
-  refused(folder / "data", folder / "out", "trials.csv:18: 3 cells");
+  refused(folder / "data", folder / "out", "trials.csv:18: the row has 3 cells");
   std::string inf = text;
   inf.replace(inf.find(",target,") + 8, 1, "inf");
   test::write_file(folder / "data/trials.csv", inf);
@@ -217,14 +217,15 @@ TEST(StudyAnalyse, BadInputIsALineAndLeavesNothing) {
   EXPECT_FALSE(test::exists(folder / "out"));
 }
 
-TEST(StudyPower, SaysHowManySubjectsADesignNeeds) {
+TEST(StudyPower, ReportsTheNumberOfSubjectsOfADesign) {
   test::TemporaryFolder folder;
   test::write_file(folder / "study.json", kStudy);
   const auto run = test::run_catena({"study", "power", folder / "study.json", "--effect", "0.5"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("one test at alpha = 0.05: 34 subjects for a power of 0.8; the design's 20 have 0.565"), std::string::npos)
+  EXPECT_NE(run.out.find("one test at alpha = 0.05: 34 subjects for a power of 0.8; the design's 20 subjects have a power of 0.565"),
+            std::string::npos)
       << run.out;
-  EXPECT_NE(run.out.find("the strictest of the 8 tests"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("the strictest of 8 tests"), std::string::npos) << run.out;
   for (const auto& [option, value] :
        {std::pair{"--effect", "0"}, {"--effect", "nan"}, {"--power", "1"}, {"--alpha", "0"}, {"--power", "0.01"}}) {
     std::vector<std::string> words{"study", "power", folder / "study.json", option, value};
@@ -235,4 +236,4 @@ TEST(StudyPower, SaysHowManySubjectsADesignNeeds) {
   }
 }
 
-}  // namespace study_analyse_test
+}  // namespace study_analyze_test

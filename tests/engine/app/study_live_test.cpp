@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Live sessions without a window: killed at any moment, and gone on with.
+// Live study sessions without a window, killed at any moment and continued.
 #include "engine/app/study/live_session.h"
 
 #include <fmt/format.h>
@@ -24,9 +24,9 @@ namespace study_live_test {
 using Stage = Procedure::Stage;
 namespace fs = std::filesystem;
 
-// ---- what is felt before a trial ----
+// ---- the scene before a trial ----
 
-TEST(StudySession, BeforeATrialBeginsNothingTellsItsCondition) {
+TEST(StudySession, TheSceneBeforeATrialDoesNotRevealTheCondition) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "study.json", R"({
     "name": "two links", "trials": 1, "training": 0,
@@ -61,9 +61,9 @@ TEST(StudySession, BeforeATrialBeginsNothingTellsItsCondition) {
   EXPECT_NE(links[0], links[1]);
 }
 
-// ---- killed and gone on with ----
+// ---- killed and continued sessions ----
 
-/// All trials start in the middle and end soon after the hand has left the start.
+/// A study whose trials start at the center and end soon after the hand has left the start.
 constexpr const char* kShort = R"({
   "name": "short", "seed": 3, "trials": 4, "training": 0,
   "tasks": [{"name": "trace", "kind": "tracing", "dimensions": 2, "field": "flow", "limits": {"timeout_s": 0.05},
@@ -75,14 +75,14 @@ constexpr const char* kShort = R"({
   "questionnaire": [{"name": "hard", "question": "Was it hard?", "answers": ["no", "yes"]}]
 })";
 
-/// A hand that goes out of the start and back, on and on.
+/// The path of a hand that leaves the start and returns, again and again.
 std::string swinging_path() {
   std::string csv = "t,x,y,z\n";
   for (int k = 0; k < 3000; ++k) csv += fmt::format("{},{},0,0\n", 0.02 * k, 0.012 * std::sin(0.02 * k / 0.3 * 2 * std::numbers::pi));
   return csv;
 }
 
-/// A session that begins each trial as soon as the hand is at the start.
+/// Runs a session that begins each trial as soon as the hand is at the start.
 void go_through(const std::string& folder) {
   auto study = study::read_study(folder + "/study.json");
   ASSERT_TRUE(study) << study.error().message;
@@ -128,14 +128,14 @@ void go_through(const std::string& folder) {
   hand.stop();
 }
 
-/// The child of the next test.
-TEST(StudySession, DISABLED_IsGoneThrough) {
+/// The child process of KilledTwentyTimesLosesNoFinishedTrial.
+TEST(StudySession, DISABLED_RunsToTheEnd) {
   const std::string folder = test::child_variable("CATENA_TEST_STUDY");
   if (folder.empty()) GTEST_SKIP();
   go_through(folder);
 }
 
-/// Whether a recording that was written to since `start` is unfinished.
+/// Whether an unfinished recording was written to since `start`.
 bool is_recording(const std::string& folder, fs::file_time_type start) {
   std::error_code code;
   for (const auto& entry : fs::directory_iterator(folder + "/data/recordings", code))
@@ -156,11 +156,11 @@ TEST(StudySession, KilledTwentyTimesLosesNoFinishedTrial) {
   std::mt19937 random(20);
   std::string before;
   std::size_t in_a_trial = 0;
-  const auto child = [&] { return test::start_case("StudySession.DISABLED_IsGoneThrough", {{"CATENA_TEST_STUDY=" + folder.path()}}); };
+  const auto child = [&] { return test::start_case("StudySession.DISABLED_RunsToTheEnd", {{"CATENA_TEST_STUDY=" + folder.path()}}); };
   for (int k = 0; k < 20; ++k) {
     const auto start = fs::file_time_type::clock::now();
     const pid_t pid = child();
-    // every other time within a trial, however slow the machine is; else at some time of its life
+    // Kills every other process during a trial, on a machine of any speed, and the others at a random time.
     const bool within = k % 2 == 1;
     while (within && !is_recording(folder.path(), start) && !has_exited(pid)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     std::this_thread::sleep_for(std::chrono::milliseconds(within ? std::uniform_int_distribution<int>(0, 20)(random)
@@ -170,7 +170,7 @@ TEST(StudySession, KilledTwentyTimesLosesNoFinishedTrial) {
     waitpid(pid, &status, 0);
     in_a_trial += is_recording(folder.path(), start) ? 1 : 0;
     const std::string now = test::exists(rows_file) ? test::read_file(rows_file) : "";
-    // all that was whole is there as it was
+    // All complete rows are unchanged.
     const std::string whole = before.substr(0, before.rfind('\n') == std::string::npos ? 0 : before.rfind('\n') + 1);
     ASSERT_EQ(now.substr(0, whole.size()), whole) << k;
     before = now;
@@ -190,11 +190,11 @@ TEST(StudySession, KilledTwentyTimesLosesNoFinishedTrial) {
   for (std::size_t i = 0; i < trials.size(); ++i) {
     EXPECT_EQ((*rows)[i].index, static_cast<int>(i));
     EXPECT_GT((*rows)[i].time_s, 0);
-    // a recording of it, whole, that says what it is
+    // The trial has a complete recording with its metadata.
     auto log = haptics::log::LogReader::open(folder / fmt::format("data/recordings/007-{:03}.catlog", i));
     ASSERT_TRUE(log) << log.error().message;
     EXPECT_EQ(log->header().about, trial_metadata_json(*study, trials[i]));
-    // the ticks span the trial's time; a busy machine may have left some of them out
+    // The ticks span the trial's time; some ticks may be missing on a busy machine.
     std::optional<double> first_s;
     double last_s = 0;
     for (auto event = log->next(); event != haptics::log::LogEvent::done; event = log->next()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a subject goes through, without a window: instructions, the procedure, what is kept on the disk.
+// A study session without a window: instructions, the procedure, and the files of a subject.
 #include "engine/app/study/procedure.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ study::Study small_study() {
   return study;
 }
 
-/// Two blocks, each of one training trial and two that count.
+/// Two blocks, each of one training trial and two experimental trials.
 std::vector<study::Trial> six_trials() {
   std::vector<study::Trial> trials;
   for (int i = 0; i < 6; ++i) trials.push_back({.index = i, .block = i / 3, .task = i / 3, .training = i % 3 == 0});
@@ -46,7 +46,7 @@ const KeyPress kSpace{KeyPress::Kind::space}, kEnter{KeyPress::Kind::enter}, kBa
 
 KeyPress letter(char32_t c) { return {KeyPress::Kind::character, c}; }
 
-/// Goes on with space until the next trial is ready or no page is left; the headings on the way.
+/// Presses space until the next trial is ready or no page is left, and returns the headings of the pages.
 std::vector<std::string> pages_passed(Procedure& procedure) {
   std::vector<std::string> headings;
   while (procedure.stage() == Stage::page) {
@@ -66,18 +66,18 @@ TEST(StudyInstructions, PagesHaveAHeadingAndParagraphs) {
   EXPECT_EQ(all.end.size(), 1u);
 }
 
-TEST(StudyInstructions, WhatIsWrongIsSaidWithItsLine) {
+TEST(StudyInstructions, ErrorsNameTheLine) {
   const auto error = [](const std::string& text) {
     const auto parsed = parse_instructions(text, "i.txt", {"trace"});
     return parsed ? std::string("nothing") : parsed.error().message;
   };
-  EXPECT_EQ(error("hello\n").find("i.txt:1: text before the first moment"), 0u);
+  EXPECT_EQ(error("hello\n").find("i.txt:1: text before the first section"), 0u);
   EXPECT_NE(error("# introduction\nA\n# before tracee\nB\n")
-                .find("i.txt:3: there is no moment \"before tracee\" (did you mean \"before trace\"?)"),
+                .find("i.txt:3: there is no section \"before tracee\" (did you mean \"before trace\"?)"),
             std::string::npos);
   EXPECT_EQ(error("# end\n---\nA\n").find("i.txt:2: a page without text"), 0u);
   EXPECT_EQ(error("# end\nA\n---\n").find("i.txt:3: a page without text"), 0u);
-  EXPECT_EQ(error("# end\nA\n# end\nB\n").find("i.txt:3: the moment \"end\" stands here again"), 0u);
+  EXPECT_EQ(error("# end\nA\n# end\nB\n").find("i.txt:3: the section \"end\" is repeated"), 0u);
 }
 
 TEST(StudyProcedure, GoesFromTheFirstPageToTheLast) {
@@ -87,9 +87,9 @@ TEST(StudyProcedure, GoesFromTheFirstPageToTheLast) {
   EXPECT_EQ(pages_passed(procedure), (Words{"Welcome", "The hand", "Trace", "Training"}));
   for (std::size_t i = 0; i < 6; ++i) {
     if (i == 1 || i == 4) {
-      EXPECT_EQ(pages_passed(procedure), Words{"Now it counts"}) << i;
+      EXPECT_EQ(pages_passed(procedure), Words{"Main trials"}) << i;
     }
-    // the second task has no page of its own
+    // The second task has no instruction page.
     if (i == 3) {
       EXPECT_EQ(pages_passed(procedure), (Words{"Pause", "Training"}));
     }
@@ -126,7 +126,7 @@ TEST(StudyProcedure, GoesFromTheFirstPageToTheLast) {
   EXPECT_EQ(procedure.progress_text(), "6 of 6 trials and 2 of 2 questions are done");
 }
 
-TEST(StudyProcedure, APauseAndATrialThatIsCutOffComeBackToTheSameTrial) {
+TEST(StudyProcedure, APauseOrAnAbortedTrialReturnsToTheSameTrial) {
   const study::Study study = small_study();
   Procedure procedure(study, {}, six_trials());
   pages_passed(procedure);
@@ -145,7 +145,7 @@ TEST(StudyProcedure, APauseAndATrialThatIsCutOffComeBackToTheSameTrial) {
   EXPECT_EQ(procedure.trial(), 0u) << "it was not done";
 }
 
-TEST(StudyProcedure, GoesOnAfterAnyNumberOfTrialsAndAnswers) {
+TEST(StudyProcedure, ContinuesAfterAnyNumberOfTrialsAndAnswers) {
   const study::Study study = small_study();
   for (std::size_t finished = 0; finished <= 6; ++finished)
     for (std::size_t answered = 0; answered <= (finished == 6 ? 2u : 0u); ++answered) {
@@ -169,7 +169,7 @@ TEST(StudyProcedure, GoesOnAfterAnyNumberOfTrialsAndAnswers) {
       for (std::size_t k = 0; k < trials.size(); ++k) EXPECT_EQ(trials[k], finished + k);
       EXPECT_EQ(questions.size(), 2 - answered);
       EXPECT_EQ(headings.front(), finished + answered > 0 ? "Welcome back" : "Welcome");
-      // who comes back is told the task again
+      // A continued session shows the instructions of the current task.
       EXPECT_EQ(std::ranges::count(headings, "Trace"), finished < 3 ? 1 : 0) << finished;
       EXPECT_EQ(std::ranges::count(headings, "Thanks"), 1);
     }
@@ -201,7 +201,7 @@ class StudyFolder : public testing::Test {
   study::Study study_;
 };
 
-TEST_F(StudyFolder, OneSessionAtATimeWritesToIt) {
+TEST_F(StudyFolder, OnlyOneSessionAtATimeWritesToAFolder) {
   {
     auto first = open();
     ASSERT_TRUE(first) << first.error().message;
@@ -212,7 +212,7 @@ TEST_F(StudyFolder, OneSessionAtATimeWritesToIt) {
   EXPECT_TRUE(open(8)) << "the lock has gone with its holder";
 }
 
-TEST_F(StudyFolder, ARowComesWithItsRecordingAndTheNextSessionGoesOnBehindIt) {
+TEST_F(StudyFolder, ARowNeedsItsRecordingAndTheNextSessionContinues) {
   {
     auto folder = open();
     ASSERT_TRUE(folder) << folder.error().message;
@@ -224,7 +224,7 @@ TEST_F(StudyFolder, ARowComesWithItsRecordingAndTheNextSessionGoesOnBehindIt) {
     ASSERT_TRUE(folder->save_trial(folder->trials()[0], measured, unfinished));
     EXPECT_FALSE(test::exists(unfinished));
     EXPECT_EQ(read("recordings/007-000.catlog"), "ticks");
-    // without its recording there is no row
+    // Without a recording, no row is written.
     EXPECT_FALSE(folder->save_trial(folder->trials()[1], measured, unfinished));
   }
   auto again = open();
@@ -234,7 +234,7 @@ TEST_F(StudyFolder, ARowComesWithItsRecordingAndTheNextSessionGoesOnBehindIt) {
   EXPECT_EQ(std::ranges::count(rows, '\n'), 2) << rows;
 }
 
-TEST_F(StudyFolder, AnswersSurviveACutAtAnyByte) {
+TEST_F(StudyFolder, AnswersSurviveATruncationAtAnyByte) {
   {
     auto folder = open();
     ASSERT_TRUE(folder && folder->save_answer("hard", "a \"bit\", yes\n") && folder->save_answer("how", "so"));
@@ -256,22 +256,23 @@ TEST_F(StudyFolder, AnswersSurviveACutAtAnyByte) {
   }
 }
 
-TEST_F(StudyFolder, AnotherSessionsRowsAndAnswersAreRefused) {
+TEST_F(StudyFolder, RowsAndAnswersOfAnotherSessionAreRefused) {
   ASSERT_TRUE(open());
   test::write_file(folder_ / "data/questionnaire/007.csv", "question,answer\nother,1\n");
   const auto answers = open();
   ASSERT_FALSE(answers);
-  EXPECT_NE(answers.error().message.find("007.csv:2: this is not the answer to question 1"), std::string::npos) << answers.error().message;
+  EXPECT_NE(answers.error().message.find("007.csv:2: the row is not an answer to question 1"), std::string::npos)
+      << answers.error().message;
   std::filesystem::remove(folder_ / "data/questionnaire/007.csv");
   study::Trial second = study::make_session(study_, 7)[1];
   second.index = 1;
   test::write_file(folder_ / "data/subjects/007.csv", study::table_header() + study::format_row(study::make_row(study_, second, {})));
   const auto rows = open();
   ASSERT_FALSE(rows);
-  EXPECT_NE(rows.error().message.find("007.csv:2: this is not trial 0"), std::string::npos) << rows.error().message;
+  EXPECT_NE(rows.error().message.find("007.csv:2: the row is not trial 0"), std::string::npos) << rows.error().message;
 }
 
-TEST(StudyTickObserver, HandsOnEveryTickAndSaysWhatItLost) {
+TEST(StudyTickObserver, ForwardsEveryTickAndReportsLostTicks) {
   struct Counting final : haptics::TickSink {
     void put(const haptics::ProbeSample&, const HapticState&) noexcept override { ++count; }
     int count = 0;

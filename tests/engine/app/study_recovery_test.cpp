@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena study analyse` finds what is planted as often as the power says, and what is not, as seldom as alpha says: by the very code that
+/// `catena study analyse` finds simulated effects at the stated power, and absent effects at the rate alpha, with the same code that
 /// analyses a data folder.
 #include <gtest/gtest.h>
 
@@ -11,13 +11,13 @@ namespace study_recovery_test {
 
 using namespace study_tables;
 
-/// 400 tables, or so many as CATENA_STUDY_TABLES says.
+/// The number of tables: 400, or the value of CATENA_STUDY_TABLES.
 int table_count() {
   const char* text = std::getenv("CATENA_STUDY_TABLES");
   return text != nullptr ? std::atoi(text) : 400;
 }
 
-TEST(StudyRecovery, APlantedDifferenceIsFoundAtTheStatedPower) {
+TEST(StudyRecovery, ASimulatedDifferenceIsFoundAtTheStatedPower) {
   const double power = statistics::paired_power(0.5, 20, 0.05);
   EXPECT_NEAR(power, 0.5645, 1e-4);
   std::mt19937_64 random(11);
@@ -38,13 +38,13 @@ TEST(StudyRecovery, APlantedDifferenceIsFoundAtTheStatedPower) {
               found, tables, power, by_flips, supported, elsewhere);
   EXPECT_TRUE(share.contains(power)) << found;
   EXPECT_TRUE(false_share.contains(0.05)) << elsewhere;
-  // the correction for eight tests costs power, but what it leaves was found before it, too
+  // The correction for eight tests costs power: the corrected findings are fewer.
   EXPECT_LT(supported, found);
   EXPECT_GT(supported, 0.15 * tables);
   EXPECT_TRUE(statistics::proportion_interval(by_flips, tables, 0.999).contains(power)) << by_flips;
 }
 
-TEST(StudyRecovery, WhereNothingIsPlantedAlphaIsKept) {
+TEST(StudyRecovery, WithoutEffectsTheErrorRateIsAlpha) {
   std::mt19937_64 random(12);
   const int tables = table_count();
   int tests = 0, found = 0, by_flips = 0, families = 0, correlations = 0, trades = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `catena study` from the outside: simulate, shard, merge, go on after a kill, a study of one's own, and mistakes.
+// `catena study`: simulate, shard, merge, continue after a kill, a custom study, and errors.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace study_test {
 using namespace catena;
 namespace fs = std::filesystem;
 
-/// The paper's study with so few trials that a session takes no time.
+/// Writes the paper's study with few trials, so that a session is short, and returns its path.
 std::string short_study(const test::TemporaryFolder& folder) {
   std::string text = test::read_file(test::source_dir() + "/assets/studies/proxy-chain.json");
   const auto replace = [&](const std::string& from, const std::string& to) { text.replace(text.find(from), from.size(), to); };
@@ -28,12 +28,12 @@ test::ProgramResult study(std::vector<std::string> arguments) {
   return test::run_catena(arguments);
 }
 
-TEST(Study, ShardsAreTheWholeToTheBit) {
+TEST(Study, MergedShardsEqualTheWholeBitExactly) {
   const test::TemporaryFolder folder;
   const std::string path = short_study(folder);
   const auto whole = study({"simulate", path, "--subjects", "2", "-o", folder / "whole"});
   ASSERT_EQ(whole.exit_code, 0) << whole.err;
-  EXPECT_NE(whole.out.find("2 subjects of a model, 32 trials"), std::string::npos) << whole.out;
+  EXPECT_NE(whole.out.find("2 simulated subjects, 32 trials"), std::string::npos) << whole.out;
   for (const char* shard : {"1/2", "2/2"}) {
     const auto part = study({"simulate", path, "--subjects", "2", "-o", folder / ("part" + std::string(1, shard[0])), "--shard", shard});
     ASSERT_EQ(part.exit_code, 0) << part.err;
@@ -48,7 +48,7 @@ TEST(Study, ShardsAreTheWholeToTheBit) {
   EXPECT_EQ(test::read_file(folder / "whole/subjects/002.csv"), test::read_file(folder / "merged/subjects/002.csv"));
   EXPECT_EQ(test::read_file(folder / "merged/study.json"), test::read_file(path));
   EXPECT_EQ(test::read_file(folder / "merged/questionnaire/002.csv"), "question,answer\n");
-  // the same again changes nothing; folders that disagree are refused
+  // A repeated merge changes nothing; folders with different trials are refused.
   EXPECT_EQ(study({"merge", folder / "part2", folder / "part1", "-o", folder / "merged"}).exit_code, 0);
   std::string other = test::read_file(folder / "part1/subjects/001.csv");
   other.replace(other.rfind(",target,"), 8, ",limit,");
@@ -57,20 +57,20 @@ TEST(Study, ShardsAreTheWholeToTheBit) {
   test::write_file(folder / "bad/subjects/001.csv", other);
   const auto mixed = study({"merge", folder / "part1", folder / "bad", "-o", folder / "never"});
   EXPECT_EQ(mixed.exit_code, 2);
-  EXPECT_NE(mixed.err.find("a model did"), std::string::npos) << mixed.err;
+  EXPECT_NE(mixed.err.find("trials of a model"), std::string::npos) << mixed.err;
   test::write_file(folder / "bad/simulated.json", "{}");
   const auto refused = study({"merge", folder / "part1", folder / "bad", "-o", folder / "never"});
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.err.find("subject 1 has other trials"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("the trials of subject 1 differ"), std::string::npos) << refused.err;
   EXPECT_FALSE(test::exists(folder / "never"));
 }
 
-TEST(Study, GoesOnWhereItWasEnded) {
+TEST(Study, ContinuesAfterTheLastCompleteTrial) {
   const test::TemporaryFolder folder;
   const std::string path = short_study(folder);
   ASSERT_EQ(study({"simulate", path, "--subjects", "1", "-o", folder / "a"}).exit_code, 0);
   const std::string whole = test::read_file(folder / "a/subjects/001.csv");
-  // as a kill leaves it: nine trials and a piece of the tenth
+  // The state after a kill: nine trials and a part of the tenth.
   std::size_t at = 0;
   for (int line = 0; line < 10; ++line) at = whole.find('\n', at) + 1;
   fs::create_directories(folder / "b/subjects");
@@ -81,17 +81,17 @@ TEST(Study, GoesOnWhereItWasEnded) {
   test::write_file(folder / "b/simulated.json", "{}");
   const auto on = study({"simulate", path, "--subjects", "1", "-o", folder / "b"});
   ASSERT_EQ(on.exit_code, 0) << on.err;
-  EXPECT_NE(on.out.find("16 trials, 7 of them now"), std::string::npos) << on.out;
+  EXPECT_NE(on.out.find("16 trials, 7 of them computed in this run"), std::string::npos) << on.out;
   EXPECT_EQ(test::read_file(folder / "b/subjects/001.csv"), whole);
 }
 
-TEST(Study, AStudyOfOnesOwnRunsWithoutCode) {
+TEST(Study, ACustomStudyRuns) {
   const test::TemporaryFolder folder;
   fs::copy_file(test::source_dir() + "/assets/studies/friction.json", folder / "friction.json");
   const auto missing = study({"simulate", folder / "friction.json", "--subjects", "1", "-o", folder / "d"});
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_NE(missing.err.find("flow.vdb"), std::string::npos) << missing.err;
-  EXPECT_FALSE(test::exists(folder / "d")) << "nothing half-written";
+  EXPECT_FALSE(test::exists(folder / "d")) << "no incomplete file";
   ASSERT_EQ(test::run_catena({"generate", "abc", "-o", folder / "flow.vdb", "--resolution", "32"}).exit_code, 0);
   const auto run = study({"simulate", folder / "friction.json", "--subjects", "1", "-o", folder / "d"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -105,7 +105,7 @@ TEST(Study, AStudyOfOnesOwnRunsWithoutCode) {
   EXPECT_GT(force["across"], 0.1);
 }
 
-TEST(Study, ItsSchemaKnowsTheKeysOfTheStudiesOfAssets) {
+TEST(Study, TheSchemaHasTheKeysOfTheBundledStudies) {
   const auto printed = study({"keys", "--schema"});
   ASSERT_EQ(printed.exit_code, 0) << printed.err;
   const auto schema = json::parse(printed.out, "schema");
@@ -120,7 +120,7 @@ TEST(Study, ItsSchemaKnowsTheKeysOfTheStudiesOfAssets) {
   }
 }
 
-TEST(Study, ATrialIsAScene) {
+TEST(Study, ATrialIsWrittenAsAScene) {
   const test::TemporaryFolder folder;
   const std::string path = test::source_dir() + "/assets/studies/proxy-chain.json";
   for (const char* trial : {"0", "30", "55", "80"}) {
@@ -135,7 +135,7 @@ TEST(Study, ATrialIsAScene) {
   EXPECT_FALSE(test::exists(folder / "u.json"));
 }
 
-TEST(Study, ARecordedTrialIsReplayedToTheBit) {
+TEST(Study, ARecordedTrialReplaysBitExactly) {
   const test::TemporaryFolder folder;
   std::string text = test::read_file(short_study(folder));
   text.replace(text.find("\"trials\": 2"), 11, "\"trials\": 1");
@@ -149,21 +149,21 @@ TEST(Study, ARecordedTrialIsReplayedToTheBit) {
   }
 }
 
-TEST(Study, AnotherModelIsAnotherStudy) {
+TEST(Study, AnotherModelInTheSameFolderIsRefused) {
   const test::TemporaryFolder folder;
   const std::string path = short_study(folder);
   const auto calm =
       study({"simulate", path, "--subjects", "1", "-o", folder / "d", "--model", "depth_noise_mm=0", "--model", "tremor_mm=0.1"});
   ASSERT_EQ(calm.exit_code, 0) << calm.err;
-  const std::string kept = test::read_file(folder / "d/study.json");
-  EXPECT_NE(kept.find("\"depth_noise_mm\": 0,"), std::string::npos);
-  EXPECT_NE(kept.find("\"tremor_mm\": 0.1,"), std::string::npos);
+  const std::string stored_study = test::read_file(folder / "d/study.json");
+  EXPECT_NE(stored_study.find("\"depth_noise_mm\": 0,"), std::string::npos);
+  EXPECT_NE(stored_study.find("\"tremor_mm\": 0.1,"), std::string::npos);
   const auto other = study({"simulate", path, "--subjects", "1", "-o", folder / "d"});
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_NE(other.err.find("another study"), std::string::npos) << other.err;
 }
 
-/// The paper's study, a text of it replaced; what `study scene` says of it.
+/// Replaces a text in the paper's study, and returns the error of `study scene`.
 std::string refusal(const test::TemporaryFolder& folder, const std::string& from, const std::string& to) {
   std::string text = test::read_file(short_study(folder));
   const auto at = text.find(from);
@@ -177,17 +177,17 @@ std::string refusal(const test::TemporaryFolder& folder, const std::string& from
   return run.err;
 }
 
-TEST(Study, WhatCouldNotBeDoneOrReadAgainIsRefusedInTheFile) {
+TEST(Study, ImpossibleValuesInTheFileAreRefused) {
   const test::TemporaryFolder folder;
   EXPECT_NE(refusal(folder, "\"name\": \"iso\"", "\"name\": \"i\\nso\"").find("\"name\""), std::string::npos);
   EXPECT_NE(refusal(folder, "\"name\": \"iso\"", "\"name\": \"\"").find("\"name\""), std::string::npos);
-  EXPECT_NE(refusal(folder, "\"metres_per_unit\": 0.05", "\"metres_per_unit\": 1e-9").find("times as long as the field's box"),
+  EXPECT_NE(refusal(folder, "\"metres_per_unit\": 0.05", "\"metres_per_unit\": 1e-9").find("times the diagonal of the field's box"),
             std::string::npos);
   EXPECT_NE(refusal(folder, "\"stimulus\": {", "\"stimulus\": {\"turn_deg\": 180, \"candidates\": 1, ").find("turn too little"),
             std::string::npos);
 }
 
-TEST(Study, WithoutGlobalLinesNoneAreDrawn) {
+TEST(Study, WithoutContextStreamlinesTheSceneIsValid) {
   const test::TemporaryFolder folder;
   std::string text = test::read_file(short_study(folder));
   text.replace(text.find("\"context_streamlines\": 14"), 25, "\"context_streamlines\": 0");
@@ -198,7 +198,7 @@ TEST(Study, WithoutGlobalLinesNoneAreDrawn) {
   EXPECT_EQ(info.exit_code, 0) << info.err;
 }
 
-TEST(Study, MistakesAreOneLine) {
+TEST(Study, ErrorsAreOneLine) {
   const test::TemporaryFolder folder;
   const std::string path = short_study(folder);
   const std::vector<std::vector<std::string>> mistakes = {

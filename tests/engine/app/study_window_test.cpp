@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// catena study run as a subject meets it: in a window on a virtual display, with real keys and a scripted mouse that goes along each path.
+// `catena study run` in a window on a virtual display, with real key events and a scripted mouse that follows each path.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -32,7 +32,8 @@ constexpr const char* kStudy = R"({
   "questionnaire": [{"name": "hard", "question": "Was it hard?", "answers": ["1 no", "2", "3 very"]}, {"name": "how", "question": "How?"}]
 })";
 
-/// What the mouse does in a trial: to the start, the key, along the path and a little beyond, with the wheel for depth.
+// The script of a trial: moves the mouse to the start, presses the key, and follows the path and a little beyond. The wheel sets the
+// depth.
 std::string way_of(const study::Study& study, const study::Trial& trial, std::size_t trials, double step_s) {
   LiveTrial live(study);
   auto host = live.open(trial, {});
@@ -51,10 +52,10 @@ std::string way_of(const study::Study& study, const study::Trial& trial, std::si
   const auto at = [&](const Vec3& p) { return *render::project(camera, p); };
   const auto move = [&](const Vec3& p) { return fmt::format(" mousemove {:.0f} {:.0f}", at(p).x, at(p).y); };
   const std::string name = fmt::format("trial {} of {}", trial.index + 1, trials);
-  // twice: a pointer that comes into the window has not moved yet
+  // Two moves: a pointer that enters the window counts as moved only with the second one.
   std::string script =
-      fmt::format("titled '{}'\nxdotool mousemove 5 5{}\ntitled '{}, at the start'\npicture ready-{}\nkeys space\ntitled '{} runs'\n", name,
-                  move(path.front()), name, trial.index, name);
+      fmt::format("titled '{}'\nxdotool mousemove 5 5{}\ntitled '{}, at the start'\npicture ready-{}\nkeys space\ntitled '{}, running'\n",
+                  name, move(path.front()), name, trial.index, name);
   double depth = at(path.front()).z;
   script += "xdotool";
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -80,7 +81,7 @@ class StudyWindowTest : public testing::Test {
     ASSERT_TRUE(read) << read.error().message;
     study_ = std::move(*read);
   }
-  /// `$CATENA_PICTURE NAME` takes a picture of the display, where somebody wants to look.
+  /// Runs the script; `$CATENA_PICTURE NAME`, where set, is called to capture the display for review.
   int drive(const std::string& script) {
     const std::string start = fmt::format(
         "picture() {{ [ -z \"$CATENA_PICTURE\" ] || $CATENA_PICTURE $1; }}\n"
@@ -101,7 +102,7 @@ class StudyWindowTest : public testing::Test {
   study::Study study_;
 };
 
-TEST_F(StudyWindowTest, AScriptedMouseGoesFromThePagesToTheLastAnswerInTwoSessions) {
+TEST_F(StudyWindowTest, AScriptedMouseCompletesAStudyInTwoSessions) {
   write_study(kStudy, "# introduction\nHello\n# before trace\nTrace\n");
   const std::vector<study::Trial> trials = study::make_session(study_, 7);
   ASSERT_EQ(trials.size(), 2u);
@@ -114,7 +115,8 @@ TEST_F(StudyWindowTest, AScriptedMouseGoesFromThePagesToTheLastAnswerInTwoSessio
             0)
       << log();
   EXPECT_EQ(log().find("never"), std::string::npos) << log();
-  EXPECT_NE(log().find("subject 7: 1 of 2 trials and 0 of 2 questions are done; the same command goes on"), std::string::npos) << log();
+  EXPECT_NE(log().find("subject 7: 1 of 2 trials and 0 of 2 questions are done; the same command continues the session"), std::string::npos)
+      << log();
   EXPECT_NE(log().find("subject 7: 2 of 2 trials and 2 of 2 questions are done"), std::string::npos) << log();
   EXPECT_EQ(log().find("condition_"), std::string::npos) << "neither titles nor the terminal tell the condition";
   const std::vector<study::TrialRow> done = rows();
@@ -122,7 +124,7 @@ TEST_F(StudyWindowTest, AScriptedMouseGoesFromThePagesToTheLastAnswerInTwoSessio
   for (const study::TrialRow& row : done) {
     EXPECT_TRUE(row.reached_target);
     EXPECT_GT(row.time_s, 0);
-    // a mouse cuts corners between two pictures
+    // The mouse moves in straight lines between two frames.
     EXPECT_LT(row.error_mm, 10) << row.index;
     EXPECT_NEAR(row.traveled_mm, 60, 20) << row.index;
     EXPECT_TRUE(test::exists(folder_ / fmt::format("data/recordings/007-{:03}.catlog", row.index)));
@@ -131,10 +133,10 @@ TEST_F(StudyWindowTest, AScriptedMouseGoesFromThePagesToTheLastAnswerInTwoSessio
   EXPECT_EQ(test::read_file(folder_ / "data/questionnaire/007.csv"), "question,answer\nhard,3 very\nhow,\"so, so\"\n");
 }
 
-/// The paper's study with a trial in each condition, from its first page to the questionnaire: some minutes, so by hand alone.
+/// The paper's study with a trial in each condition, from the first page to the questionnaire. It takes minutes, so it is run by hand only:
 ///   build/release/test_engine_app --gtest_also_run_disabled_tests --gtest_filter='*AllFourTasks*'
 /// With CATENA_XVFB="-fbdir DIR" and CATENA_PICTURE=PROGRAM, the program is called with a name for each page, trial and question.
-TEST_F(StudyWindowTest, DISABLED_AScriptedMouseGoesThroughAllFourTasks) {
+TEST_F(StudyWindowTest, DISABLED_AScriptedMouseCompletesAllFourTasks) {
   const std::string studies = test::source_dir() + "/assets/studies/";
   std::string text = test::read_file(studies + "proxy-chain.json");
   const auto replace = [&](const std::string& from, const std::string& to) {
@@ -146,7 +148,7 @@ TEST_F(StudyWindowTest, DISABLED_AScriptedMouseGoesThroughAllFourTasks) {
   replace("proxy-chain.txt", "pages.txt");
   write_study(text, test::read_file(studies + "proxy-chain.txt"));
   const std::vector<study::Trial> trials = study::make_session(study_, 7);
-  // a page a name, and on
+  // Captures each page under a name, and continues.
   const std::string pages =
       "pages() { n=0; while ! xdotool search --name '^catena study  (trial|question)' > /dev/null 2>&1 && kill -0 $V 2> /dev/null; "
       "do "
@@ -170,7 +172,7 @@ TEST_F(StudyWindowTest, DISABLED_AScriptedMouseGoesThroughAllFourTasks) {
   }
 }
 
-TEST(StudyRunCommand, SaysWhatIsWrongBeforeAnyWindowAndLeavesNothing) {
+TEST(StudyRunCommand, ErrorsAreReportedBeforeAnyWindowAndWriteNothing) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "study.json", kStudy);
   const auto error = [&](const std::vector<std::string>& options) {
@@ -184,12 +186,12 @@ TEST(StudyRunCommand, SaysWhatIsWrongBeforeAnyWindowAndLeavesNothing) {
   };
   EXPECT_NE(error({"--subject", "7", "--device", "mouse"}).find("pages.txt: "), std::string::npos);
   test::write_file(folder / "pages.txt", "# before nothing\n");
-  EXPECT_NE(error({"--subject", "7", "--device", "mouse"}).find("pages.txt:1: there is no moment \"before nothing\""), std::string::npos);
+  EXPECT_NE(error({"--subject", "7", "--device", "mouse"}).find("pages.txt:1: there is no section \"before nothing\""), std::string::npos);
   test::write_file(folder / "pages.txt", "# introduction\nHello\n");
   EXPECT_NE(error({"--subject", "0", "--device", "mouse"}).find("--subject"), std::string::npos);
   EXPECT_NE(error({"--subject", "7", "--device", "falcon:7"}).find("catena: "), std::string::npos);
-  EXPECT_NE(error({"--subject", "7", "--device", "simulated"}).find("can push: --forces on was expected"), std::string::npos);
-  EXPECT_NE(error({"--subject", "7", "--device", "mouse", "--forces", "on"}).find("cannot push"), std::string::npos);
+  EXPECT_NE(error({"--subject", "7", "--device", "simulated"}).find("can exert forces; --forces on"), std::string::npos);
+  EXPECT_NE(error({"--subject", "7", "--device", "mouse", "--forces", "on"}).find("cannot exert forces"), std::string::npos);
   EXPECT_NE(error({"--subject", "7"}).find("--device"), std::string::npos);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Plans of the hand: links, cells and their texts.
+/// Tuning of the haptic tick: settings of links, interpolation of fields, and the edits of the scene's text.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,9 +7,9 @@
 
 #include "tests/engine/app/tuning_fixtures.h"
 
-namespace plan_test {
+namespace tuning_test {
 
-TEST(TickTuning, TakesForEachLinkTheCheapest) {
+TEST(TickTuning, TakesTheCheapestSettingForEachLink) {
   const TickTuning plan(two_link_curves(), parse_target("max_proxy_error=1e-3"));
   ASSERT_EQ(plan.links().size(), 2u);
   EXPECT_EQ(plan.links()[0].setting, "rk2");
@@ -31,33 +31,33 @@ TEST(TickTuning, SpendsTheTimeOnTheWorstLink) {
   EXPECT_EQ(stops.size(), 5u);
 }
 
-TEST(TickTuning, SaysWhereALineIsFarOff) {
+TEST(TickTuning, ReportsErrorsFarAlongALine) {
   TickCurves curves = two_link_curves();
   for (LinkCurve& one : curves.links)
     for (Point& p : one.curve.points) p.extra_values = {0, 0, NAN};
-  curves.links[0].curve.points[1].extra_values[2] = 0.5;  // L is 2: 1 somewhere, where 2e-4 is expected
+  curves.links[0].curve.points[1].extra_values[2] = 0.5;  // with length 2 the error is 1 somewhere, where 2e-4 is expected
   const TickTuning near(curves, parse_target("max_proxy_error=1e-3"));
   EXPECT_EQ(near.links()[0].setting, "rk2");
-  EXPECT_NEAR(near.expected_error(), 1e-3, 1e-12);  // of b
+  EXPECT_NEAR(near.expected_error(), 1e-3, 1e-12);  // the error of link b
   EXPECT_EQ(near.error_anywhere(), 1);
   EXPECT_NE(near.summary().find(
-                "(far along the line of a, small errors have grown: there up to 1, so that max_proxy_error is kept near its seed"),
+                "(link a: the error grows along the line, up to 1 far from the seed, so that max_proxy_error holds near the seed"),
             std::string::npos)
       << near.summary();
-  curves.links[0].curve.points[1].extra_values[2] = 2e-4;  // much the same everywhere
+  curves.links[0].curve.points[1].extra_values[2] = 2e-4;  // nearly equal everywhere
   const TickTuning alike(curves, parse_target("max_proxy_error=1e-3"));
   EXPECT_EQ(alike.error_anywhere(), alike.expected_error());
-  EXPECT_EQ(alike.summary().find("far along"), std::string::npos) << alike.summary();
+  EXPECT_EQ(alike.summary().find("far from the seed"), std::string::npos) << alike.summary();
 }
 
-TEST(TickTuning, GoesIntoTheTextAndLeavesWhatIsStated) {
+TEST(TickTuning, IsWrittenIntoTheTextExceptStatedSettings) {
   const TickTuning plan(two_link_curves(), parse_target("max_proxy_error=1e-3"));
   const auto text = plan.apply(R"({"chain": [{"name": "b", "method": "dp54"}, {"name": "c"}, {"name": "a"}]})", "s.json");
   ASSERT_TRUE(text) << text.error().message;
   EXPECT_EQ(*text, R"({"chain": [{"name": "b", "method": "dp54"}, {"name": "c"}, {"name": "a", "method": "rk2"}]})");
 }
 
-/// Two links on one field, with linear cells and with cubic ones, and one on another field that states its cells.
+/// Two links on one field, measured with linear and with cubic cells, and a link on a field with stated interpolation.
 TickCurves with_cells() {
   TickCurves curves = two_link_curves();
   for (LinkCurve& linear : curves.links) linear.field = "flow", linear.curve.discretization_error = 1e-4;
@@ -74,25 +74,25 @@ TickCurves with_cells() {
   return curves;
 }
 
-TEST(TickTuning, CellsAreCubicOnlyBelowWhatLinearOnesHold) {
+TEST(TickTuning, CellsAreCubicOnlyBelowTheErrorOfLinearCells) {
   EXPECT_TRUE(TickTuning(with_cells(), parse_target("max_proxy_error=1e-3")).cubic_fields().empty());
   const TickTuning fine(with_cells(), parse_target("max_proxy_error=1e-5"));
   EXPECT_EQ(fine.cubic_fields(), std::vector<std::string>{"flow"});
   ASSERT_EQ(fine.links().size(), 3u);
-  EXPECT_FALSE(fine.links()[0].at_floor);  // 1e-6 L is below it
-  EXPECT_TRUE(fine.links()[2].at_floor);   // the stated field's cells stay
+  EXPECT_FALSE(fine.links()[0].at_floor);  // 1e-6 times the length is below the target
+  EXPECT_TRUE(fine.links()[2].at_floor);   // the field with stated interpolation keeps it
   EXPECT_NE(fine.summary().find("field flow cubic"), std::string::npos) << fine.summary();
-  // where cubic cells are no better: noise
+  // Noise: cubic cells have no smaller error.
   TickCurves noisy = with_cells();
   for (LinkCurve& link : noisy.links)
     if (link.is_cubic) link.curve.discretization_error = 0.8e-4;
   EXPECT_TRUE(TickTuning(noisy, parse_target("max_proxy_error=1e-5")).cubic_fields().empty());
-  // a time that linear cells keep and cubic ones do not
+  // A time limit that linear cells meet and cubic cells do not.
   EXPECT_TRUE(TickTuning(with_cells(), parse_target("max_tick_us=2.0")).cubic_fields().empty());
   EXPECT_FALSE(TickTuning(with_cells(), parse_target("max_tick_us=20")).cubic_fields().empty());
 }
 
-TEST(TickTuning, CellsGoIntoTheTextUnlessTheyAreStated) {
+TEST(TickTuning, InterpolationIsWrittenIntoTheTextUnlessStated) {
   const TickTuning plan(with_cells(), parse_target("max_proxy_error=1e-5"));
   const auto open = plan.apply(R"({"fields": {"flow": {"file": "a.vdb"}}})", "s.json");
   ASSERT_TRUE(open) << open.error().message;
@@ -101,4 +101,4 @@ TEST(TickTuning, CellsGoIntoTheTextUnlessTheyAreStated) {
   EXPECT_EQ(*plan.apply(stated, "s.json"), stated);
 }
 
-}  // namespace plan_test
+}  // namespace tuning_test

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// Three places touched by a device and by a controller: the motion that is known beforehand, and touches that do not count.
+/// Three points touched by a device and by a controller: a known motion, and touches that do not count.
 #include "engine/app/viewer/xr/touch_registration.h"
 
 #include <gtest/gtest.h>
 
-namespace touches_test {
+namespace touch_registration_test {
 
 using namespace catena;
 using namespace catena::xr_interaction;
@@ -19,16 +19,16 @@ Vec3 room_of(const Vec3& device) { return kOrigin + rotate(kTurn, device); }
 struct Person {
   TouchRegistration touches{"arm"};
   double t = 100;
-  std::vector<std::string> said{};
-  bool error = false;  ///< the last thing that was said
+  std::vector<std::string> messages{};
+  bool error = false;  ///< whether the last message was an error
 
   void step(const TouchRegistration::TouchInput& device, const TouchRegistration::TouchInput& controller, double dt = kFrame) {
     for (const TouchRegistration::Message& news : touches.step(t += dt, device, controller)) {
-      said.push_back(news.text);
+      messages.push_back(news.text);
       error = news.is_error;
     }
   }
-  /// Let go, pressed for long enough, at places that tremble by half a millimetre, and let go again.
+  /// A touch: released, pressed for long enough at a position that trembles by half a millimetre, and released.
   void device(const Vec3& at, double tremble = 5e-4) { touch(at, tremble, true); }
   void controller(const Vec3& at, double tremble = 5e-4) { touch(at, tremble, false); }
   void touch(const Vec3& at, double tremble, bool by_device) {
@@ -39,7 +39,7 @@ struct Person {
   }
 };
 
-TEST(Touches, FindTheMotionInWhicheverOrder) {
+TEST(Touches, FindTheMotionInAnyOrder) {
   for (const bool together : {false, true}) {
     Person person;
     for (const Vec3& place : kTouched) {
@@ -48,70 +48,70 @@ TEST(Touches, FindTheMotionInWhicheverOrder) {
     }
     if (!together)
       for (const Vec3& place : kTouched) person.controller(room_of(place));
-    ASSERT_TRUE(person.touches.registration()) << person.said.back();
+    ASSERT_TRUE(person.touches.registration()) << person.messages.back();
     const Registration& found = *person.touches.registration();
     EXPECT_LT(norm(found.origin_m - kOrigin), 1e-4);
     EXPECT_LT(norm(rotation_vector(normalized(found.room_from_device * glm::conjugate(kTurn)))), 1e-3);
     EXPECT_LT(found.residual_m, 1e-4);
-    EXPECT_EQ(person.said.size(), 7u);
-    EXPECT_NE(person.said.back().find("arm is registered: 0.0 mm are left"), std::string::npos) << person.said.back();
+    EXPECT_EQ(person.messages.size(), 7u);
+    EXPECT_NE(person.messages.back().find("arm is registered: the residual is 0.0 mm"), std::string::npos) << person.messages.back();
     EXPECT_TRUE(person.touches.prompt().empty());
   }
 }
 
-TEST(Touches, WhatIsNoTouchDoesNotCount) {
+TEST(Touches, InvalidTouchesDoNotCount) {
   Person person;
   const auto refused = [&](const char* words) {
-    ASSERT_FALSE(person.said.empty());
+    ASSERT_FALSE(person.messages.empty());
     EXPECT_TRUE(person.error);
-    EXPECT_NE(person.said.back().find(words), std::string::npos) << person.said.back();
-    person.said.clear();
+    EXPECT_NE(person.messages.back().find(words), std::string::npos) << person.messages.back();
+    person.messages.clear();
   };
-  // what is down at first
+  // A button that is pressed from the beginning.
   person.step({kTouched[0], true}, {});
   for (int k = 0; k < 30; ++k) person.step({kTouched[0], true}, {});
-  EXPECT_TRUE(person.said.empty());
+  EXPECT_TRUE(person.messages.empty());
   person.device(kTouched[0], 0.004);
-  refused("place 1 of arm does not count: it moved by 8 mm");
+  refused("point 1 of arm does not count: it moved by 8 mm during the touch");
   person.step({std::nullopt, true}, {});
-  refused("it is not known where it is");
+  refused("the position is not tracked");
   person.step({}, {});
   person.step({Vec3(NAN, 0, 0), true}, {});
-  refused("it is not known where it is");
+  refused("the position is not tracked");
   person.step({}, {});
   person.step({kTouched[0], true}, {});
   person.step({std::nullopt, true}, {});
-  refused("it was lost while it touched");
+  refused("tracking was lost during the touch");
   person.step({}, {});
   person.device(kTouched[0]);
-  EXPECT_EQ(person.said, std::vector<std::string>{"place 1 of arm is touched"});
+  EXPECT_EQ(person.messages, std::vector<std::string>{"point 1 of arm was touched"});
   person.device(kTouched[0] + Vec3(0, 0, 0.01));
-  refused("it is 10 mm from place 1; at least 20 mm were expected");
-  // a clock that goes back begins the touch again, and ends it all the same
+  refused("the touched position is 10 mm from point 1; at least 20 mm were expected");
+  // A clock that runs backwards restarts the touch, which ends normally.
   person.step({kTouched[1], true}, {});
   person.step({kTouched[1], true}, {}, -50);
   for (int k = 0; k < 13; ++k) person.step({kTouched[1], true}, {});
-  EXPECT_TRUE(person.said.empty());
+  EXPECT_TRUE(person.messages.empty());
   person.step({kTouched[1], true}, {});
-  EXPECT_EQ(person.said, std::vector<std::string>{"place 2 of arm is touched"});
-  EXPECT_NE(person.touches.prompt().find("arm: place 3 of 3. Controller: place 1 of 3."), std::string::npos) << person.touches.prompt();
+  EXPECT_EQ(person.messages, std::vector<std::string>{"point 2 of arm was touched"});
+  EXPECT_NE(person.touches.prompt().find("arm: point 3 of 3. Controller: point 1 of 3."), std::string::npos) << person.touches.prompt();
 }
 
-TEST(Touches, PlacesThatDoNotFitAreAskedForAgain) {
+TEST(Touches, InconsistentPointsAreRequestedAgain) {
   Person person;
   for (int k = 0; k < 3; ++k) person.device(Vec3(0.05 * k, 0, 1e-3 * (k % 2)));
   for (const Vec3& place : kTouched) person.controller(room_of(place));
   EXPECT_TRUE(person.error);
-  EXPECT_NE(person.said.back().find("nearly on one line"), std::string::npos) << person.said.back();
-  // edges of another length: 40 mm too long
+  EXPECT_NE(person.messages.back().find("nearly on one line"), std::string::npos) << person.messages.back();
+  // An edge that is 40 mm too long.
   for (const Vec3& place : kTouched) person.device(place);
   for (int k = 0; k < 3; ++k) person.controller(room_of(kTouched[k]) + (k == 1 ? 0.04 * rotate(kTurn, Vec3(-1, 0, 0)) : Vec3(0.0)));
   EXPECT_TRUE(person.error);
-  EXPECT_NE(person.said.back().find("the places do not fit"), std::string::npos) << person.said.back();
+  EXPECT_NE(person.messages.back().find("the points do not fit"), std::string::npos) << person.messages.back();
   EXPECT_FALSE(person.touches.registration());
   for (const Vec3& place : kTouched) person.device(place);
   for (const Vec3& place : kTouched) person.controller(room_of(place));
   EXPECT_TRUE(person.touches.registration());
 }
 
-}  // namespace touches_test
+}  // namespace touch_registration_test

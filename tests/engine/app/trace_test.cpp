@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena trace` from the outside: patterns, tolerances and the .vtp file.
+/// `catena trace`: seed patterns, tolerances and the .vtp file.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,7 +35,7 @@ class TraceLines : public ::testing::Test {
   test::TemporaryFolder folder_;
 };
 
-/// The offset-th appended array of doubles by name.
+/// The appended array of doubles with this name.
 std::vector<double> doubles_of(const std::string& file, const std::string& name) {
   const std::size_t at = file.find("Name=\"" + name + "\""), offset_at = file.find("offset=\"", at) + 8;
   const std::size_t start = file.find("<AppendedData encoding=\"raw\">\n_") + 31 + std::stoul(file.substr(offset_at, 20));
@@ -46,7 +46,7 @@ std::vector<double> doubles_of(const std::string& file, const std::string& name)
   return values;
 }
 
-TEST_F(TraceLines, PolyDataHoldsTheNumbersOfTheTable) {
+TEST_F(TraceLines, PolyDataEqualsTheTable) {
   ASSERT_EQ(trace({"--seeds", folder_ / "seeds.csv", "-o", folder_ / "l.vtp"}).exit_code, 0);
   ASSERT_EQ(trace({"--seeds", folder_ / "seeds.csv", "-o", folder_ / "l.csv"}).exit_code, 0);
   const std::string file = read_file(folder_ / "l.vtp"), table = read_file(folder_ / "l.csv");
@@ -76,7 +76,7 @@ TEST_F(TraceLines, PolyDataHoldsTheNumbersOfTheTable) {
   EXPECT_TRUE(file.ends_with("</AppendedData>\n</VTKFile>\n"));
 }
 
-TEST_F(TraceLines, PatternsComeAsTextOrAsAFile) {
+TEST_F(TraceLines, PatternsAreGivenAsTextOrFile) {
   const std::string pattern = R"({"line": {"from": [0.25, 0, 0], "to": [1.5, 0, 0], "count": 5}})";
   const ProgramResult text = trace({"--seeds", pattern, "-o", folder_ / "a.csv"});
   ASSERT_EQ(text.exit_code, 0) << text.err;
@@ -91,7 +91,7 @@ TEST_F(TraceLines, PatternsComeAsTextOrAsAFile) {
   EXPECT_NE(read_file(folder_ / "c.json").find("\"lines\": 7"), std::string::npos);
 }
 
-TEST_F(TraceLines, AToleranceGivesFewerKnotsOnTheSameLine) {
+TEST_F(TraceLines, ALargerToleranceGivesFewerPoints) {
   ASSERT_EQ(trace({"--seeds", folder_ / "seeds.csv", "-o", folder_ / "exact.csv"}).exit_code, 0);
   ASSERT_EQ(trace({"--seeds", folder_ / "seeds.csv", "-o", folder_ / "loose.vtp", "--tolerance", "1e-7"}).exit_code, 0);
   const auto points = doubles_of(read_file(folder_ / "loose.vtp"), "Points");
@@ -102,7 +102,7 @@ TEST_F(TraceLines, AToleranceGivesFewerKnotsOnTheSameLine) {
   }
 }
 
-TEST_F(TraceLines, MistakesAreOneLine) {
+TEST_F(TraceLines, ErrorsAreOneLine) {
   const auto refused = [&](const std::vector<std::string>& more, const std::string& words) {
     const ProgramResult result = trace(more);
     EXPECT_EQ(result.exit_code, 2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A tracked head before a screen: what is shown of one that follows, leaps and is lost, and the window's picture beside render's.
+// A tracked head in front of a screen: smoothing of a head that moves, jumps or is lost, and the window's image against that of render.
 #include "engine/app/viewer/input/tracked_head.h"
 
 #include <gtest/gtest.h>
@@ -19,19 +19,19 @@
 namespace catena::app {
 namespace tracked_head_test {
 
-const scene::DisplayScreen kDesk{"desk", {-2, -2, -1.5}, {2, -2, -1.5}, {-2, -2, 1.5}};  // 5 across; a head is at y < -2
+const scene::DisplayScreen kDesk{"desk", {-2, -2, -1.5}, {2, -2, -1.5}, {-2, -2, 1.5}};  // diagonal 5; heads are at y < -2
 constexpr double kDt = 1.0 / 60;
 
-TEST(SmoothedHead, FollowsToTheBitAndGlidesAfterALeap) {
+TEST(SmoothedHead, FollowsExactlyAndGlidesAfterAJump) {
   SmoothedHead head(kDesk);
   EXPECT_FALSE(head.update(0, std::nullopt));
-  EXPECT_EQ(head.update(kDt, Vec3(0, -8, 0)), Vec3(0, -8, 0));  // there at once
+  EXPECT_EQ(head.update(kDt, Vec3(0, -8, 0)), Vec3(0, -8, 0));  // no transition
   double t = kDt;
   for (int k = 1; k < 20; ++k) EXPECT_EQ(head.update(t += kDt, Vec3(0.1 * k, -8, 0.01 * k)), Vec3(0.1 * k, -8, 0.01 * k));
-  // 4 units within a picture
+  // A jump of 4 units within a frame.
   const Vec3 from(1.9, -8, 0.19), to(-2.1, -8, 0.19);
   Vec3 last = from;
-  const double leapt = t + kDt;
+  const double jump_s = t + kDt;
   int steps = 0;
   while (last != to && steps++ < 100) {
     const Vec3 now = *head.update(t += kDt, to);
@@ -39,15 +39,15 @@ TEST(SmoothedHead, FollowsToTheBitAndGlidesAfterALeap) {
     EXPECT_LT(norm(now - last), 0.4) << "no step of the glide is a leap";
     last = now;
   }
-  EXPECT_NEAR(t - leapt, SmoothedHead::kGlideS, 1.5 * kDt);
-  // half way in the middle of it
+  EXPECT_NEAR(t - jump_s, SmoothedHead::kGlideS, 1.5 * kDt);
+  // In the middle of the transition, the head is halfway.
   SmoothedHead other(kDesk);
   other.update(10, from);
   other.update(10.001, to);
   EXPECT_NEAR(other.update(10.001 + 0.15, to)->x, -0.1, 1e-9);
 }
 
-TEST(SmoothedHead, StaysWhileItIsLost) {
+TEST(SmoothedHead, StaysWhileTheHeadIsLost) {
   SmoothedHead head(kDesk);
   double t = 0;
   head.update(t, Vec3(1, -6, 0));
@@ -56,7 +56,7 @@ TEST(SmoothedHead, StaysWhileItIsLost) {
     EXPECT_EQ(head.update(t += kDt, lost), Vec3(1, -6, 0));
     EXPECT_TRUE(head.is_lost());
   }
-  // found again close by: no jump, and it arrives
+  // A head that is found nearby moves there without a jump.
   EXPECT_LT(norm(*head.update(t += kDt, Vec3(1.1, -6, 0)) - Vec3(1, -6, 0)), 1e-12);
   EXPECT_FALSE(head.is_lost());
   EXPECT_EQ(head.update(t += 0.4, Vec3(1.1, -6, 0)), Vec3(1.1, -6, 0));
@@ -90,9 +90,9 @@ class HeadTrackedWindow : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(HeadTrackedWindow, ShowsWhatRenderShows) {
+TEST_F(HeadTrackedWindow, ShowsTheImageOfRender) {
   test::write_file(folder_ / "s.json", scene());
-  // to the right of the middle and nearer; it rests there
+  // The head moves to the right and nearer, and rests.
   test::write_file(folder_ / "head.csv", "t,x,y,z\n10,0,-8,2\n10.1,0.8,-7.5,1.5\n10.2,1.6,-6,0.5\n");
   ASSERT_EQ(view("--head " + (folder_ / "head.csv") + " --seconds 1.5 --screenshot " + (folder_ / "w.png")), 0) << log();
   const auto run = test::run_catena({"render", folder_ / "s.json", "-o", folder_ / "r_%d.png", "--size", "160x120", "--screen", "desk",
@@ -111,8 +111,8 @@ TEST_F(HeadTrackedWindow, ShowsWhatRenderShows) {
   EXPECT_GT(differing(*first), 2000);
 }
 
-/// Metres of the desk, by the workspace: 0.1 m to the right and 0.6 m before the screen's middle.
-TEST_F(HeadTrackedWindow, ADeviceIsAHead) {
+/// A device position in metres, mapped by the workspace: 0.1 m to the right, 0.05 m above and 0.6 m in front of the screen's center.
+TEST_F(HeadTrackedWindow, ADevicesPositionIsTheHeads) {
   const std::string workspace = R"("workspace": {"metres_per_unit": 0.1, "origin": [0, -2, 0], "rotation": [[1,0,0],[0,0,-1],[0,1,0]]},
     "device": {"type": "simulated", "friction": 0},)";
   test::write_file(folder_ / "s.json", scene(workspace));
@@ -134,17 +134,17 @@ TEST_F(HeadTrackedWindow, ADeviceIsAHead) {
   EXPECT_LT(norm(*at - Vec3(1, -8, 0.5)), 1e-3);
 }
 
-TEST_F(HeadTrackedWindow, WhatCannotBeFollowedIsSaid) {
+TEST_F(HeadTrackedWindow, InvalidHeadsAreOneErrorLine) {
   test::write_file(folder_ / "s.json", scene());
   test::write_file(folder_ / "behind.csv", "t,x,y,z\n0,0,3,0\n");
   test::write_file(folder_ / "nan.csv", "t,x,y,z\n0,0,-8,nan\n");
   const auto refused = [&](const std::string& head, const std::string& words) {
     EXPECT_EQ(view("--frames 2 --head " + head), 2) << head;
     EXPECT_NE(log().find(words), std::string::npos) << log();
-    const std::string said = log();
-    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+    const std::string output = log();
+    EXPECT_EQ(std::count(output.begin(), output.end(), '\n'), 1) << output;
   };
-  refused(folder_ / "behind.csv", "its first place: screen \"desk\": ");
+  refused(folder_ / "behind.csv", "first position: screen \"desk\": ");
   refused(folder_ / "nan.csv", "nan.csv:2: \"nan\" in column \"z\"");
   refused(folder_ / "none.csv", "none.csv");
   refused("simulated", "the scene's \"workspace\" was expected");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// `catena tradeoff SCENE`: what it measures with (the floor, the front, the choice, times in turns), its report written and read, and
-/// the command from the outside.
+/// `catena tradeoff SCENE`: the discretization error, the Pareto front, the choice of a setting, interleaved timing, the report, and
+/// the command.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ using namespace catena;
 using namespace catena::app::tuning;
 using test::Table;
 
-/// Root mean square of grid - formula on a lattice that falls together with no voxels.
+/// The root mean square of grid - formula on a lattice that coincides with no voxels.
 template <class Grid, class Formula, class Off>
 double true_error(const Grid& grid, const Formula& formula, const Off& off) {
   field::Cursor a, b;
@@ -42,7 +42,7 @@ double true_error(const Grid& grid, const Formula& formula, const Off& off) {
   return std::sqrt(sum / count);
 }
 
-TEST(TradeoffDiscretizationError, IsWithinTwiceTheTruthOnScalarFormulas) {
+TEST(TradeoffDiscretizationError, IsWithinAFactorOfTwoForScalarFormulas) {
   for (const char* name : {"gaussian", "torus", "tanh", "sphere"}) {
     const auto formula = field::make_analytic(name);
     ASSERT_TRUE(formula);
@@ -58,7 +58,7 @@ TEST(TradeoffDiscretizationError, IsWithinTwiceTheTruthOnScalarFormulas) {
   }
 }
 
-TEST(TradeoffDiscretizationError, IsWithinTwiceTheTruthOnVectorFormulas) {
+TEST(TradeoffDiscretizationError, IsWithinAFactorOfTwoForVectorFormulas) {
   for (const char* name : {"lamb-oseen", "abc"}) {
     const auto formula = field::make_analytic(name);
     ASSERT_TRUE(formula);
@@ -73,8 +73,8 @@ TEST(TradeoffDiscretizationError, IsWithinTwiceTheTruthOnVectorFormulas) {
   }
 }
 
-/// What a line is off the formula's line, from the grid alone: differences of lines rather than errors of samples.
-TEST(TradeoffDiscretizationError, OfAStreamlineIsWithinTwiceTheTruth) {
+/// The distance of a streamline from that of the formula, estimated from the grid alone by differences of streamlines.
+TEST(TradeoffDiscretizationError, IsWithinAFactorOfTwoForAStreamline) {
   const auto formula = field::make_analytic("abc");
   ASSERT_TRUE(formula);
   const auto grid = field::sample_on_grid(*formula->vector, 65, -2, 2);
@@ -85,9 +85,9 @@ TEST(TradeoffDiscretizationError, OfAStreamlineIsWithinTwiceTheTruth) {
     const auto line = flow::trace({&field, false, 0}, seed, {.length = 1}), truth = flow::trace({&from, false, 0}, seed, {.length = 1.1});
     EXPECT_TRUE(line && truth);
     const flow::NearestOnCurve nearest(*truth);
-    double most = 0;
-    for (double s = -1; s <= 1; s += 0.01) most = std::max(most, nearest.find((*line)->position(s)).distance2);
-    return std::sqrt(most);
+    double max_distance2 = 0;
+    for (double s = -1; s <= 1; s += 0.01) max_distance2 = std::max(max_distance2, nearest.find((*line)->position(s)).distance2);
+    return std::sqrt(max_distance2);
   };
   const double truth = far(*levels->grids[0], *formula->vector);
   const ExtrapolatedError e =
@@ -105,22 +105,22 @@ Point made(double error, double time, double spread = 0.01) {
   return p;
 }
 
-TEST(TradeoffDiscretizationError, SaysWhereDifferencesDoNotSettle) {
+TEST(TradeoffDiscretizationError, ReportsDifferencesThatDoNotConverge) {
   const ExtrapolatedError e = extrapolate_from_differences(3, 3.5);
   EXPECT_FALSE(e.is_converged);
-  EXPECT_DOUBLE_EQ(e.error, 1);  // at order 2: the least
+  EXPECT_DOUBLE_EQ(e.error, 1);  // with order 2, a lower bound
   EXPECT_DOUBLE_EQ(extrapolate_from_differences(3, 15).error, 1);
   EXPECT_DOUBLE_EQ(extrapolate_from_errors(4, 16).error, 1);
-  EXPECT_EQ(describe_order(e).rfind("at least 1: a third of the difference made by every 2nd voxel", 0), 0u) << describe_order(e);
+  EXPECT_EQ(describe_order(e).rfind("at least 1: a third of the difference with every 2nd voxel", 0), 0u) << describe_order(e);
   Curve curve;
   curve.points = {made(8, 1), made(2, 5), made(0.9, 10), made(0.1, 20)};
   curve.discretization_error = 1;
   curve.discretization_error_name += ", at least";
   choose_setting(curve);
-  EXPECT_NE(curve.choice_reason.find("is not above the data's own error, at least 1:"), std::string::npos) << curve.choice_reason;
+  EXPECT_NE(curve.choice_reason.find("is not above the discretization error, at least 1;"), std::string::npos) << curve.choice_reason;
 }
 
-TEST(TradeoffDiscretizationError, CoarserGridsHaveTheSameDomainAndTheirOwnVoxels) {
+TEST(TradeoffDiscretizationError, CoarserGridsHaveTheSameDomain) {
   const auto formula = field::make_analytic("linear");
   ASSERT_TRUE(formula);
   const auto grid = field::sample_on_grid(*formula->scalar, 20, -2, 2);
@@ -135,51 +135,52 @@ TEST(TradeoffDiscretizationError, CoarserGridsHaveTheSameDomainAndTheirOwnVoxels
   EXPECT_FALSE(make_resolution_levels(*field::sample_on_grid(*formula->scalar, 8, -2, 2)));
 }
 
-TEST(TradeoffParetoChoice, FrontHoldsWhatNothingBeats) {
+TEST(TradeoffParetoChoice, TheFrontHasTheNonDominatedPoints) {
   const std::vector<Point> points{made(1, 10), made(5, 2), made(5, 3), made(7, 4), made(0.5, 30), made(kNotMeasured, 0.1), made(1, 11)};
   EXPECT_EQ(pareto_front(points, CostKind::time), (std::vector<int>{1, 0, 4}));
   EXPECT_TRUE(pareto_front({}, CostKind::time).empty());
 }
 
-TEST(TradeoffParetoChoice, TakesTheCheapestThatReachesTheFloor) {
+TEST(TradeoffParetoChoice, TakesTheCheapestBelowTheDiscretizationError) {
   Curve curve;
   curve.points = {made(8, 1), made(2, 5), made(0.9, 10), made(0.1, 20)};
   curve.discretization_error = 1;
   choose_setting(curve);
   EXPECT_EQ(curve.chosen, 2);
-  curve.reference_error = 3;  // what the reference cannot tell is no reason
+  curve.reference_error = 3;  // errors below the reference's error do not count
   choose_setting(curve);
   EXPECT_EQ(curve.chosen, 1);
-  EXPECT_NE(curve.choice_reason.find("the reference can tell"), std::string::npos) << curve.choice_reason;
+  EXPECT_NE(curve.choice_reason.find("the error of the reference"), std::string::npos) << curve.choice_reason;
   curve.discretization_error = 0.01, curve.reference_error = kNotMeasured;
   choose_setting(curve);
-  EXPECT_NE(curve.choice_reason.find("None reaches"), std::string::npos) << curve.choice_reason;
+  EXPECT_NE(curve.choice_reason.find("No setting reaches"), std::string::npos) << curve.choice_reason;
 }
 
-TEST(TradeoffParetoChoice, ErrorsBelowTheReferencesAreOne) {
+TEST(TradeoffParetoChoice, ErrorsBelowTheReferencesAreEqual) {
   Curve curve;
   curve.points = {made(100, 1), made(0.5, 1.5), made(0.2, 100)};
   curve.reference_error = 1;
   choose_setting(curve);
   EXPECT_EQ(curve.chosen, 1);
   EXPECT_EQ(curve.front, (std::vector<int>{0, 1})) << "what costs more shows nothing";
-  EXPECT_NE(curve.choice_reason.find("not above what the reference can tell, 1:"), std::string::npos) << curve.choice_reason;
-  // of a knee beside them no ratio is said that cannot be told
+  EXPECT_NE(curve.choice_reason.find("not above the error of the reference, 1;"), std::string::npos) << curve.choice_reason;
+  // Ratios of errors below the reference's error are not reported.
   curve.points = {made(100, 1), made(2, 1.5), made(0.01, 100)};
   choose_setting(curve);
   EXPECT_EQ(curve.chosen, 1);
-  EXPECT_NE(curve.choice_reason.find("has 2 times less error. Errors below 1 cannot be told."), std::string::npos) << curve.choice_reason;
-  // all below: none is better than what the scene has
+  EXPECT_NE(curve.choice_reason.find("has 2 times less error. Errors below 1 cannot be resolved."), std::string::npos)
+      << curve.choice_reason;
+  // With all errors below the reference's, the scene's setting is kept.
   curve.points = {made(0.1, 2), made(0.9, 2), made(0.4, 2)};
   curve.current = 1;
   choose_setting(curve);
   EXPECT_EQ(curve.chosen, 1);
   EXPECT_TRUE(curve.is_flat);
-  EXPECT_NE(curve.choice_reason.find("No setting errs by more than what the reference can tell, 1"), std::string::npos)
+  EXPECT_NE(curve.choice_reason.find("No setting has a larger error than the error of the reference, 1"), std::string::npos)
       << curve.choice_reason;
 }
 
-TEST(TradeoffParetoChoice, OfBytesTheFewestAreNotCalledCheap) {
+TEST(TradeoffParetoChoice, TheReasonForBytesDoesNotSayCheap) {
   Curve curve;
   curve.cost = CostKind::bytes;
   curve.points = {made(8, 1), made(0.9, 1), made(0.1, 1)};
@@ -191,15 +192,15 @@ TEST(TradeoffParetoChoice, OfBytesTheFewestAreNotCalledCheap) {
   EXPECT_EQ(curve.choice_reason.find("cheap"), std::string::npos) << curve.choice_reason;
 }
 
-TEST(TradeoffParetoChoice, NumbersAreAsKeysHaveThem) {
+TEST(TradeoffParetoChoice, ReasonsHaveNumbersInTheFormatOfScenes) {
   Curve curve;
   curve.points = {made(1.5e-6, 1)};
   choose_setting(curve);
   EXPECT_NE(curve.choice_reason.find(" 1.5e-6."), std::string::npos) << curve.choice_reason;
 }
 
-/// What the reader of scenes refuses beside a setting is to be taken out.
-TEST(TradeoffAdvice, NamesTheKeysThatItReplaces) {
+/// The advice names keys that must be removed because a scene cannot have them together with the setting.
+TEST(TradeoffAdvice, NamesTheKeysToReplace) {
   const auto advice = [](const std::string& text, const std::string& words) -> std::string {
     auto node = json::parse(text, "s.json");
     EXPECT_TRUE(node);
@@ -217,7 +218,7 @@ TEST(TradeoffAdvice, NamesTheKeysThatItReplaces) {
   EXPECT_EQ(advice(R"({"tolerance": 2e-6})", "rkf34, tolerance 2e-6"), "\"method\": \"rkf34\", \"tolerance\": 2e-6");
 }
 
-TEST(TradeoffParetoChoice, NoiseDoesNotDecide) {
+TEST(TradeoffParetoChoice, EqualTimesWithinNoiseAreDecidedByWork) {
   Curve curve;
   curve.points = {made(0.5, 10, 2), made(0.4, 9.5, 2), made(0.3, 10.5, 2)};
   for (std::size_t i = 0; i < 3; ++i) curve.points[i].work = i == 2 ? 7 : 8;
@@ -226,15 +227,15 @@ TEST(TradeoffParetoChoice, NoiseDoesNotDecide) {
   EXPECT_EQ(curve.chosen, 2);
 }
 
-TEST(TradeoffParetoChoice, TakesTheKneeOrWhatTheSceneHas) {
+TEST(TradeoffParetoChoice, TakesTheKneeOrTheScenesSetting) {
   Curve curve;
   curve.points = {made(100, 1), made(1, 1.5), made(0.5, 100)};
   choose_setting(curve);
   EXPECT_EQ(curve.chosen, 1);
-  // both neighbours are what makes it one
+  // The reason compares the knee with both neighbors.
   EXPECT_NE(curve.choice_reason.find("costs 1.5 times less and has 1e+02 times the error"), std::string::npos) << curve.choice_reason;
   EXPECT_NE(curve.choice_reason.find("costs 67 times as much and has 2 times less error"), std::string::npos) << curve.choice_reason;
-  curve.points = {made(8, 1), made(4, 2), made(2, 4), made(1, 8)};  // a straight line has none
+  curve.points = {made(8, 1), made(4, 2), made(2, 4), made(1, 8)};  // a straight line has no knee
   curve.current = 2;
   choose_setting(curve);
   EXPECT_EQ(curve.chosen, 2);
@@ -245,7 +246,7 @@ TEST(TradeoffParetoChoice, TakesTheKneeOrWhatTheSceneHas) {
   EXPECT_NE(curve.choice_reason.find("No setting changes"), std::string::npos);
 }
 
-TEST(TradeoffTiming, ARunThatIsLateRepeatsLess) {
+TEST(TradeoffTiming, ALateRunHasFewerRepeats) {
   const Effort& whole = select_effort("quick");
   EXPECT_EQ(reduce_if_late(whole, 0, 0).rendering_s, whole.rendering_s);
   EXPECT_EQ(reduce_if_late(whole, 0.4 * whole.total_s, 0.5).rendering_s, whole.rendering_s) << "early";
@@ -255,12 +256,12 @@ TEST(TradeoffTiming, ARunThatIsLateRepeatsLess) {
   EXPECT_LT(reduce_if_late(whole, 9 * whole.total_s, 0.9).rendering_s, 0.1 * whole.rendering_s);
 }
 
-TEST(TradeoffTiming, RunsSettingsInTurns) {
+TEST(TradeoffTiming, InterleavesTheSettings) {
   std::string order;
   const auto times = time_interleaved(
       {[&]() -> Result<double> { return order += 'a', 1.0; }, [&]() -> Result<double> { return order += 'b', 2.0; }}, 1000, 3);
   ASSERT_TRUE(times);
-  EXPECT_EQ(order, "abbaabba");  // the first round warms up
+  EXPECT_EQ(order, "abbaabba");  // the first round is a warm-up
   EXPECT_EQ((*times)[1].median, 2);
   EXPECT_EQ((*times)[0].repeats, 3);
   const Timing t = compute_timing({5, 1, 4, 2, 3});
@@ -270,7 +271,7 @@ TEST(TradeoffTiming, RunsSettingsInTurns) {
   EXPECT_FALSE(time_interleaved({[]() -> Result<double> { return Error{"no"}; }}, 0, 3));
 }
 
-TEST(TradeoffTiming, WhatAPictureNeedsAnewDoesNotCount) {
+TEST(TradeoffTiming, ChangedResourcesNeedAWarmUp) {
   render::FramePacket packet;
   packet.width = 64, packet.height = 48;
   const auto after = [&](const render::RenderSettings& before, const render::RenderSettings& now) {
@@ -291,7 +292,7 @@ TEST(TradeoffTiming, WhatAPictureNeedsAnewDoesNotCount) {
   EXPECT_TRUE(after(exact, exact));
 }
 
-TEST(TradeoffReport, ReadsBackWhatItWrote) {
+TEST(TradeoffReport, ReadsBackAsWritten) {
   Report report;
   report.source = "a \"scene\".json";
   report.metadata = {{"processor", "x<y>"}};
@@ -319,13 +320,13 @@ TEST(TradeoffReport, ReadsBackWhatItWrote) {
   const std::string page = to_html(*back, &*back, {{}});
   EXPECT_NE(page.find("Q &amp; A"), std::string::npos);
   EXPECT_NE(page.find("<td><code>a&lt;b</code> in place of <code>c</code></td>"), std::string::npos);
-  EXPECT_NE(page.find("the other's time"), std::string::npos);
+  EXPECT_NE(page.find("time of the other report"), std::string::npos);
   EXPECT_NE(page.find("gnuplot is not installed"), std::string::npos);
-  EXPECT_EQ(page.find("http"), std::string::npos);  // opens without a network
-  // words that stand on the page are explained there, others are not
+  EXPECT_EQ(page.find("http"), std::string::npos);  // the page needs no network
+  // Only terms that the page uses are explained.
   EXPECT_NE(page.find("<dt>front</dt>"), std::string::npos);
   EXPECT_EQ(page.find("<dt>flicker</dt>"), std::string::npos);
-  // gnuplot gets no quote of ours as its own
+  // Quotes in texts do not end gnuplot's strings.
   EXPECT_EQ(plot_script(curve, nullptr, "p").files, std::vector<std::string>{"p0.svg"});
 }
 
@@ -335,7 +336,7 @@ constexpr const char* kScene = R"({"fields": {"flow": {"analytic": "helix"}, "ba
   "volumes": [{"field": "ball", "color": [[0, 1, 0, 0], [2, 0, 0, 1]], "extinction": [[0, 0.5], [2, 0]]}],
   "workspace": {"metres_per_unit": 0.05}})";
 
-TEST(TradeoffScene, IsMeasuredAndComparedFromTheOutside) {
+TEST(TradeoffScene, IsMeasuredAndCompared) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", kScene);
   const auto run = test::run_catena({"tradeoff", folder / "s.json", "-o", folder / "out", "--effort", "quick", "--only",
@@ -356,19 +357,19 @@ TEST(TradeoffScene, IsMeasuredAndComparedFromTheOutside) {
   EXPECT_EQ(Table::read(folder / "out/hand-chain.csv").rows(), 2u);
   EXPECT_NE(test::read_file(folder / "out/report.html").find("(chosen)"), std::string::npos);
 
-  // the page again, beside itself; nothing is measured
+  // A report compared with itself is written without a measurement.
   const std::string report = folder / "out/tradeoff.json";
   const auto again = test::run_catena({"tradeoff", report, "-o", folder / "again", "--compare", report});
   ASSERT_EQ(again.exit_code, 0) << again.err;
   EXPECT_EQ(test::read_file(folder / "again/tradeoff.json"), test::read_file(report));
-  EXPECT_NE(test::read_file(folder / "again/report.html").find("the other's time"), std::string::npos);
+  EXPECT_NE(test::read_file(folder / "again/report.html").find("time of the other report"), std::string::npos);
   const std::string before = test::read_file(report);
   const auto onto = test::run_catena({"tradeoff", report, "-o", folder / "out"});
   EXPECT_EQ(onto.exit_code, 2) << onto.out;
   EXPECT_EQ(test::read_file(report), before);
 }
 
-TEST(TradeoffScene, OneServoRateIsChosenAndSomethingIsMeasured) {
+TEST(TradeoffScene, OneServoRateIsChosen) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", kScene);
   const auto run = test::run_catena({"tradeoff", folder / "s.json", "-o", folder / "out", "--effort", "quick", "--only", "servo rate"});
@@ -381,7 +382,7 @@ TEST(TradeoffScene, OneServoRateIsChosenAndSomethingIsMeasured) {
   }
   EXPECT_NE(chosen[0], "");
   EXPECT_EQ(chosen[0], chosen[1]);
-  // where one sentence says that no rate stands out, the other asks for none
+  // If no rate stands out, the report does not require one.
   const bool even = run.out.find("no setting stands out") != std::string::npos;
   EXPECT_FALSE(even && run.out.find("the force needs") != std::string::npos) << run.out;
   const std::string page = test::read_file(folder / "out/report.html");
@@ -393,7 +394,7 @@ TEST(TradeoffScene, OneServoRateIsChosenAndSomethingIsMeasured) {
   EXPECT_FALSE(test::exists(folder / "none"));
 }
 
-TEST(TradeoffScene, QualityIsLeftOutWhereNothingIsSampledAlongRays) {
+TEST(TradeoffScene, QualityIsOmittedWithoutSamplingAlongRays) {
   const test::TemporaryFolder folder;
   for (const char* opacity : {"1", "0.5"}) {
     test::write_file(folder / "s.json", std::string(R"({"fields": {"ball": {"analytic": "sphere", "resolution": 24}},
@@ -402,16 +403,16 @@ TEST(TradeoffScene, QualityIsLeftOutWhereNothingIsSampledAlongRays) {
     const auto run = test::run_catena(
         {"tradeoff", folder / "s.json", "-o", folder / "out", "--effort", "quick", "--only", "interpolation,quality,step"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
-    if (run.out.find("left out: The eye:") != std::string::npos) GTEST_SKIP() << run.out;
+    if (run.out.find("not measured: Rendering:") != std::string::npos) GTEST_SKIP() << run.out;
     for (const char* name : {"Quality", "Step"})
-      EXPECT_NE(run.out.find(std::string(name) + ": nothing in the picture is sampled along rays: --quality makes no difference."),
+      EXPECT_NE(run.out.find(std::string(name) + ": nothing in the image is sampled along rays, so that --quality has no effect."),
                 std::string::npos)
           << opacity << run.out;
   }
 }
 
-/// A finer cell is no reason where the picture would lose its fast rays.
-TEST(TradeoffScene, CubicCellsSayWhatTheyDoToAVolume) {
+/// Cubic interpolation is not recommended where a volume would lose its fast rays.
+TEST(TradeoffScene, CubicInterpolationIsNotRecommendedForAVolume) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(test::run_catena({"generate", "gaussian", "-o", folder / "g.vdb", "--resolution", "24"}).exit_code, 0);
   for (const bool volume : {false, true}) {
@@ -425,13 +426,13 @@ TEST(TradeoffScene, CubicCellsSayWhatTheyDoToAVolume) {
   }
 }
 
-TEST(TradeoffScene, PicturesAreMeasuredOfABareFile) {
+TEST(TradeoffScene, ImagesOfADataFileAreMeasured) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(test::run_catena({"generate", "gaussian", "-o", folder / "g.vdb", "--resolution", "24"}).exit_code, 0);
   const auto run = test::run_catena({"tradeoff", folder / "g.vdb", "-o", folder / "out", "--effort", "quick", "--only", "memory budget"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("left out: The hand:"), std::string::npos) << run.out;
-  if (run.out.find("left out: The eye:") != std::string::npos) GTEST_SKIP() << run.out;
+  EXPECT_NE(run.out.find("not measured: Haptics:"), std::string::npos) << run.out;
+  if (run.out.find("not measured: Rendering:") != std::string::npos) GTEST_SKIP() << run.out;
   const Table budget = Table::read(folder / "out/eye-budget.csv");
   EXPECT_LT(budget.number(0, "error"), 3);
 }
@@ -447,7 +448,7 @@ TEST(TradeoffScene, BadInputIsOneLineAndNothingIsWritten) {
     for (int k = 0; k < times; ++k) report.curves.push_back(curve), report.curves.back().id = k > 0 ? id + std::to_string(k) : id;
     return to_json(report);
   };
-  test::write_file(folder / "away.json", report_of("../../away", "eye"));  // a table outside of the folder
+  test::write_file(folder / "away.json", report_of("../../away", "eye"));  // a table outside the folder
   test::write_file(folder / "nose.json", report_of("x", "nose"));
   test::write_file(folder / "many.json", report_of("x", "eye", 3000));
   test::write_file(folder / "worse.json", R"({"catena_tradeoff": 1, "source": "s", "left_out": [], "curves": [{"id": 4}]})");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena tradeoff --figure N` from the outside: the figures of the paper and the manners of the command.
+/// `catena tradeoff --figure N`: the figures of the paper, and the command's outputs and errors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ test::ProgramResult tradeoff(const std::vector<std::string>& arguments) {
 
 bool has_gnuplot() { return std::system("command -v gnuplot >/dev/null 2>&1") == 0; }
 
-/// The plot of a name: a PNG where gnuplot is there.
+/// Expects a plot as PNG if gnuplot is installed.
 void expect_plot(const std::string& path) {
   if (!has_gnuplot()) return;
   const std::string bytes = test::read_file(path);
@@ -60,9 +60,9 @@ TEST(Tradeoff, Figure2MeasuresTheDriftOfEveryMethod) {
   EXPECT_LE(lap["rk3"][1.0], 2e-4);
   for (const char* precise : {"rk4", "rkf34", "dp54"}) EXPECT_LE(lap[precise][1.0], 1e-8);
   for (const double speed : {0.05, 0.2, 1.0}) EXPECT_LE(lap["selected"][speed], 5e-8);
-  EXPECT_GT(lap["rk2"][1.0], 50 * lap["rk2"][0.2]);  // third order in the step, a lap
+  EXPECT_GT(lap["rk2"][1.0], 50 * lap["rk2"][0.2]);  // third order in the step for a lap
 
-  // the curve that is traced holds for five laps what it holds for one; the linear proxy spirals out
+  // The proxy on the traced curve does not drift in five laps; the linear proxy spirals outwards.
   for (std::size_t row = 0; row < drift.rows(); ++row) {
     if (drift.text(row, "method") != "selected") continue;
     EXPECT_NEAR(drift.number(row, "drift_mm_after_5_laps"), drift.number(row, "drift_mm_first_lap"), 1e-12);
@@ -81,13 +81,13 @@ TEST(Tradeoff, Figure2MeasuresTheDriftOfEveryMethod) {
   for (const char* name : {"/figure2-drift.png", "/figure2-path.png", "/figure2-tremor.png"}) expect_plot(out + name);
 }
 
-TEST(Tradeoff, Figure3MeasuresWhereTheSurfaceLetsGo) {
+TEST(Tradeoff, Figure3MeasuresTheDepthOfRelease) {
   const test::TemporaryFolder folder;
   const auto run = tradeoff({"--figure", "3", "-o", folder / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const Table table = Table::read(folder / "out/figure3-release.csv");
   ASSERT_EQ(table.rows(), 2u * 18 * 5);
-  double most_off = 0, least_off = 1;
+  double max_off_curve = 0, min_off_curve = 1;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const std::string method = table.text(row, "method"), scene = table.text(row, "scene");
     const double angle = table.number(row, "angle_deg"), depth = table.number(row, "release_depth");
@@ -96,7 +96,7 @@ TEST(Tradeoff, Figure3MeasuresWhereTheSurfaceLetsGo) {
     const bool flat = scene == "flat";
     EXPECT_LE(table.number(row, "evaluations_max"), 2 * 257) << where;
     if (method == "chain") {
-      EXPECT_NEAR(depth, 0.05, 2e-4 + 1e-9) << where;  // a tick's travel
+      EXPECT_NEAR(depth, 0.05, 2e-4 + 1e-9) << where;  // the probe's motion in a tick
       EXPECT_LE(off_curve, flat ? 2e-16 : 4e-11) << where;
       EXPECT_LE(table.number(row, "off_surface_while_held"), flat ? 2e-16 : 4e-12) << where;
     } else if (method == "pipe") {
@@ -104,11 +104,11 @@ TEST(Tradeoff, Figure3MeasuresWhereTheSurfaceLetsGo) {
       EXPECT_LE(off_curve, 4e-11) << where;
       EXPECT_LE(table.number(row, "off_surface_while_held"), 4e-11) << where;
     } else if (method == "balance" && flat) {
-      most_off = std::max(most_off, at_depth);
-      if (angle <= 75) least_off = std::min(least_off, at_depth);
-      EXPECT_NEAR(depth, 0.1, 2e-3) << where;  // half of the depth is the springs'
+      max_off_curve = std::max(max_off_curve, at_depth);
+      if (angle <= 75) min_off_curve = std::min(min_off_curve, at_depth);
+      EXPECT_NEAR(depth, 0.1, 2e-3) << where;  // the springs take half of the depth
     } else if (method == "closest") {
-      EXPECT_EQ(table.number(row, "released"), 0) << where;  // the curve is always the nearest
+      EXPECT_EQ(table.number(row, "released"), 0) << where;  // the curve is always the closest constraint
       EXPECT_EQ(table.number(row, "force_while_held_n"), 0) << where;
     } else if (method == "linear") {
       EXPECT_NEAR(depth, 0.05 * std::sin(angle * M_PI / 180), 3e-4) << where;
@@ -117,8 +117,8 @@ TEST(Tradeoff, Figure3MeasuresWhereTheSurfaceLetsGo) {
       }
     }
   }
-  EXPECT_NEAR(most_off, 0.025, 0.003);
-  EXPECT_NEAR(least_off, 0.006, 0.001);
+  EXPECT_NEAR(max_off_curve, 0.025, 0.003);
+  EXPECT_NEAR(min_off_curve, 0.006, 0.001);
 
   const Table series = Table::read(folder / "out/figure3-series.csv");
   EXPECT_GT(series.rows(), 1000u);
@@ -128,7 +128,7 @@ TEST(Tradeoff, Figure3MeasuresWhereTheSurfaceLetsGo) {
     expect_plot(folder / "out/figure3-" + std::string(name) + ".png");
 }
 
-TEST(Tradeoff, FigureStiffnessMeasuresTheLargestSpring) {
+TEST(Tradeoff, FigureStiffnessMeasuresTheMaximumStiffness) {
   const test::TemporaryFolder folder;
   const auto run = tradeoff({"--figure", "stiffness", "-o", folder / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -138,7 +138,7 @@ TEST(Tradeoff, FigureStiffnessMeasuresTheLargestSpring) {
     const double b = damping.number(row, "device_damping_ns_per_m"), rate = damping.number(row, "rate_hz");
     const double late = damping.number(row, "delay_ms"), passive = damping.number(row, "passive_n_per_m");
     EXPECT_NEAR(passive, 2 * b / (1 / rate + 2e-3 * late), 1e-9 * passive);
-    // stable wherever it is passive, and for a mass alone not much beyond
+    // Stable for passive stiffnesses, and not much beyond the passive limit for a mass without damping.
     const double stable = damping.number(row, "stable_n_per_m") / passive;
     EXPECT_GT(stable, 0.99) << row;
     EXPECT_LT(stable, 1.1) << row;
@@ -184,7 +184,7 @@ TEST(Tradeoff, WrongArgumentsAreOneLine) {
   EXPECT_EQ(test::read_file(folder / "file"), "x");
 }
 
-/// Where no programs are but those of a folder.
+/// Runs the command with PATH set to one folder.
 test::ProgramResult tradeoff_among(const std::string& programs, const std::vector<std::string>& arguments) {
   const char* path = std::getenv("PATH");
   const std::string before = path ? path : "";
@@ -203,16 +203,16 @@ TEST(Tradeoff, WithoutGnuplotTheTablesAreComplete) {
   EXPECT_TRUE(test::exists(folder / "out/figure3.gp"));
 }
 
-TEST(Tradeoff, LeavesNothingHalfWritten) {
+TEST(Tradeoff, LeavesNoPartialOutput) {
   const test::TemporaryFolder folder;
-  fs::create_directories(folder / "out/figure3.gp");  // in the way of a file
+  fs::create_directories(folder / "out/figure3.gp");  // blocks a file
   const auto run = tradeoff({"--figure", "3", "-o", folder / "out"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_NE(run.err.find("figure3.gp"), std::string::npos) << run.err;
   EXPECT_EQ(files_in(folder / "out"), 1);
 }
 
-TEST(Tradeoff, WhatAKilledOneLeftIsRemovedByTheNext) {
+TEST(Tradeoff, RemainsOfAKilledRunAreRemovedByTheNext) {
   const test::TemporaryFolder folder, programs;
   test::write_file(programs / "gnuplot", "#!/bin/sh\nkill -9 $PPID\n");
   fs::permissions(programs / "gnuplot", fs::perms::owner_all);
@@ -224,7 +224,7 @@ TEST(Tradeoff, WhatAKilledOneLeftIsRemovedByTheNext) {
   EXPECT_EQ(files_in(out), 3) << "two tables and the script";
 }
 
-TEST(Tradeoff, TheSameTwice) {
+TEST(Tradeoff, RepeatedRunsAreEqual) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(tradeoff({"--figure", "3", "-o", folder / "a"}).exit_code, 0);
   ASSERT_EQ(tradeoff({"--figure", "3", "-o", folder / "b"}).exit_code, 0);

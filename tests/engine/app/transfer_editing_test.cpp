@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a hand does to the points of a transfer function, without a window.
+// Edits of the points of a transfer function, without a window.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace transfer_edit_test {
+namespace transfer_editing_test {
 
 constexpr PlotTransform kFrame{10, 0, 210, 100, 0, 1};
 
@@ -22,7 +22,7 @@ bool rises(const OpacityPoints& points) {
   return true;
 }
 
-TEST(PlotFrame, PlacesAndValuesAreEachOthersInverse) {
+TEST(PlotFrame, PositionsAndValuesAreInverse) {
   for (const double value : {0.0, 0.25, 0.9, 1.0}) EXPECT_NEAR(kFrame.value_at(kFrame.to_x(value)), value, 1e-14);
   for (const double alpha : {0.0, 0.01, 0.5, 1.0}) EXPECT_NEAR(kFrame.alpha_at(kFrame.to_y(alpha)), alpha, 1e-14);
   EXPECT_EQ(kFrame.value_at(-1e9), 0);
@@ -31,7 +31,7 @@ TEST(PlotFrame, PlacesAndValuesAreEachOthersInverse) {
   EXPECT_EQ(kFrame.alpha_at(-1e9), 1);
 }
 
-TEST(PlotFrame, AnyRangeBecomesOneThatCanBePlotted) {
+TEST(PlotFrame, AnyRangeBecomesAPlottableRange) {
   const double nan = std::nan(""), inf = HUGE_VAL;
   for (const auto& [lo, hi] : std::vector<std::pair<double, double>>{{nan, nan},
                                                                      {nan, 3},
@@ -54,7 +54,7 @@ TEST(PlotFrame, AnyRangeBecomesOneThatCanBePlotted) {
   EXPECT_EQ(make_plot_range(-1, 2), (std::array<double, 2>{-1, 2}));
 }
 
-TEST(PlotFrame, RoundedNumbersAreShortAndNear) {
+TEST(PlotFrame, RoundedNumbersAreShortAndClose) {
   EXPECT_EQ(scene::to_json(round_within(0.4234375000001, 0, 1)), "0.4234");
   EXPECT_EQ(scene::to_json(round_within(223.4567, -1000, 3000)), "223");
   EXPECT_EQ(scene::to_json(round_within(1.23456789e-7, 0, 1e-6)), "1.235e-07");
@@ -62,7 +62,7 @@ TEST(PlotFrame, RoundedNumbersAreShortAndNear) {
   EXPECT_EQ(round_within(1e300, 0, 1e-300), 1e300);
 }
 
-TEST(PlotFrame, PlacesLieOnItsScale) {
+TEST(PlotFrame, PositionsFollowTheLogarithmicScale) {
   const PlotTransform frame{10, 0, 210, 100, 0.01, 100, 0.01};
   EXPECT_NEAR(frame.to_x(1), 110, 1e-9);
   EXPECT_NEAR(frame.value_at(60), 0.1, 1e-12);
@@ -76,7 +76,7 @@ TEST(PlotFrame, PlacesLieOnItsScale) {
             (std::vector<float>{0, 1, std::log1p(1.0f) / std::log1p(2.0f), std::log1p(1.0f) / std::log1p(2.0f)}));
 }
 
-TEST(TransferEdits, AMappingIsStatedWithAllThatTheVolumeShows) {
+TEST(TransferEdits, AMappingIsSetWhereTheVolumesValuesAllowIt) {
   scene::Volume volume;
   volume.where.label = "volumes[0]";
   volume.transfer.colors = {{1, {0, 0, 0}}, {100, {1, 1, 1}}};
@@ -95,7 +95,7 @@ TEST(TransferEdits, AMappingIsStatedWithAllThatTheVolumeShows) {
   EXPECT_TRUE(make_mapping_edits(volume, *make_transfer_edit(volume, 1), {scene::ValueMapping::Kind::log, 0}).empty());
 }
 
-TEST(TransferPoints, TheNearestHandleWithinReachIsFound) {
+TEST(TransferPoints, TheNearestHandleWithinTheRadiusIsFound) {
   const OpacityPoints points{{0, 0}, {0.5, 0.25}, {0.52, 0.25}, {1, 0.5}};
   EXPECT_EQ(find_point(points, kFrame, kFrame.to_x(0.5) - 2, kFrame.to_y(0.25), 8), 1u);
   EXPECT_EQ(find_point(points, kFrame, kFrame.to_x(0.52) + 2, kFrame.to_y(0.25), 8), 2u);
@@ -123,7 +123,7 @@ TEST(TransferPoints, APointStaysBetweenItsNeighboursAndWithinThePlot) {
   EXPECT_TRUE(rises(points));
 }
 
-TEST(TransferPoints, AHundredPointsCanBeAddedAtOnePlaceAndStillRise) {
+TEST(TransferPoints, AHundredPointsAddedAtOneValueStayIncreasing) {
   OpacityPoints points{{0, 0}, {1, 0.5}};
   int refused = 0;
   for (int i = 0; i < 100; ++i)
@@ -138,7 +138,7 @@ TEST(TransferPoints, AHundredPointsCanBeAddedAtOnePlaceAndStillRise) {
   EXPECT_EQ(points.size(), 1u);
 }
 
-TEST(TransferPoints, WithoutRoomNothingIsAddedAndNothingMoves) {
+TEST(TransferPoints, WithoutRoomNoPointIsAddedOrMoved) {
   const double next = std::nextafter(0.5, 1.0);
   OpacityPoints points{{0.5, 0}, {next, 0.5}};
   EXPECT_FALSE(add_point(points, kFrame, next, 0.1));
@@ -150,7 +150,7 @@ TEST(TransferPoints, WithoutRoomNothingIsAddedAndNothingMoves) {
   EXPECT_TRUE(rises(points));
 }
 
-TEST(TransferPoints, PointsBeyondThePlotAreNotLost) {
+TEST(TransferPoints, PointsOutsideThePlotAreKept) {
   OpacityPoints points{{-5, 0.1}, {5, 0.2}};
   ASSERT_EQ(add_point(points, kFrame, 0.5, 0.3), 1u);
   move_point(points, kFrame, 1, 3, 0.3);
@@ -162,7 +162,7 @@ TEST(TransferPoints, PointsBeyondThePlotAreNotLost) {
   EXPECT_TRUE(rises(points));
 }
 
-TEST(TransferPoints, BetweenThePointsSigmaIsLinear) {
+TEST(TransferPoints, ExtinctionIsLinearBetweenPoints) {
   const OpacityPoints points{{0, 0.1}, {1, 0.9}};
   const double half = 1 - std::exp(0.5 * (std::log(0.9) + std::log(0.1)));
   EXPECT_NEAR(evaluate_alpha(points, 0.5), half, 1e-12);
@@ -173,14 +173,14 @@ TEST(TransferPoints, BetweenThePointsSigmaIsLinear) {
   EXPECT_FLOAT_EQ(evaluate_color({{0, {0, 0, 1}}}, 0.5).b, 1);
 }
 
-TEST(TransferPoints, ANewColourIsTheOneThatWasShown) {
+TEST(TransferPoints, ANewColourPointHasTheInterpolatedColour) {
   ColorPoints points{{0, {0, 0, 1}}, {1, {1, 0, 0}}};
   ASSERT_EQ(add_point(points, kFrame, 0.25), 1u);
   EXPECT_FLOAT_EQ(points[1].color.r, 0.25f);
   EXPECT_FLOAT_EQ(points[1].color.b, 0.75f);
 }
 
-TEST(TransferPoints, AllMoveOverAnotherRangeOrNone) {
+TEST(TransferPoints, FittingToARangeMovesAllPointsOrNone) {
   ColorPoints colors{{0, {}}, {2, {}}};
   OpacityPoints opacities{{1, 0.1}, {4, 0.2}};
   ASSERT_TRUE(fit_to_range(colors, opacities, 10, 12));
@@ -192,7 +192,7 @@ TEST(TransferPoints, AllMoveOverAnotherRangeOrNone) {
   EXPECT_EQ(colors[1].value, 11);
 }
 
-TEST(Pointers, AreThoseOfTheItemsOfLists) {
+TEST(Pointers, AreJsonPointersOfListItems) {
   const auto root = json::parse("{\"volumes\": [{\"a\": [[1, \"x\\\"y\"], null, true]}, 5]}", "s.json");
   ASSERT_TRUE(root);
   EXPECT_EQ(item_pointer(root->find("volumes")->items[1]), "/volumes/1");
@@ -202,7 +202,7 @@ TEST(Pointers, AreThoseOfTheItemsOfLists) {
   EXPECT_EQ(json::serialize_node(*root), "{\"volumes\": [{\"a\": [[1, \"x\\\"y\"], null, true]}, 5]}");
 }
 
-/// A document of one volume over a small ball, as drawn.
+/// A document with one volume of a small sphere, resolved as for rendering.
 class EditedVolume : public testing::Test {
  protected:
   void open(const std::string& keys, const std::string& transfer_file = {}) {
@@ -233,7 +233,7 @@ class EditedVolume : public testing::Test {
     ASSERT_TRUE(done) << done.error().message;
     read();
   }
-  /// What a ray meets at a value.
+  /// The extinction at a value.
   double sigma_at(double value) const {
     const auto& t = volume_.transfer;
     OpacityPoints points = t.opacities;
@@ -263,13 +263,13 @@ class EditedVolume : public testing::Test {
   double edge_ = 0;
 };
 
-TEST_F(EditedVolume, OutOfTheHistogramLooksTheSameAsStatedPoints) {
+TEST_F(EditedVolume, AutomaticOpacitiesBecomeEqualStatedPoints) {
   open("");
   const auto before = sigmas();
   const ColorPoints colors = edit_.colors;
-  double most = 0;
-  for (const auto& p : edit_.opacities) most = std::max(most, p.alpha);
-  EXPECT_NEAR(most, 0.6, 0.02);
+  double max_alpha = 0;
+  for (const auto& p : edit_.opacities) max_alpha = std::max(max_alpha, p.alpha);
+  EXPECT_NEAR(max_alpha, 0.6, 0.02);
   apply(make_opacity_edits(volume_, edit_));
   EXPECT_TRUE(volume_.transfer.extinctions.empty());
   EXPECT_EQ(volume_.transfer.opacities.size(), edit_.opacities.size());
@@ -279,11 +279,11 @@ TEST_F(EditedVolume, OutOfTheHistogramLooksTheSameAsStatedPoints) {
     EXPECT_EQ(volume_.transfer.colors[i].color.g, colors[i].color.g);
   }
   expect_same(before);
-  // from now on only the key that changes
+  // A second edit changes one key only.
   EXPECT_EQ(make_opacity_edits(volume_, edit_).size(), 1u);
 }
 
-TEST_F(EditedVolume, OutOfAFileLooksTheSameAndKeepsTheGradientsFactors) {
+TEST_F(EditedVolume, AnEditedFileKeepsItsOpacitiesAndGradientFactors) {
   open(
       ", \"transfer\": \"t.json\", \"range\": [0.5, 3] // mine\n",
       R"({"color": [[0, 1, 0, 0], [1, 0, 0.1, 0.3]], "opacity": [[0, 0.02], [0.5, 0.9999999], [1, 0.3]], "gradient_opacity": [[0, 0.1], [2, 1]]})");
@@ -298,7 +298,7 @@ TEST_F(EditedVolume, OutOfAFileLooksTheSameAndKeepsTheGradientsFactors) {
   EXPECT_NE(document_->text().find("// mine"), std::string::npos);
 }
 
-TEST_F(EditedVolume, StatedExtinctionsBecomeOpacities) {
+TEST_F(EditedVolume, StatedExtinctionsBecomeEqualOpacities) {
   open(", \"extinction\": [[0, 0], [1, 250], [2, 4]], \"color\": \"viridis\"");
   const auto before = sigmas();
   apply(make_opacity_edits(volume_, edit_));
@@ -306,7 +306,7 @@ TEST_F(EditedVolume, StatedExtinctionsBecomeOpacities) {
   EXPECT_EQ(volume_.transfer.named.map, "viridis") << "the colours keep their name";
 }
 
-TEST_F(EditedVolume, PointsGoToTheTextAndBackExactly) {
+TEST_F(EditedVolume, PointsAreWrittenAndReadBackExactly) {
   open(", \"color\": [[0, 0, 0, 0], [3, 1, 1, 1]], \"opacity\": [[0, 0], [3, 0.5]]");
   for (int i = 0; i < 100; ++i) {
     edit_.opacities.insert(edit_.opacities.end() - 1, {0.01 * i + 0.0123456789, std::fabs(std::sin(i)) * 0.99});
@@ -327,7 +327,7 @@ TEST_F(EditedVolume, PointsGoToTheTextAndBackExactly) {
   EXPECT_EQ(document_->text().find("opacity_unit"), std::string::npos);
 }
 
-TEST_F(EditedVolume, AMapByItsNameTakesTheRangeOfTheColoursThatWereThere) {
+TEST_F(EditedVolume, ANamedMapTakesTheRangeOfThePreviousColours) {
   open(", \"color\": [[0.5, 0, 0, 0], [2.5, 1, 1, 1]], \"opacity\": [[0, 0], [3, 0.5]], \"opacity_unit\": 0.5");
   apply(make_color_map_edits(volume_, edit_, "cividis_r"));
   EXPECT_EQ(edit_.color_map, "cividis_r");
@@ -338,7 +338,7 @@ TEST_F(EditedVolume, AMapByItsNameTakesTheRangeOfTheColoursThatWereThere) {
   apply(make_range_edits(volume_, edit_, 0, 6));
   EXPECT_EQ(edit_.opacities.back().value, 6);
   EXPECT_EQ(*volume_.transfer.named.range, (std::array<double, 2>{1, 5}));
-  // and back to points
+  // The map is converted to points.
   const ColorPoints shown = edit_.colors;
   apply(make_color_edits(volume_, edit_));
   EXPECT_TRUE(edit_.color_map.empty());
@@ -362,5 +362,5 @@ TEST_F(EditedVolume, AConstantFieldHasOnePointAndCanBeEdited) {
   EXPECT_EQ(edit_.opacities.size(), 2u);
 }
 
-}  // namespace transfer_edit_test
+}  // namespace transfer_editing_test
 }  // namespace catena::app

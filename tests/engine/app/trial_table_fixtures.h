@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A study of two tasks with findings of all kinds, and tables of trials that are made with a known difference or with none.
+/// A study of two tasks with findings of all kinds, and generated tables of trials with a known difference or none.
 #pragma once
 #include <cmath>
 #include <random>
@@ -54,17 +54,17 @@ inline const StudyFixture& study_fixture() {
   return m;
 }
 
-/// What a table is made with: of the errors of `trace`, in units of the standard deviation of the differences of means.
+/// The simulated effects on the error of `trace`, in units of the standard deviation of the differences of means.
 struct EffectSpec {
   double effect = 0;  ///< d_z of free - held
-  double haste = 0;   ///< correlation of error and time over subjects, negative where haste costs; of `free` alone
+  double haste = 0;   ///< dependence of the error on a subject's time in `free`; negative if haste costs accuracy
   int subjects = 20, trials = 10;
 };
 
 inline std::vector<TrialRow> make_trial_table(std::mt19937_64& random, const EffectSpec& planted) {
   std::normal_distribution<double> normal;
   constexpr double spread = 1, noise = 1;
-  // the differences of means over `trials` have this deviation
+  // The standard deviation of the differences of means over `trials`.
   const double deviation = std::sqrt(spread * spread + 2 * noise * noise / planted.trials);
   std::vector<TrialRow> rows;
   for (int subject = 1; subject <= planted.subjects; ++subject) {

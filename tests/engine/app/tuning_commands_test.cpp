@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Plans from the outside: the commands.
+/// Tuning in the commands.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
-namespace plan_program_test {
+namespace tuning_commands_test {
 
 using namespace catena;
 
@@ -19,7 +19,7 @@ constexpr const char* kScene = R"({"fields": {"flow": {"analytic": "helix"}},
   "chain": [{"name": "curve", "type": "streamline", "field": "flow", "seed": [0.6, 0, -1.2]%s}],
   "workspace": {"metres_per_unit": 0.05}%s})";
 
-/// The program with a cache of its own.
+/// The program with a separate cache folder.
 class TuningCommand : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -60,31 +60,31 @@ class TuningCommand : public ::testing::Test {
   std::string before_;
 };
 
-TEST_F(TuningCommand, MeasuresOnceAndSaysWhatIsExpectedAndObserved) {
+TEST_F(TuningCommand, MeasuresOnceAndReportsExpectedAndObservedErrors) {
   scene("", R"(, "coupling": {"max_proxy_error": 1e-6})");
   const auto first = replay({});
   ASSERT_EQ(first.exit_code, 0) << first.err;
   EXPECT_NE(first.out.find("max_proxy_error 1e-06: curve "), std::string::npos) << first.out;
   EXPECT_LT(first.out.find("expected: error"), first.out.find("observed: error")) << first.out;
-  const std::string kept = test::read_file(only_file());
-  // another wish goes by the same curves; so does the page of tradeoff
+  const std::string cached = test::read_file(only_file());
+  // Another target uses the same cached curves, and the cache is a readable tradeoff report.
   const auto second = replay({"--max-proxy-error", "1e-2"});
   ASSERT_EQ(second.exit_code, 0) << second.err;
-  EXPECT_EQ(test::read_file(only_file()), kept);
+  EXPECT_EQ(test::read_file(only_file()), cached);
   EXPECT_TRUE(app::tuning::is_report(only_file()));
-  // damage costs a sentence
-  test::write_file(only_file(), kept.substr(0, 1000));
+  // A damaged cache is reported and measured again.
+  test::write_file(only_file(), cached.substr(0, 1000));
   const auto third = replay({});
   ASSERT_EQ(third.exit_code, 0) << third.err;
-  EXPECT_NE(third.out.find("it is damaged; it is not believed, and measured anew"), std::string::npos) << third.out;
+  EXPECT_NE(third.out.find("the file is damaged; the file is ignored, and the costs are measured anew"), std::string::npos) << third.out;
   EXPECT_TRUE(app::tuning::read_report(only_file()));
 }
 
-TEST_F(TuningCommand, LeavesWhatTheSceneStates) {
+TEST_F(TuningCommand, KeepsSettingsOfTheScene) {
   scene(R"(, "method": "rk4")");
   const auto pinned = replay({"--max-proxy-error", "1"});
   ASSERT_EQ(pinned.exit_code, 0) << pinned.err;
-  EXPECT_NE(pinned.out.find("no streamline link leaves its settings open"), std::string::npos) << pinned.out;
+  EXPECT_NE(pinned.out.find("all streamline links state their settings"), std::string::npos) << pinned.out;
   scene(R"(, "method": "dp54")");
   const auto half = replay({"--max-proxy-error", "1e-5"});
   ASSERT_EQ(half.exit_code, 0) << half.err;
@@ -96,34 +96,34 @@ TEST_F(TuningCommand, LeavesWhatTheSceneStates) {
   EXPECT_EQ(tolerance.out.find("1e-07"), std::string::npos) << tolerance.out;
 }
 
-TEST_F(TuningCommand, ARecordingRepeatsToTheBitWhateverTheCacheSays) {
+TEST_F(TuningCommand, ARecordingReplaysBitExactlyWithAnyCache) {
   const std::string path = scene("", R"(, "coupling": {"max_proxy_error": 1e-2})");
   const std::string log = folder_ / "r.catlog";
-  const auto felt = test::run_catena({"feel", path, "--device", "simulated", "--seconds", "0.3", "--realtime", "off", "--record", log});
-  ASSERT_EQ(felt.exit_code, 0) << felt.err;
-  EXPECT_NE(felt.out.find("max_proxy_error 0.01: curve "), std::string::npos) << felt.out;
-  EXPECT_NE(felt.out.find("observed: error"), std::string::npos) << felt.out;
+  const auto recorded = test::run_catena({"feel", path, "--device", "simulated", "--seconds", "0.3", "--realtime", "off", "--record", log});
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+  EXPECT_NE(recorded.out.find("max_proxy_error 0.01: curve "), std::string::npos) << recorded.out;
+  EXPECT_NE(recorded.out.find("observed: error"), std::string::npos) << recorded.out;
   const auto repeats = [&](const std::vector<std::string>& words) {
     const auto run = test::run_catena(words);
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_NE(run.out.find("all equal to the bit"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("all bit-identical"), std::string::npos) << run.out;
   };
-  // a cache that lies: every setting is exact, and what was quick is slow
-  std::string lies = test::read_file(only_file());
-  for (std::size_t at = 0; (at = lies.find("\"error\": ", at)) != std::string::npos; at += 9)
-    if (const auto end = lies.find_first_of(",}", at); lies[at + 9] != 'n') lies.replace(at + 9, end - at - 9, "1e-15");
-  for (std::size_t at = 0; (at = lies.find("\"median\": ", at)) != std::string::npos; at += 10) lies.insert(at + 10, "9");
-  test::write_file(only_file(), lies);
+  // A falsified cache: every setting is exact, and all times are changed.
+  std::string falsified = test::read_file(only_file());
+  for (std::size_t at = 0; (at = falsified.find("\"error\": ", at)) != std::string::npos; at += 9)
+    if (const auto end = falsified.find_first_of(",}", at); falsified[at + 9] != 'n') falsified.replace(at + 9, end - at - 9, "1e-15");
+  for (std::size_t at = 0; (at = falsified.find("\"median\": ", at)) != std::string::npos; at += 10) falsified.insert(at + 10, "9");
+  test::write_file(only_file(), falsified);
   ASSERT_TRUE(app::tuning::read_report(only_file()));
   repeats({"replay", "--log", log});
   repeats({"replay", path, "--log", log});
   std::filesystem::remove_all(folder_ / "cache");
   repeats({"replay", "--log", log});
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "cache"));  // nothing is measured
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "cache"));  // a replay measures nothing
   EXPECT_EQ(test::run_catena({"replay", "--log", log, "--max-proxy-error", "1"}).exit_code, 2);
 }
 
-TEST_F(TuningCommand, ASampledFieldBecomesCubicWhereThatIsNearerToTheTruth) {
+TEST_F(TuningCommand, ASampledFieldBecomesCubicWhereThatReducesTheError) {
   ASSERT_EQ(test::run_catena({"generate", "lamb-oseen", "--resolution", "25", "-o", folder_ / "g.vdb"}).exit_code, 0);
   const auto scene_with = [&](const char* name, const std::string& field) {
     test::write_file(folder_ / name, R"({"fields": {"flow": )" + field + R"(}, "workspace": {"metres_per_unit": 0.05},
@@ -145,15 +145,15 @@ TEST_F(TuningCommand, ASampledFieldBecomesCubicWhereThatIsNearerToTheTruth) {
   EXPECT_EQ(stated.find("cubic"), std::string::npos) << stated;
   EXPECT_NE(planned.find("field flow cubic"), std::string::npos) << planned;
   EXPECT_LT(norm(cubic - truth), 0.2 * norm(linear - truth));
-  // before the first tick, and in the recording
+  // The interpolation is chosen before the first tick and is part of the recording.
   const std::string log = folder_ / "r.catlog";
-  const auto felt = test::run_catena({"feel", open, "--device", "simulated", "--seconds", "0.2", "--realtime", "off", "--record", log});
-  ASSERT_EQ(felt.exit_code, 0) << felt.err;
+  const auto recorded = test::run_catena({"feel", open, "--device", "simulated", "--seconds", "0.2", "--realtime", "off", "--record", log});
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
   std::filesystem::remove_all(folder_ / "cache");
   for (const auto& words : {std::vector<std::string>{"replay", "--log", log}, {"replay", open, "--log", log}}) {
     const auto again = test::run_catena(words);
     EXPECT_EQ(again.exit_code, 0) << again.err;
-    EXPECT_NE(again.out.find("all equal to the bit"), std::string::npos) << again.out;
+    EXPECT_NE(again.out.find("all bit-identical"), std::string::npos) << again.out;
   }
 }
 
@@ -174,7 +174,7 @@ TEST_F(TuningCommand, BadTargetsAreOneLine) {
     scene("", std::string(", \"coupling\": ") + coupling);
     refused({"--field", "flow=none"});
   }
-  EXPECT_EQ(test::run_catena({"render", path, "-o", folder_ / "x.png", "--max-tick-us", "5"}).exit_code, 2);  // nothing is felt
+  EXPECT_EQ(test::run_catena({"render", path, "-o", folder_ / "x.png", "--max-tick-us", "5"}).exit_code, 2);  // no haptics in render
 }
 
-}  // namespace plan_program_test
+}  // namespace tuning_commands_test

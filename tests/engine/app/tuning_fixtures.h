@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Curves with known answers, and plans of them.
+/// Curves of error over time with known choices.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "engine/app/tuning/choose/tick_tuning.h"
 #include "render/quality/refinement.h"
 
-namespace plan_test {
+namespace tuning_test {
 
 using namespace catena;
 using namespace catena::app::tuning;
@@ -36,7 +36,7 @@ inline ImageCurve image_curve() {
   return made_curve;
 }
 
-/// The targets of a scene with this quality, or with this key of "coupling": "max_tick_us=5".
+/// The targets of a scene with this quality, or with this key of "coupling", as in "max_tick_us=5".
 inline scene::TuningTargets parse_target(const std::string& words) {
   const std::string key = words.substr(0, words.find('='));
   const auto scene = scene::parse_scene(key.starts_with("max") ? "{\"coupling\": {\"" + key + "\": " + words.substr(key.size() + 1) + "}}"
@@ -62,4 +62,4 @@ inline TickCurves two_link_curves() {
           100};
 }
 
-}  // namespace plan_test
+}  // namespace tuning_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Files of strangers, from the outside: what reaches the terminal, and how much memory they take.
+/// Untrusted files: escape sequences in terminal output, and memory use.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -11,13 +11,13 @@
 #include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
-namespace hostile_file_test {
+namespace untrusted_file_test {
 
 using namespace catena;
 
 const std::string kRaw = "{\"file\": \"a.raw\", \"shape\": [192, 192, 192], \"type\": \"float32\"}";
 
-/// 28 MB of numbers, no two blocks alike.
+/// Writes 28 MB of numbers without repeated blocks.
 void write_raw(const std::string& path) {
   std::string bytes;
   std::vector<float> layer(192 * 192);
@@ -29,7 +29,7 @@ void write_raw(const std::string& path) {
   test::write_file(path, bytes);
 }
 
-/// The most memory that the program or one of its helpers had at a time, in bytes.
+/// The maximum resident memory of the program or one of its helpers, in bytes.
 std::uint64_t peak_of(const std::vector<std::string>& arguments, const std::string& output, int exit_code = 0) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -48,7 +48,7 @@ std::uint64_t peak_of(const std::vector<std::string>& arguments, const std::stri
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-TEST(HostileFile, EscapesInNamesReachNoTerminal) {
+TEST(UntrustedFile, EscapeSequencesInGridNamesAreNotPrinted) {
   const test::TemporaryFolder folder;
   const std::string name = "den\033[31msity\033]0;title\007\xc2\x9b";
   const auto generated = test::run_catena({"generate", "sphere", "-o", folder / "a.vdb", "--resolution", "8"});
@@ -66,8 +66,7 @@ TEST(HostileFile, EscapesInNamesReachNoTerminal) {
   }
 }
 
-// before: raw escapes on standard output
-TEST(HostileFile, EscapesInNamesOfFilesReachNoTerminal) {
+TEST(UntrustedFile, EscapeSequencesInFileNamesAreNotPrinted) {
   const test::TemporaryFolder folder;
   const std::string evil = folder / "a\033[31mPWN\033[0m";
   test::write_file(folder / "s.json", R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
@@ -88,8 +87,8 @@ TEST(HostileFile, EscapesInNamesOfFilesReachNoTerminal) {
   }
 }
 
-// before: a bug was said, and the program aborted
-TEST(HostileFile, AMagnitudeBeyondAllFloatsIsOneSentence) {
+// A magnitude beyond the range of floats must be an error, not a failed assertion.
+TEST(UntrustedFile, AMagnitudeBeyondFloatsIsOneErrorLine) {
   const test::TemporaryFolder folder;
   const auto made =
       test::run_catena({"generate", "circle", "-o", folder / "c.vdb", "--resolution", "4", "--scale", "1.6e38", "--box", "2", "2.1"});
@@ -102,7 +101,7 @@ TEST(HostileFile, AMagnitudeBeyondAllFloatsIsOneSentence) {
   EXPECT_NE(run.err.find("s.json:2: the magnitude of \"f\" has no finite value"), std::string::npos) << run.err;
 }
 
-TEST(HostileFile, TheMemoryLimitIsKeptByEveryCommand) {
+TEST(UntrustedFile, RenderAndInfoRespectTheMemoryLimit) {
   const test::TemporaryFolder folder;
   write_raw(folder / "a.raw");
   const std::string drawn =
@@ -120,22 +119,22 @@ TEST(HostileFile, TheMemoryLimitIsKeptByEveryCommand) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-/// 4.1 times the file's size before files were read layer by layer.
-TEST(HostileFile, ARawFileTakesItsSizeInMemory) {
+/// A file is read layer by layer, so that memory use is about the size of the field.
+TEST(UntrustedFile, ARawFileTakesItsSizeInMemoryOnce) {
   const test::TemporaryFolder folder;
   write_raw(folder / "a.raw");
   test::write_file(folder / "raw.json", "{\"fields\": {\"a\": " + kRaw + "}}");
   test::write_file(folder / "none.json", "{\"fields\": {}}");
   const std::uint64_t size = std::uint64_t{4} * 192 * 192 * 192, output = peak_of({"info", folder / "none.json"}, folder / "log");
   EXPECT_LT(peak_of({"info", folder / "raw.json"}, folder / "log"), size * 3 / 2 + output);
-  // import: the program, and the one that writes
-  constexpr std::uint64_t kOpenVdb = 40 << 20;  // what its code takes
+  // The import has the program and the helper that writes.
+  constexpr std::uint64_t kOpenVdb = 40 << 20;  // the memory of the library itself
   EXPECT_LT(peak_of({"import", folder / "a.raw", "-o", folder / "o.vdb", "--shape", "192", "192", "192"}, folder / "log"),
             size * 3 / 2 + kOpenVdb);
 }
 
-/// Each took many times its size before, whatever was allowed.
-TEST(HostileFile, ScenesMeshesAndTablesKeepTheMemoryLimit) {
+/// Memory use is limited even where parsed data take many times the file's size.
+TEST(UntrustedFile, ScenesMeshesAndTablesRespectTheMemoryLimit) {
   const test::TemporaryFolder folder;
   std::string json = "{\"x\": [", csv = "t,x,y,z\n", stl(84, ' ');
   for (int i = 0; i < 1000000; ++i) json += "[],";
@@ -161,14 +160,14 @@ TEST(HostileFile, ScenesMeshesAndTablesKeepTheMemoryLimit) {
     std::vector<std::string> limited = arguments;
     limited.insert(limited.end(), {"--memory", "20"});
     EXPECT_LT(peak_of(limited, folder / "log", 2), nothing + 30 * kMb) << arguments[1];
-    const std::string said = test::read_file(folder / "log");
-    EXPECT_NE(said.find("MB of memory, expected at most 20 MB (--memory MB allows more)\n"), std::string::npos) << said;
-    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+    const std::string output_text = test::read_file(folder / "log");
+    EXPECT_NE(output_text.find("MB of memory, expected at most 20 MB (--memory MB allows more)\n"), std::string::npos) << output_text;
+    EXPECT_EQ(std::count(output_text.begin(), output_text.end(), '\n'), 1) << output_text;
   }
   EXPECT_EQ(test::run_catena({"info", folder / "s.json", "--memory", "1"}).exit_code, 0);
-  // an estimate that is honest: what it says is enough, and what is taken is not much less
+  // The estimated memory is sufficient.
   EXPECT_LT(peak_of({"info", folder / "m.stl", "--memory", "220"}, folder / "log"), nothing + 220 * kMb);
 }
 #endif
 
-}  // namespace hostile_file_test
+}  // namespace untrusted_file_test

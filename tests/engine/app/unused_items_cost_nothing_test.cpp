@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a scene has and does not use costs nothing: bytes loaded and mirrored, pipelines, images, copies to the device, grids made and
-// fetches of the tick are those of the scene without it, and so is the picture.
+// Unused items of a scene cost nothing: bytes loaded and mirrored, pipelines, images, copies to the device, created grids and
+// fetches of the tick equal those of the scene without the items, and so does the image.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,9 +16,9 @@
 #include "tests/support/vulkan.h"
 
 namespace catena::app {
-namespace unused_parts_test {
+namespace unused_items_cost_nothing_test {
 
-/// Impl of a scene: members of its lists, each with a comma behind it, and whole members.
+/// Parts of a scene's text: members of its lists, each followed by a comma, and top-level members.
 struct Parts {
   std::string fields{}, volumes{}, isosurfaces{}, slices{}, streamlines{}, glyphs{}, chain{}, widgets{}, members{};
 };
@@ -43,7 +43,7 @@ std::string scene_text(const Parts& p) {
   "camera": {"position": [6, -6, 4], "target": [0, 0, 0]} })";
 }
 
-/// All that is counted of a scene: opened, drawn and felt.
+/// The work that is counted when a scene is opened, drawn and felt.
 struct Work {
   std::uint64_t files = 0, masks = 0, grids_made = 0, bytes = 0, curves = 0;
   std::uint64_t gpu_bytes = 0, uploads = 0, upload_bytes = 0, pipelines = 0, allocations = 0, mirrors = 0;
@@ -53,7 +53,7 @@ struct Work {
   std::vector<std::uint8_t> picture;
 };
 
-/// Every field that is made, by whom ever, takes the next number.
+/// The version of a newly created field; versions are consecutive.
 std::uint64_t next_version() { return field::make_analytic("constant")->get()->version(); }
 
 class UnusedItems : public testing::Test {
@@ -98,7 +98,7 @@ class UnusedItems : public testing::Test {
     work.picture = std::move(picture->rgba);
   }
 
-  /// A hand that goes along a line for 200 ticks.
+  /// Moves a probe along a line for 200 ticks.
   static void feel(const haptics::HapticProgram& program, Work& work) {
     work.links = program.links.size();
     auto state = std::make_unique<haptics::ChainState>();
@@ -136,7 +136,7 @@ class UnusedItems : public testing::Test {
     EXPECT_EQ(with.picture, without.picture);
   }
 
-  /// 16^3 numbers in a file: read, they would be counted.
+  /// The JSON of a field in a file of 16^3 numbers, which is counted when read.
   std::string numbers() {
     test::write_file(folder_ / "n.raw", std::string(std::size_t{4} * 16 * 16 * 16, '\x3f'));
     return R"({"file": "n.raw", "shape": [16, 16, 16]})";
@@ -144,7 +144,7 @@ class UnusedItems : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(UnusedItems, TheScenesOwnPartsAreCounted) {
+TEST_F(UnusedItems, UsedItemsAreCounted) {
   Work work;
   ASSERT_NO_FATAL_FAILURE(measure(scene_text({}), work));
   EXPECT_GT(work.bytes, std::uint64_t{4} * 16 * 16 * 16);
@@ -153,7 +153,7 @@ TEST_F(UnusedItems, TheScenesOwnPartsAreCounted) {
   EXPECT_GT(work.fetches, 0);
   EXPECT_EQ(work.links, 1u) << "no widgets: none of their links";
   EXPECT_EQ(std::count(work.passes.begin(), work.passes.end(), "widgets"), 0);
-  // the counters see what is used
+  // The counters rise for used items.
   Work more;
   Parts used{.fields = "\"file\": " + numbers() + ", ", .slices = R"({"field": "file", "axis": "z", "at": 3}, )"};
   ASSERT_NO_FATAL_FAILURE(measure(scene_text(used), more));
@@ -163,7 +163,7 @@ TEST_F(UnusedItems, TheScenesOwnPartsAreCounted) {
   EXPECT_GT(more.mirrors, work.mirrors);
 }
 
-TEST_F(UnusedItems, AFieldThatNothingNamesAndADeviceAddNothing) {
+TEST_F(UnusedItems, UnreferencedFieldsAndDevicesAddNothing) {
   Work with, without;
   ASSERT_NO_FATAL_FAILURE(measure(scene_text({}), without));
   const Parts unused{.fields = "\"file\": " + numbers() + R"(, "formula": {"analytic": "torus", "resolution": 64}, )",
@@ -172,7 +172,7 @@ TEST_F(UnusedItems, AFieldThatNothingNamesAndADeviceAddNothing) {
   expect_same(with, without);
 }
 
-TEST_F(UnusedItems, WhatIsHiddenAddsNothing) {
+TEST_F(UnusedItems, HiddenItemsAddNothing) {
   Work with, without;
   ASSERT_NO_FATAL_FAILURE(measure(scene_text({}), without));
   const std::string hidden = R"(, "visible": false}, )";
@@ -189,14 +189,14 @@ TEST_F(UnusedItems, WhatIsHiddenAddsNothing) {
   expect_same(with, without);
 }
 
-TEST_F(UnusedItems, AWidgetThatNothingShownFollowsLoadsAndFetchesNothing) {
-  // it is drawn and can be grasped: links and triangles of its own, but neither data nor fetches
+TEST_F(UnusedItems, AWidgetWithoutVisibleFollowersLoadsNothing) {
+  // A widget is drawn and can be grabbed: it adds links and triangles, but neither data nor fetches.
   Work with, without, followed;
   ASSERT_NO_FATAL_FAILURE(measure(scene_text({}), without));
   Parts unused{.widgets = R"({"name": "seed", "type": "seed", "position": [1.5, 1.5, 1.5]})"};
   ASSERT_NO_FATAL_FAILURE(measure(scene_text(unused), with));
   expect_same_data(with, without);
-  // a level that a hidden surface would take asks nothing of its field
+  // A level widget of a hidden surface does not load its field.
   unused = {.fields = R"("torus": {"analytic": "torus", "resolution": 48}, )",
             .isosurfaces = R"({"field": "torus", "level": {"widget": "level"}, "visible": false}, )",
             .widgets = R"({"name": "level", "type": "isolevel", "field": "torus", "position": [1.2, 0, 0]})"};
@@ -205,5 +205,5 @@ TEST_F(UnusedItems, AWidgetThatNothingShownFollowsLoadsAndFetchesNothing) {
   EXPECT_EQ(followed.mirrors, without.mirrors);
 }
 
-}  // namespace unused_parts_test
+}  // namespace unused_items_cost_nothing_test
 }  // namespace catena::app

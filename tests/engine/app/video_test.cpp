@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Video through ffmpeg: what comes out, and what happens without it, when it fails, and on Ctrl-C.
+/// Video through ffmpeg: the decoded frames, and runs without ffmpeg, with a failing ffmpeg, and with Ctrl-C.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -25,7 +25,7 @@ using namespace catena;
 constexpr const char* kScene = R"({"fields": {"s": {"analytic": "torus", "resolution": 24}}, "isosurfaces": [{"field": "s", "level": 0.5}],
   "camera": {"position": [4, -5, 3], "target": [0, 0, 0], "up": [1, 0, 0], "fovy_deg": 40}})";
 
-/// PATH for as long as it lives.
+/// Sets PATH for the lifetime of the object.
 class Path {
  public:
   explicit Path(const std::string& value) : before_(std::getenv("PATH")) { setenv("PATH", value.c_str(), 1); }
@@ -35,7 +35,7 @@ class Path {
   std::string before_;
 };
 
-/// A folder with a program called ffmpeg that is not ffmpeg.
+/// Writes a fake program called ffmpeg into the folder.
 void make_ffmpeg(const std::string& folder, const std::string& script) {
   test::write_file(folder + "/ffmpeg", "#!/bin/sh\n" + script + "\n");
   ASSERT_EQ(chmod((folder + "/ffmpeg").c_str(), 0700), 0);
@@ -63,7 +63,7 @@ double rms(const render::Image8& a, const render::Image8& b) {
   return std::sqrt(sum / double(a.rgba.size()));
 }
 
-TEST(Video, FramesAreThePicturesOfTheSequence) {
+TEST(Video, FramesEqualTheImagesOfTheSequence) {
   if (!has_ffmpeg()) GTEST_SKIP() << "ffmpeg is not on PATH";
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", kScene);
@@ -82,7 +82,7 @@ TEST(Video, FramesAreThePicturesOfTheSequence) {
       ASSERT_TRUE(truth);
       const render::Image8 seen = frame_of(folder / name, k, folder.path());
       const render::Image8 other = *render::read_png(folder / ("p_" + std::to_string(3 - k) + ".png"));
-      // chroma at half resolution, quantisation, 256 colours of a .gif
+      // Differences are caused by chroma at half resolution, quantization and the 256 colors of a .gif.
       EXPECT_LE(rms(seen, *truth), 6) << name << " " << k;
       EXPECT_GT(rms(seen, other), 8) << name << " " << k;
     }
@@ -93,7 +93,7 @@ TEST(Video, FramesAreThePicturesOfTheSequence) {
   }
 }
 
-TEST(Video, ATransparentBackgroundIsKeptByWebm) {
+TEST(Video, WebmKeepsATransparentBackground) {
   if (!has_ffmpeg()) GTEST_SKIP() << "ffmpeg is not on PATH";
   const test::TemporaryFolder folder;
   std::string scene = kScene;
@@ -113,7 +113,7 @@ TEST(Video, ATransparentBackgroundIsKeptByWebm) {
   EXPECT_GT(solid, 100);
 }
 
-TEST(Video, WithoutFfmpegOneSentenceSaysWhatToInstall) {
+TEST(Video, WithoutFfmpegTheErrorNamesThePackage) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", kScene);
   const Path path(folder.path());
@@ -124,10 +124,10 @@ TEST(Video, WithoutFfmpegOneSentenceSaysWhatToInstall) {
   EXPECT_EQ(files_in(folder.path()), 1);
 }
 
-TEST(Video, AFailureOfFfmpegIsReportedByItsLastLine) {
+TEST(Video, AFailureOfFfmpegIsReportedWithItsLastLine) {
   const test::TemporaryFolder folder, tools;
   test::write_file(folder / "s.json", kScene);
-  // at once, in the middle, and at the end
+  // Failures at the start, in the middle and at the end.
   for (const char* script : {"echo first >&2; echo no such codec >&2; exit 3", "head -c 500 >/dev/null; echo no such codec >&2; exit 3",
                              "cat >/dev/null; echo no such codec >&2; exit 3"}) {
     make_ffmpeg(tools.path(), script);
@@ -139,7 +139,7 @@ TEST(Video, AFailureOfFfmpegIsReportedByItsLastLine) {
   }
 }
 
-TEST(Video, CtrlCLeavesNothingHalfWritten) {
+TEST(Video, CtrlCLeavesNoPartialFile) {
   const test::TemporaryFolder folder, tools;
   test::write_file(folder / "s.json", kScene);
   make_ffmpeg(tools.path(), "exec cat >/dev/null");
@@ -157,7 +157,7 @@ TEST(Video, CtrlCLeavesNothingHalfWritten) {
             video ? "90000" : "1", "--size", video ? "64x64" : "16000x16000", nullptr);
       _exit(127);
     }
-    // once it writes
+    // Waits until the program writes.
     int status = 0;
     while (files_in(folder.path()) < 2) {
       ASSERT_EQ(waitpid(child, &status, WNOHANG), 0) << "it ended before it wrote";
@@ -170,7 +170,7 @@ TEST(Video, CtrlCLeavesNothingHalfWritten) {
   }
 }
 
-TEST(Video, SizesAndKindsThatCannotBeAreRefused) {
+TEST(Video, OddSizesOfMp4AndUnknownFormatsAreRefused) {
   const test::TemporaryFolder tools;
   make_ffmpeg(tools.path(), "exit 0");
   const Path path(tools.path());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The transfer function and the isolevel edited in the window with real pointer events: what is saved, what is one step of undo.
+// Edits of the transfer function and the isolevel in the window with real pointer events: the saved scene and the undo steps.
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -15,10 +15,10 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace viewer_look_test {
+namespace viewer_appearance_test {
 
-// Quick pictures: a press and a move within one slow frame would be one event to ImGui. Pure green: the colour bar; pure magenta: the line
-// of the level; nothing else of the interface has them.
+// A scene that renders fast: in a slow frame, ImGui would see a press and a move as one event. The color bar is pure green and the line
+// of the level pure magenta; no other part of the interface has these colors.
 constexpr const char* kScene = R"({
   "fields": {"ball": {"analytic": "sphere", "resolution": 17}},
   "chain": [{"name": "skin", "type": "isosurface", "field": "ball", "level": 1}], // felt
@@ -29,7 +29,7 @@ constexpr const char* kScene = R"({
 
 bool has(const std::string& program) { return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0; }
 
-/// The box of the pixels of one colour in the side window.
+/// The bounding box of the pixels of one color in the side window.
 struct Spot {
   int left = 1 << 20, top = 1 << 20, right = -1, bottom = -1;
   double x(double share) const { return left + share * (right + 1 - left); }
@@ -59,7 +59,7 @@ class ViewerAppearance : public testing::Test {
 
   struct Saved {
     scene::TransferFunction transfer;
-    double seen = 0, felt = 0;
+    double surface_level = 0, link_level = 0;
   };
   Saved saved(const std::string& name) {
     Saved all;
@@ -67,15 +67,15 @@ class ViewerAppearance : public testing::Test {
     EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
     if (!scene) return all;
     scene->entities.each<scene::Volume>([&](scene::Entity, const scene::Volume& v) { all.transfer = v.transfer; });
-    scene->entities.each<scene::Isosurface>([&](scene::Entity, const scene::Isosurface& s) { all.seen = s.level; });
-    scene->entities.each<scene::Link>([&](scene::Entity, const scene::Link& link) { all.felt = link.node.find("level")->number; });
+    scene->entities.each<scene::Isosurface>([&](scene::Entity, const scene::Isosurface& s) { all.surface_level = s.level; });
+    scene->entities.each<scene::Link>([&](scene::Entity, const scene::Link& link) { all.link_level = link.node.find("level")->number; });
     return all;
   }
   test::TemporaryFolder folder_;
   std::string scene_ = folder_ / "s.json";
 };
 
-TEST_F(ViewerAppearance, ThePointerMovesAnOpacityAndALevelAndEachDragIsOneStepBack) {
+TEST_F(ViewerAppearance, DragsMoveAnOpacityAndALevelAndAreOneUndoStepEach) {
   if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
   test::write_file(scene_, kScene);
   ASSERT_EQ(on_display(view() + " --frames 4 --screenshot-ui " + (folder_ / "w.png")), 0) << log();
@@ -85,7 +85,7 @@ TEST_F(ViewerAppearance, ThePointerMovesAnOpacityAndALevelAndEachDragIsOneStepBa
   ASSERT_GT(bar.right - bar.left, 200) << "the colour bar";
   ASSERT_GT(line.bottom - line.top, 20) << "the line of the level";
 
-  // the plot lies above the bar, opacities by their square roots; 0.25 at the value 1 goes to about 0.64 at 2
+  // The plot is above the bar and shows square roots of opacities; the drag moves 0.25 at value 1 to about 0.64 at value 2.
   const double bottom = bar.top - 8, height = 115.5;
   const auto at = [](double x, double y) { return std::to_string(std::lround(x)) + " " + std::to_string(std::lround(y)); };
   const double middle = 0.5 * (line.top + line.bottom), level = 0.5 * (line.left + line.right);
@@ -112,17 +112,17 @@ TEST_F(ViewerAppearance, ThePointerMovesAnOpacityAndALevelAndEachDragIsOneStepBa
   EXPECT_NEAR(edited.transfer.opacities[1].value, 2, 0.1);
   EXPECT_NEAR(edited.transfer.opacities[1].alpha, 0.64, 0.05);
   EXPECT_EQ(edited.transfer.opacities[2].alpha, 0.04);
-  EXPECT_GT(edited.seen, 1.3);
-  EXPECT_LT(edited.seen, 1.8);
-  EXPECT_EQ(edited.felt, edited.seen) << "what is seen is what is felt";
+  EXPECT_GT(edited.surface_level, 1.3);
+  EXPECT_LT(edited.surface_level, 1.8);
+  EXPECT_EQ(edited.link_level, edited.surface_level) << "what is seen is what is felt";
   EXPECT_NE(test::read_file(folder_ / "1.json").find("// felt"), std::string::npos);
 
-  // the whole drag of the level is taken back, and nothing more
+  // Undo reverts the whole drag of the level, and nothing else.
   const Saved back = saved("2.json");
-  EXPECT_EQ(back.seen, 1);
-  EXPECT_EQ(back.felt, 1);
+  EXPECT_EQ(back.surface_level, 1);
+  EXPECT_EQ(back.link_level, 1);
   EXPECT_EQ(back.transfer.opacities[1].alpha, edited.transfer.opacities[1].alpha);
 }
 
-}  // namespace viewer_look_test
+}  // namespace viewer_appearance_test
 }  // namespace catena::app

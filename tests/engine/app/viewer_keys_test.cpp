@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Strokes that come faster than pictures: none is lost, none comes in another order, and the interface never sees a modifier change within
-// one of its frames.
+// Keystrokes faster than frames: none is lost or reordered, and the interface never sees a modifier change within one frame.
 #include <gtest/gtest.h>
 
 #include "tests/support/drive_window.h"
@@ -26,8 +25,8 @@ class ViewerKeys : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(ViewerKeys, CapitalsTypedInOneGoDoNotEndTheProgram) {
-  // strokes that overlap, as fast hands make them: the next key is down before the last modifier is up
+TEST_F(ViewerKeys, FastOverlappingKeystrokesDoNotCrash) {
+  // Overlapping keystrokes, as in fast typing: the next key is pressed before the last modifier is released.
   ASSERT_EQ(test::drive_window(folder_, "slow.json --size 900x600",
                                "for i in $(seq 40); do\n"
                                "  xdotool key ctrl+o; xdotool key --delay 0 ctrl+a\n"
@@ -40,14 +39,14 @@ TEST_F(ViewerKeys, CapitalsTypedInOneGoDoNotEndTheProgram) {
       << log();
 }
 
-TEST_F(ViewerKeys, WhatIsTypedAtOnceIsReadInOrder) {
-  // no pause between the command that opens the dialog, the name, and Return; the H before is a command, those in the name are not. Strokes
-  // of one key within one millisecond are one for GLFW: no hand makes them
+TEST_F(ViewerKeys, FastInputIsReadInOrder) {
+  // There is no pause between the command that opens the dialog, the name, and Return. The H before is a command, those in the name are
+  // not. GLFW merges keystrokes of one key within a millisecond.
   ASSERT_EQ(test::drive_window(
                 folder_, "slow.json --size 900x600",
                 "xdotool key --delay 0 h ctrl+o; xdotool type --delay 0 'XXh'; xdotool key --delay 12 BackSpace BackSpace BackSpace\n"
                 "xdotool type --delay 0 'Capital.json'; xdotool key --delay 0 Return\n"
-                "titled 'Capital.json.*[[]hand[]]'\nkeys ctrl+q"),
+                "titled 'Capital.json.*[[]probe mode[]]'\nkeys ctrl+q"),
             0)
       << log();
   EXPECT_EQ(log().find("never"), std::string::npos) << log();

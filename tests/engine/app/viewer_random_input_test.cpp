@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A monkey at the window for a few seconds; longer by hand: CATENA_MONKEY_SECONDS=1800 CATENA_MONKEY_SEED=3 build/release/test_engine_app
-// --gtest_filter='*Monkey*' (tests/monkey/monkey.py).
+// Random input to the window for a few seconds (tests/monkey/monkey.py). For longer runs by hand: CATENA_MONKEY_SECONDS=1800
+// CATENA_MONKEY_SEED=3 build/release/test_engine_app --gtest_filter='ViewerRandomInput.*'
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -10,7 +10,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace viewer_monkey_test {
+namespace viewer_random_input_test {
 
 constexpr const char* kDensity = R"({ "fields": {"d": {"analytic": "gaussian", "resolution": 24}, "v": {"analytic": "circle"}},
   // a comment
@@ -27,7 +27,7 @@ std::string word_of(const char* variable, const char* otherwise) {
   return word == nullptr ? otherwise : word;
 }
 
-TEST(ViewerRandomInput, DoesNotBringTheWindowDown) {
+TEST(ViewerRandomInput, DoesNotCrashTheWindow) {
   const bool has_xlib = std::system("/usr/bin/python3 -c 'import Xlib' > /dev/null 2>&1") == 0;
   if (!test::can_drive_windows() || !has_xlib) GTEST_SKIP() << "no Xvfb or no python3-xlib here";
   const test::TemporaryFolder folder;
@@ -43,5 +43,5 @@ TEST(ViewerRandomInput, DoesNotBringTheWindowDown) {
   EXPECT_EQ(std::system(command.c_str()), 0) << test::read_file(folder / "out") << test::read_file(folder / "monkey.log");
 }
 
-}  // namespace viewer_monkey_test
+}  // namespace viewer_random_input_test
 }  // namespace catena::app

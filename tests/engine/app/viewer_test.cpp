@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The window itself, on a virtual display (Xvfb), with real pointer events where xdotool is there.
+// The window on a virtual display (Xvfb), with real pointer events if xdotool is installed.
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -59,7 +59,7 @@ int differing(const render::Image8& a, const render::Image8& b) {
   return count;
 }
 
-TEST_F(Viewer, WithoutADisplayItSaysSoInOneLine) {
+TEST_F(Viewer, AMissingDisplayIsOneErrorLine) {
   const std::string command = "env -u DISPLAY -u WAYLAND_DISPLAY " + view() + " > " + (folder_ / "log") + " 2>&1";
   EXPECT_EQ(exit_code(command), 1);
   const std::string text = log();
@@ -67,7 +67,7 @@ TEST_F(Viewer, WithoutADisplayItSaysSoInOneLine) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
 }
 
-TEST_F(Viewer, DrawsTheSceneAndTheHand) {
+TEST_F(Viewer, DrawsTheSceneAndTheProbe) {
   if (!has("Xvfb")) GTEST_SKIP() << "no Xvfb here";
   ASSERT_EQ(on_display(view() + " --frames 4 --screenshot " + (folder_ / "a.png")), 0) << log();
   const render::Image8 a = picture("a.png");
@@ -83,7 +83,7 @@ TEST_F(Viewer, DrawsTheSceneAndTheHand) {
   EXPECT_NE(log().find("4 frames"), std::string::npos) << log();
 }
 
-TEST_F(Viewer, ADeviceThatIsNotThereIsSaidBeforeAnyWindow) {
+TEST_F(Viewer, AnUnknownDeviceIsReportedBeforeAnyWindow) {
   const std::string command = "env -u DISPLAY -u WAYLAND_DISPLAY " + view() + " --device nonsense > " + (folder_ / "log") + " 2>&1";
   EXPECT_EQ(exit_code(command), 2);
   const std::string text = log();
@@ -91,7 +91,7 @@ TEST_F(Viewer, ADeviceThatIsNotThereIsSaidBeforeAnyWindow) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
 }
 
-TEST_F(Viewer, AHapticDeviceHoldsTheProbeAndItsForcesAreOffUntilF) {
+TEST_F(Viewer, ForcesOfAHapticDeviceAreOffUntilF) {
   if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
   std::ostringstream script;
   script << view() << " --device simulated --servo-stats " << (folder_ / "servo.json") << " &\n"
@@ -106,13 +106,13 @@ TEST_F(Viewer, AHapticDeviceHoldsTheProbeAndItsForcesAreOffUntilF) {
   EXPECT_NE(test::read_file(folder_ / "servo.json").find("\"missed_deadlines\""), std::string::npos);
 }
 
-TEST_F(Viewer, StereoFillsTheWindowAndF2GoesToTheNextMode) {
+TEST_F(Viewer, StereoFillsTheWindowAndF2SelectsTheNextMode) {
   if (!has("Xvfb")) GTEST_SKIP() << "no Xvfb here";
   ASSERT_EQ(on_display(view() + " --stereo side-by-side --frames 2 --screenshot " + (folder_ / "pair.png")), 0) << log();
   const render::Image8 pair = picture("pair.png");
   ASSERT_EQ(pair.width, 320u);
   ASSERT_EQ(pair.height, 240u);
-  // both halves show the lines
+  // Both halves show the streamlines.
   int red[2] = {0, 0};
   for (std::size_t i = 0; i < pair.rgba.size(); i += 4)
     if (pair.rgba[i] > 80 && pair.rgba[i + 1] < pair.rgba[i] / 2) ++red[(i / 4) % 320 / 160];
@@ -129,7 +129,7 @@ TEST_F(Viewer, StereoFillsTheWindowAndF2GoesToTheNextMode) {
   EXPECT_NE(log().find("arrived"), std::string::npos) << log();
 }
 
-TEST_F(Viewer, AChangedShaderIsDrawnWithAtOnceAndABrokenOneIsSaid) {
+TEST_F(Viewer, AChangedShaderIsReloadedAndABrokenOneIsReported) {
   if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
   const std::string shaders = folder_ / "shaders", compose = shaders + "/passes/compose.frag";
   std::filesystem::copy(test::source_dir() + "/shaders", shaders, std::filesystem::copy_options::recursive);
@@ -144,7 +144,7 @@ TEST_F(Viewer, AChangedShaderIsDrawnWithAtOnceAndABrokenOneIsSaid) {
          << "for i in $(seq 200); do xdotool search --name '^catena  ' > /dev/null 2>&1 && break; sleep 0.1; done\n"
          << "xdotool mousemove 160 120; sleep 0.6\n"
          << "cp " << (folder_ / "green.frag") << " " << compose << "\n"
-         << wait_for("compose.frag: taken from the file") << "cp " << (folder_ / "broken.frag") << " " << compose << "\n"
+         << wait_for("compose.frag: reloaded from the file") << "cp " << (folder_ / "broken.frag") << " " << compose << "\n"
          << wait_for("compose.frag:2: ") << "xdotool key ctrl+q; wait $!\n";
   ASSERT_EQ(on_display(script.str()), 0) << log();
   EXPECT_NE(log().find("catena: " + compose + ":2: 'nonsense'"), std::string::npos) << log();
@@ -155,7 +155,7 @@ TEST_F(Viewer, AChangedShaderIsDrawnWithAtOnceAndABrokenOneIsSaid) {
   EXPECT_EQ(others, 0);
 }
 
-TEST_F(Viewer, SaysWhatIsWrongWithQualityAndShaders) {
+TEST_F(Viewer, InvalidQualityAndShadersAreOneErrorLine) {
   for (const auto& [options, text] : {std::pair{" --quality nonsense", "--quality nonsense: expected draft"},
                                       std::pair{" --shaders /nowhere", "--shaders /nowhere/passes/"}}) {
     EXPECT_EQ(exit_code("env -u DISPLAY -u WAYLAND_DISPLAY " + view() + options + " > " + (folder_ / "log") + " 2>&1"), 2);
@@ -164,7 +164,7 @@ TEST_F(Viewer, SaysWhatIsWrongWithQualityAndShaders) {
   }
 }
 
-TEST_F(Viewer, TheTitleSaysTheSettingAndKeysTurnTheView) {
+TEST_F(Viewer, TheTitleHasTheQualityAndKeysChangeTheView) {
   if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
   test::write_file(scene_, R"({
     "fields": {"f": {"analytic": "sphere"}},
@@ -186,13 +186,13 @@ TEST_F(Viewer, TheTitleSaysTheSettingAndKeysTurnTheView) {
   EXPECT_GT(differing(picture("along_x.png"), picture("flat.png")), 50);
 }
 
-TEST_F(Viewer, DrawsForSoManySeconds) {
+TEST_F(Viewer, DrawsForTheRequestedSeconds) {
   if (!has("Xvfb")) GTEST_SKIP() << "no Xvfb here";
   ASSERT_EQ(on_display(view() + " --seconds 1 --servo-stats " + (folder_ / "servo.json")), 0) << log();
   EXPECT_NE(test::read_file(folder_ / "servo.json").find("\"device\": \"mouse\""), std::string::npos);
 }
 
-TEST_F(Viewer, DragsTurnTheViewAndMoveTheHand) {
+TEST_F(Viewer, DragsOrbitTheViewAndMoveTheProbe) {
   if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
   const auto drive = [&](const std::string& events, const std::string& png) {
     std::ostringstream script;
@@ -209,7 +209,7 @@ TEST_F(Viewer, DragsTurnTheViewAndMoveTheHand) {
   EXPECT_GT(differing(picture("still.png"), picture("turned.png")), 500);
   EXPECT_GT(differing(picture("still.png"), picture("moved.png")), 20);
 
-  // the probe stays where it began unless the hand was dragged
+  // The probe does not move unless the probe is dragged.
   const auto probe = [](const std::string& text) {
     std::istringstream in(text.substr(text.find("probe ") + 6));
     double x = 0;

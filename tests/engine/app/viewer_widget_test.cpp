@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A cutting plane held by the mouse in a real window, through all its modes, to the saved scene; a file dropped as a file manager does.
+// A cutting plane moved by the mouse in a real window, through all modes and into the saved scene; and dropped files.
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -18,7 +18,7 @@ namespace viewer_widget_test {
 
 using namespace catena;
 
-// the plane faces the eye: what the pointer does in the picture the hand does on the plane
+// The plane faces the camera, so the probe moves on the plane as the pointer does in the image.
 constexpr const char* kScene = R"(// held by the mouse
 { "fields": {"d": {"analytic": "sphere", "resolution": 24}},
   "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, -1, 0], "radius": 0.48}],
@@ -52,7 +52,7 @@ class ViewerWidget : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(ViewerWidget, TheMouseTakesTheCuttingPlaneThroughAllItsModes) {
+TEST_F(ViewerWidget, TheMouseDrivesTheCuttingPlaneThroughAllModes) {
   ASSERT_EQ(drive("plane.json --size 640x480 --no-panels --quality draft --record hand.catlog",
                   "xdotool mousemove 320 240; sleep 0.5; xdotool key h; sleep 0.5\n"
                   "by 3 0\n"                                                                     // over the plane
@@ -60,7 +60,7 @@ TEST_F(ViewerWidget, TheMouseTakesTheCuttingPlaneThroughAllItsModes) {
                   "by 7 0\n"                                                                     // to the sphere
                   "xdotool keydown space; sleep 0.5; by 0 -8; xdotool keyup space; sleep 0.7\n"  // turns it
                   "xdotool key h; sleep 0.3; xdotool key ctrl+s; sleep 1\n"
-                  "xdotool key ctrl+q; sleep 0.7; xdotool key Return"),  // it records: quit asks
+                  "xdotool key ctrl+q; sleep 0.7; xdotool key Return"),  // quit asks during a recording
             0)
       << log();
 
@@ -74,7 +74,7 @@ TEST_F(ViewerWidget, TheMouseTakesTheCuttingPlaneThroughAllItsModes) {
   ASSERT_NE(widget.find("orientation"), nullptr) << "it was turned\n" << test::read_file(folder_ / "plane.json");
   EXPECT_EQ(test::read_file(folder_ / "plane.json").find("// held by the mouse"), 0u) << "the author's comment stays";
 
-  // the recording says which modes the hand went through
+  // The recording contains the modes of the widget.
   const auto run = test::run_catena({"replay", "--log", folder_ / "hand.catlog", "-o", folder_ / "t.csv", "--widgets", folder_ / "w.csv"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const test::Table table = test::Table::read(folder_ / "w.csv");
@@ -83,7 +83,7 @@ TEST_F(ViewerWidget, TheMouseTakesTheCuttingPlaneThroughAllItsModes) {
   for (const char* mode : {"explore", "translate", "rotate", "turn"}) EXPECT_TRUE(modes.count(mode)) << mode;
 }
 
-TEST_F(ViewerWidget, AFileThatIsDroppedIsOpened) {
+TEST_F(ViewerWidget, ADroppedFileIsOpened) {
   if (!has("/usr/bin/python3 -c 'import Xlib'")) GTEST_SKIP() << "no python3-xlib here";
   ASSERT_EQ(drive("plane.json --size 640x480 --no-panels --quality draft",
                   "/usr/bin/python3 " + test::source_dir() + "/tests/support/drop_file.py $(xdotool search --name '^catena  ' | head -1) " +
@@ -96,7 +96,7 @@ TEST_F(ViewerWidget, AFileThatIsDroppedIsOpened) {
   EXPECT_NE(log().find("opened"), std::string::npos) << log();
 }
 
-TEST_F(ViewerWidget, AFolderThatIsDroppedIsOpenedAsItsSeries) {
+TEST_F(ViewerWidget, ADroppedFolderIsOpenedAsASeries) {
   if (!has("/usr/bin/python3 -c 'import Xlib'")) GTEST_SKIP() << "no python3-xlib here";
   std::filesystem::create_directory(folder_ / "slices");
   for (int k = 0; k < 3; ++k)

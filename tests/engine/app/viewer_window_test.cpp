@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The window as a whole, on a virtual display with real pointer and key events: panels, files, questions, pictures, a lost device.
+// The window on a virtual display with real pointer and key events: panels, files, confirmations, images and a lost graphics device.
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -72,7 +72,7 @@ bool is_color(const render::Image8& p, std::uint32_t x, std::uint32_t y, int r, 
   return std::abs(at[0] - r) < 8 && std::abs(at[1] - g) < 8 && std::abs(at[2] - b) < 8;
 }
 
-TEST_F(ViewerWindow, ThePictureLiesBesideThePanelsAndTabGivesItTheWindow) {
+TEST_F(ViewerWindow, TheImageIsBesideThePanelsAndTabHidesThem) {
   ASSERT_EQ(drive(scene_ + " --size 900x600 --screenshot end.png",
                   "keys shift+F12; written flow-001.png\nkeys F12; written flow-002.png\n"
                   "keys Tab; sleep 0.5; keys F12; written flow-003.png\nkeys ctrl+q"),
@@ -93,9 +93,9 @@ TEST_F(ViewerWindow, ThePictureLiesBesideThePanelsAndTabGivesItTheWindow) {
   EXPECT_TRUE(is_color(alone, 5, 590, 0, 77, 0));
 }
 
-TEST_F(ViewerWindow, WhatIsNotSavedIsAskedForBeforeItIsLost) {
-  // O is a change of the view: none of the scene. The side window's edits are made by their own tests; here undoable text comes from
-  // saving the moved view elsewhere.
+TEST_F(ViewerWindow, QuitAsksBeforeUnsavedEditsAreLost) {
+  // The key O changes the view only. Edits in the side window have their own tests; here the undo step comes from saving the changed view
+  // to another file.
   ASSERT_EQ(drive(scene_ + " --size 900x600",
                   "keys o ctrl+shift+s; sleep 0.3; xdotool type --delay 60 'copy'; keys Return; written copy.json\n"
                   "keys ctrl+z; titled 'copy.json [^ ]'\n"
@@ -111,7 +111,7 @@ TEST_F(ViewerWindow, WhatIsNotSavedIsAskedForBeforeItIsLost) {
   EXPECT_EQ(test::read_file(scene_), kScene) << "the first file is as it was";
 }
 
-TEST_F(ViewerWindow, TheOpenDialogOpensWhatIsTypedAndAFailureLeavesTheScene) {
+TEST_F(ViewerWindow, TheOpenDialogOpensTypedNamesAndAFailureKeepsTheScene) {
   ASSERT_EQ(drive("--size 900x600 --screenshot-ui end.png",
                   "titled 'untitled'\n"
                   "keys ctrl+o; sleep 0.3; xdotool type --delay 60 'flow.js'; keys Tab Return; titled 'flow.json'\n"
@@ -126,7 +126,7 @@ TEST_F(ViewerWindow, TheOpenDialogOpensWhatIsTypedAndAFailureLeavesTheScene) {
   EXPECT_TRUE(is_color(end, 895, 100, 0, 0, 102));
 }
 
-TEST_F(ViewerWindow, ResizedAgainAndAgainItFollows) {
+TEST_F(ViewerWindow, RepeatedResizingKeepsTheImagesSizeRight) {
   ASSERT_EQ(drive(scene_ + " --size 800x500",
                   "W=$(xdotool search --name '^catena  ' | head -1)\n"
                   "for s in '300 200' '900 650' '40 30' '1 1' '700 400' '820 610'; do xdotool windowsize $W $s; sleep 0.15; done\n"
@@ -139,7 +139,7 @@ TEST_F(ViewerWindow, ResizedAgainAndAgainItFollows) {
   EXPECT_EQ(window.height, 560u);
 }
 
-/// The child's half of the next test: a window in this process whose driver gives up four times, at different calls of a picture.
+// The child process of ALostGraphicsDeviceIsRestarted: a window whose graphics device is lost four times, at different driver calls.
 TEST(ViewerDeviceLost, DISABLED_InAWindow) {
   ViewOptions options;
   options.source = std::getenv("CATENA_TEST_SCENE");
@@ -159,21 +159,21 @@ TEST(ViewerDeviceLost, DISABLED_InAWindow) {
   EXPECT_GT(*calls, 199) << "otherwise the last one never came";
 }
 
-TEST_F(ViewerWindow, ADeviceThatIsLostIsStartedAgain) {
+TEST_F(ViewerWindow, ALostGraphicsDeviceIsRestarted) {
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   const std::string command =
       "env -u GTEST_TOTAL_SHARDS -u GTEST_SHARD_INDEX CATENA_TEST_SCENE=" + scene_ + " timeout 90 " + test::on_display("640x480") + self +
       " --gtest_also_run_disabled_tests --gtest_filter=ViewerDeviceLost.DISABLED_InAWindow > " + (folder_ / "log") + " 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << log();
   EXPECT_NE(log().find("60 frames"), std::string::npos) << log();
-  EXPECT_NE(log().find("lost and started again 4 times"), std::string::npos) << log();
+  EXPECT_NE(log().find("lost and restarted 4 times"), std::string::npos) << log();
 }
 
-TEST_F(ViewerWindow, WithoutADisplayTheScreenshotIsDrawnAllTheSame) {
+TEST_F(ViewerWindow, WithoutADisplayTheScreenshotIsStillDrawn) {
   const std::string command = "cd " + folder_.path() + " && env -u DISPLAY -u WAYLAND_DISPLAY " + test::program_path() + " view " + scene_ +
                               " --size 200x150 --screenshot a.png > log 2>&1";
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0) << log();
-  EXPECT_NE(log().find("drawn without a window"), std::string::npos) << log();
+  EXPECT_NE(log().find("rendered without a window"), std::string::npos) << log();
   const render::Image8 a = picture("a.png");
   EXPECT_EQ(a.width, 200u);
   EXPECT_EQ(a.height, 150u);

@@ -32,7 +32,7 @@ class ViewerXr : public testing::Test {
     test::write_file(folder_ / "script.sh", "export HOME=" + folder_.path() + " XR_RUNTIME_JSON=" + runtime + " CATENA_XR_SCRIPT='" +
                                                 words + " record=" + (folder_ / "record") + "'\nexec " + test::program_path() + " view " +
                                                 (folder_ / "scene.json") + " --xr --size 320x240 " + options + "\n");
-    std::filesystem::remove(std::filesystem::path(folder_ / "record"));  // of a run before
+    std::filesystem::remove(std::filesystem::path(folder_ / "record"));  // of an earlier run
     const int status = std::system(
         ("timeout 60 " + test::on_display("640x480") + "sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -41,7 +41,7 @@ class ViewerXr : public testing::Test {
     return run_view(options, words, test::binary_dir() + "/xr_runtime.json");
   }
   std::string log() const { return test::read_file(folder_ / "log"); }
-  /// A number of what the runtime has seen.
+  /// A counter in the runtime's record; -1 if there is none.
   double runtime_count(const std::string& word) const {
     std::istringstream in(test::read_file(folder_ / "record"));
     std::string name;
@@ -49,7 +49,7 @@ class ViewerXr : public testing::Test {
       if (name == word) return value;
     return -1;
   }
-  /// Beside what a slow machine is told of its frame rate.
+  /// The number of errors of the headset in the log, without notes about a low frame rate.
   int headset_error_count() const {
     std::istringstream in(log());
     int count = 0;

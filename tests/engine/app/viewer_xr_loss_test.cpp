@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-/// What happens to `catena view --xr` where the session or the runtime goes, does not come, or does not answer.
+/// `catena view --xr` with a session or a runtime that is lost, does not start, or does not respond.
 #include "tests/engine/app/viewer_xr_fixture.h"
 
 namespace catena::app {
-namespace viewer_headset_loss_test {
+namespace viewer_xr_loss_test {
 
 class ViewerXrLoss : public viewer_xr_fixture::ViewerXr {};
 
-/// The session is lost, then the whole runtime: said once each, the window goes on, and the headset comes back with a new device.
-TEST_F(ViewerXrLoss, WhatIsLostComesBack) {
+/// The session is lost, then the whole runtime: each is reported once, the window continues, and the headset restarts with a new device.
+TEST_F(ViewerXrLoss, ALostSessionAndRuntimeAreRestarted) {
   ASSERT_EQ(run_view("--seconds 5", "size=32x32 fail=xrEndFrame:4:-17 fail=xrWaitFrame:12:-13"), 0) << log();
   EXPECT_NE(log().find("XR_ERROR_SESSION_LOST"), std::string::npos) << log();
   EXPECT_NE(log().find("XR_ERROR_INSTANCE_LOST"), std::string::npos) << log();
@@ -18,25 +18,25 @@ TEST_F(ViewerXrLoss, WhatIsLostComesBack) {
   EXPECT_EQ(runtime_count("objects"), 0);
 }
 
-/// The runtime keeps a frame for three seconds: that is said, the window goes on, and so does the headset afterwards.
-TEST_F(ViewerXrLoss, ARuntimeThatHangsDoesNotHoldTheWindow) {
+/// The runtime blocks a frame for three seconds: a note is printed, the window continues, and the headset continues afterwards.
+TEST_F(ViewerXrLoss, AHangingRuntimeDoesNotBlockTheWindow) {
   ASSERT_EQ(run_view("--seconds 6", "size=16x16 period_ms=20 paced hang=10:3000"), 0) << log();
-  EXPECT_NE(log().find("the window goes on meanwhile"), std::string::npos) << log();
+  EXPECT_NE(log().find("the window continues"), std::string::npos) << log();
   EXPECT_EQ(headset_error_count(), 0) << log();
   EXPECT_GT(runtime_count("pictures"), 40);
   EXPECT_EQ(runtime_count("illegal"), 0) << test::read_file(folder_ / "record");
   EXPECT_EQ(runtime_count("objects"), 0);
 }
 
-/// Closed meanwhile, it ends.
-TEST_F(ViewerXrLoss, ItEndsWhileTheRuntimeHangs) {
+/// A window that is closed while the runtime hangs ends.
+TEST_F(ViewerXrLoss, TheProgramEndsWhileTheRuntimeHangs) {
   ASSERT_EQ(run_view("--seconds 1.5", "size=16x16 period_ms=20 paced hang=10:3000"), 0) << log();
   EXPECT_EQ(runtime_count("illegal"), 0) << test::read_file(folder_ / "record");
   EXPECT_EQ(runtime_count("objects"), 0);
 }
 
-/// The headset is taken off, its session ends, it never begins: the program ends like any other.
-TEST_F(ViewerXrLoss, ASessionThatDoesNotRunEndsWithTheProgram) {
+/// The headset is taken off, or the session ends or fails to end: the program ends normally.
+TEST_F(ViewerXrLoss, AStoppedSessionDoesNotPreventTheProgramsEnd) {
   for (const char* script :
        {"size=16x16 period_ms=20 paced state=10:STOPPING", "size=16x16 period_ms=20 paced state=10:STOPPING state=11:EXITING",
         "size=16x16 period_ms=20 paced state=10:STOPPING fail=xrEndSession:1:-17"}) {
@@ -45,28 +45,28 @@ TEST_F(ViewerXrLoss, ASessionThatDoesNotRunEndsWithTheProgram) {
   }
 }
 
-/// A runtime that is back but makes no device: the window goes on with its own, and the runtime is tried again.
-TEST_F(ViewerXrLoss, ARuntimeThatComesBackWithoutADeviceLeavesTheWindow) {
-  constexpr int kBefore = 5;  // pictures before the sixth xrEndFrame fails
+/// A restarted runtime that creates no device: the window continues with a device of its own, and retries the runtime.
+TEST_F(ViewerXrLoss, ARestartedRuntimeWithoutADeviceIsRetried) {
+  constexpr int kBefore = 5;  // frames before the sixth xrEndFrame fails
   for (const char* call : {"xrCreateVulkanDeviceKHR", "xrCreateVulkanInstanceKHR"}) {
     EXPECT_EQ(run_view("--seconds 4", std::string("size=16x16 fail=xrEndFrame:6:-13 fail=") + call + ":2:-2"), 0) << call << log();
-    EXPECT_NE(log().find("is back without a device"), std::string::npos) << log();
+    EXPECT_NE(log().find("restarted without a graphics device"), std::string::npos) << log();
     EXPECT_EQ(runtime_count("illegal"), 0) << test::read_file(folder_ / "record");
     EXPECT_GT(runtime_count("pictures"), kBefore) << call << ": it never came back";
   }
 }
 
-/// What is lost again and again is tried every second, and said once.
-TEST_F(ViewerXrLoss, ALossThatRepeatsIsSaidOnce) {
+/// A session that is lost repeatedly is retried every second, and reported once.
+TEST_F(ViewerXrLoss, ARepeatedLossIsReportedOnce) {
   ASSERT_EQ(run_view("--seconds 3.5", "size=16x16 paced period_ms=11 state=5:LOSS_PENDING"), 0) << log();
   EXPECT_EQ(headset_error_count(), 1) << log();
 }
 
-/// One that never comes back is left behind.
-TEST_F(ViewerXrLoss, ItEndsWhereTheRuntimeNeverAnswers) {
+/// A runtime that never returns does not prevent the end of the program.
+TEST_F(ViewerXrLoss, TheProgramEndsIfTheRuntimeNeverReturns) {
   ASSERT_EQ(run_view("--seconds 1", "size=16x16 period_ms=20 paced hang=10:3600000"), 0) << log();
   EXPECT_EQ(runtime_count("illegal"), 0) << test::read_file(folder_ / "record");
 }
 
-}  // namespace viewer_headset_loss_test
+}  // namespace viewer_xr_loss_test
 }  // namespace catena::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// catena view --xr against the scripted runtime (tests/xr_runtime), on a virtual display; what its hands do, without one.
+// `catena view --xr` with the scripted runtime (tests/xr_runtime) on a virtual display; and controllers without a display.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ namespace viewer_xr_test {
 using viewer_xr_fixture::kScene;
 using viewer_xr_fixture::ViewerXr;
 
-TEST_F(ViewerXr, BothEyesAreDrawnAndTheFirstOneIsMirrored) {
+TEST_F(ViewerXr, BothEyesAreDrawnAndTheFirstIsMirroredInTheWindow) {
   ASSERT_EQ(run_view("--frames 8 --screenshot " + (folder_ / "eye.png"), "size=96x80"), 0) << log();
   EXPECT_GE(runtime_count("pictures"), 7);
   EXPECT_EQ(runtime_count("moved"), 0);
@@ -38,15 +38,15 @@ TEST_F(ViewerXr, BothEyesAreDrawnAndTheFirstOneIsMirrored) {
   EXPECT_EQ(headset_error_count(), 0) << log();
   const auto eye = render::read_png(folder_ / "eye.png");
   ASSERT_TRUE(eye) << eye.error().message;
-  // the ball is straight ahead, and orange
+  // The sphere is straight ahead, and orange.
   EXPECT_EQ(eye->width * 80, eye->height * 96);
   std::size_t orange = 0;
   for (std::size_t i = 0; i < eye->rgba.size(); i += 4) orange += eye->rgba[i] > eye->rgba[i + 2] + 40;
   EXPECT_GT(orange, eye->rgba.size() / 4 / 100);
 }
 
-/// Wherever the runtime's space begins: the world is put before the head, where the first picture finds it.
-TEST_F(ViewerXr, TheWorldStandsBeforeTheHead) {
+/// The world is placed in front of the head's position in the first frame, for any origin of the runtime's space.
+TEST_F(ViewerXr, TheWorldIsPlacedInFrontOfTheHead) {
   ASSERT_EQ(run_view("--frames 4 --screenshot " + (folder_ / "eye.png"), "size=96x80 head=3:0.5:-2"), 0) << log();
   const auto eye = render::read_png(folder_ / "eye.png");
   ASSERT_TRUE(eye) << eye.error().message;
@@ -55,13 +55,13 @@ TEST_F(ViewerXr, TheWorldStandsBeforeTheHead) {
   EXPECT_GT(orange, eye->rgba.size() / 4 / 100);
 }
 
-TEST_F(ViewerXr, WithoutARuntimeItSaysSoInOneLine) {
+TEST_F(ViewerXr, AMissingRuntimeIsOneErrorLine) {
   EXPECT_EQ(run_view("--frames 2", "", "/nowhere/runtime.json"), 1) << log();
   EXPECT_EQ(headset_error_count(), 1) << log();
   EXPECT_NE(log().find("expected an OpenXR runtime"), std::string::npos) << log();
 }
 
-/// Where the eyes look goes into the recording, beside head and hands.
+/// The gaze is part of a recording, like the poses of head and hands.
 TEST_F(ViewerXr, TheGazeIsRecorded) {
   const std::string log = folder_ / "hand.catlog", table = folder_ / "poses.csv";
   ASSERT_EQ(run_view("--frames 12 --record " + log, "size=32x32 gaze=0.25:-0.1"), 0) << this->log();
@@ -88,23 +88,23 @@ TEST_F(ViewerXr, TheGazeIsRecorded) {
   EXPECT_NEAR(ahead.y / -ahead.z, -0.1, 1e-4) << last;
 }
 
-/// The menu button brings the window into the room, as a quad over the picture.
-TEST_F(ViewerXr, TheWindowComesIntoTheRoom) {
+/// The menu button shows the window in the room, as a quad layer.
+TEST_F(ViewerXr, TheMenuButtonShowsTheWindowInTheRoom) {
   ASSERT_EQ(run_view("--frames 24", "size=48x40 menu=5:8"), 0) << log();
   EXPECT_GT(runtime_count("quads"), 0);
   EXPECT_EQ(runtime_count("illegal"), 0) << test::read_file(folder_ / "record");
   EXPECT_EQ(runtime_count("objects"), 0);
 }
 
-/// A session that runs and is not seen: pictures are counted in the window.
-TEST_F(ViewerXr, ANumberOfPicturesEndsWhereNobodySeesThem) {
+/// A running session that is not visible: --frames counts the window's frames.
+TEST_F(ViewerXr, FramesAreCountedInAnInvisibleSession) {
   EXPECT_EQ(run_view("--frames 12", "size=32x32 state=4:VISIBLE state=4:SYNCHRONIZED"), 0) << log();
   EXPECT_LE(runtime_count("pictures"), 4);
   EXPECT_EQ(runtime_count("illegal"), 0) << test::read_file(folder_ / "record");
 }
 
-/// What a display's period and size should not be, and what belongs to a flat picture.
-TEST_F(ViewerXr, OddHeadsetsAndOptionsOfFlatPicturesEndInTime) {
+/// Invalid periods and sizes of a display, and options of flat images.
+TEST_F(ViewerXr, InvalidDisplaysAndFlatImageOptionsDoNotBlock) {
   for (const char* words : {"size=32x32 period_ms=0", "size=0x0", "size=0x0 period_ms=0"}) {
     EXPECT_EQ(run_view("--frames 12", words), 0) << words << log();
     EXPECT_GE(runtime_count("pictures"), 11) << words;
@@ -122,20 +122,20 @@ TEST_F(ViewerXr, OddHeadsetsAndOptionsOfFlatPicturesEndInTime) {
   }
 }
 
-/// What is not registered is asked for, on the terminal and on the panel in the room; the menu button puts it off.
-TEST_F(ViewerXr, ADeviceOnTheDeskIsAskedForItsPlaces) {
+/// An unregistered device is requested on the terminal and on the panel in the room; the menu button dismisses the request.
+TEST_F(ViewerXr, RegistrationOfADeskDeviceIsRequested) {
   ASSERT_EQ(run_view("--device simulated --frames 24", "size=48x40"), 0) << log();
-  EXPECT_NE(log().find("Touch three places, not on one line, with the handle of simulated"), std::string::npos) << log();
+  EXPECT_NE(log().find("Touch three points, not on one line, with the handle of simulated"), std::string::npos) << log();
   EXPECT_GT(runtime_count("quads"), 0);
   EXPECT_EQ(log().find("is not registered"), std::string::npos) << log();
   ASSERT_EQ(run_view("--device simulated --frames 24", "size=48x40 menu=6:8"), 0) << log();
-  EXPECT_NE(log().find("catena: simulated is not registered; G, or the panel Device, asks"), std::string::npos) << log();
+  EXPECT_NE(log().find("catena: simulated is not registered; press G, or use the panel Device"), std::string::npos) << log();
   EXPECT_EQ(runtime_count("illegal"), 0) << test::read_file(folder_ / "record");
 }
 
-/// The controller touches three places, the simulated hand the same ones; the file says where the device stands, and can be given again.
-/// The device lies as the stage does, its origin at (0.2, 0.1, -0.5) of it.
-TEST_F(ViewerXr, ThreeTouchesAreKeptInTheFile) {
+/// The controller and the simulated hand touch the same three points; the device file stores the registration and can be read again.
+/// The device has the stage's orientation and its origin at (0.2, 0.1, -0.5) in stage space.
+TEST_F(ViewerXr, TheRegistrationIsStoredInTheDeviceFile) {
   const std::array<Vec3, 3> touched{Vec3(0, 0, 0), Vec3(0.05, 0, 0), Vec3(0, 0.05, 0.01)};
   const Vec3 origin(0.2, 0.1, -0.5), stage(0.1, -1, 0.3);
   std::string path = "t,x,y,z,buttons\n", words = "size=16x16 stage=0.1:-1:0.3";
@@ -149,29 +149,29 @@ TEST_F(ViewerXr, ThreeTouchesAreKeptInTheFile) {
   test::write_file(folder_ / "arm.json", "{\n  \"type\": \"simulated\",  // mine\n  \"friction\": 0\n}\n");
   const std::string device = "--device simulated:" + (folder_ / "path.csv") + " --device-file " + (folder_ / "arm.json");
   ASSERT_EQ(run_view(device + " --seconds 4.5", words), 0) << log();
-  EXPECT_NE(log().find("is registered: 0."), std::string::npos) << log();
-  EXPECT_NE(log().find("where it stands was written to"), std::string::npos) << log();
-  const std::string kept = test::read_file(folder_ / "arm.json");
-  EXPECT_NE(kept.find("// mine"), std::string::npos) << kept;
+  EXPECT_NE(log().find("is registered: the residual is 0."), std::string::npos) << log();
+  EXPECT_NE(log().find("the registration was written to"), std::string::npos) << log();
+  const std::string device_text = test::read_file(folder_ / "arm.json");
+  EXPECT_NE(device_text.find("// mine"), std::string::npos) << device_text;
   scene::Scene scene;
-  ASSERT_TRUE(apply_device_file(folder_ / "arm.json", scene)) << kept;
+  ASSERT_TRUE(apply_device_file(folder_ / "arm.json", scene)) << device_text;
   const auto settings = haptics::read_device_settings(*scene.device, folder_ / "arm.json");
-  ASSERT_TRUE(settings && settings->room_registration) << kept;
-  EXPECT_LT(norm(settings->room_registration->origin_m - origin), 1e-3) << kept;
-  for (int axis = 0; axis < 3; ++axis) EXPECT_GT(settings->room_registration->room_from_workspace[axis][axis], 0.999) << kept;
-  // given again, nothing is asked for
+  ASSERT_TRUE(settings && settings->room_registration) << device_text;
+  EXPECT_LT(norm(settings->room_registration->origin_m - origin), 1e-3) << device_text;
+  for (int axis = 0; axis < 3; ++axis) EXPECT_GT(settings->room_registration->room_from_workspace[axis][axis], 0.999) << device_text;
+  // With the device file, no registration is requested.
   ASSERT_EQ(run_view(device + " --frames 6", "size=16x16 stage=0.1:-1:0.3"), 0) << log();
-  EXPECT_EQ(log().find("Touch three places"), std::string::npos) << log();
+  EXPECT_EQ(log().find("Touch three points"), std::string::npos) << log();
 }
 
-/// The file says where the device stands: its origin is 0.2 m to the right of the stage's and 0.5 m before it.
-TEST_F(ViewerXr, ADeviceThatIsRegisteredLiesInTheRoom) {
+/// The device file states the registration: the device's origin is 0.2 m to the right of the stage's origin and 0.5 m in front.
+TEST_F(ViewerXr, ARegisteredDeviceHasItsPositionInTheRoom) {
   test::write_file(folder_ / "arm.json", R"({"type": "simulated", "friction": 0, "room_origin": [0.2, 0, -0.5],
     "room_rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]})");
   ASSERT_EQ(run_view("--device simulated --device-file " + (folder_ / "arm.json") + " --seconds 2", "size=48x40 stage=0.1:-1:0.3"), 0)
       << log();
-  EXPECT_EQ(log().find("Touch three places"), std::string::npos) << log();
-  // the head, 2 cm above the room's origin and 1 cm behind it, is where the camera is; the room's z is the view's back, level
+  EXPECT_EQ(log().find("Touch three points"), std::string::npos) << log();
+  // The head, 2 cm above the room's origin and 1 cm behind, is at the camera; the room's z is the horizontal back of the view.
   const Vec3 camera(0, -6, 3), up(0, 0, 1), back = direction(Vec3(0, -6, 0)), right = cross(up, back);
   const double metres_per_unit = 0.7 / norm(camera);
   const Vec3 room(0.1 + 0.2, -1 - 0.02, 0.3 - 0.5 - 0.01);
@@ -195,7 +195,7 @@ XrHand hand_at(const Vec3& position, double grab = 0) {
   return hand;
 }
 
-TEST(XrControllers, WhatIsSqueezedStaysInTheHandAndNothingIsFeltMeanwhile) {
+TEST(XrControllers, AGrabbedWorldFollowsTheHandAndTheProbeIsUntracked) {
   XrControllers hands;
   Placement placement;
   placement.meters_per_unit = 0.1;
@@ -206,24 +206,24 @@ TEST(XrControllers, WhatIsSqueezedStaysInTheHandAndNothingIsFeltMeanwhile) {
   hands.update({XrHand{}, hand_at(from, 1)}, kHead, kDt, placement);
   EXPECT_TRUE(hands.is_grabbing_world());
   EXPECT_FALSE(hands.make_controller_pose(hand_at(from, 1), 2).tracked);
-  hands.update({XrHand{}, hand_at(to, 0.5)}, kHead, kDt, placement);  // between up and down: still held
+  hands.update({XrHand{}, hand_at(to, 0.5)}, kHead, kDt, placement);  // between the thresholds of grab and release: still grabbed
   EXPECT_LT(norm(placement.to_room(held) - to), 1e-12);
   EXPECT_GT(hands.vignette_strength(), 0);
   hands.update({XrHand{}, hand_at(to, 0.3)}, kHead, kDt, placement);
   EXPECT_FALSE(hands.is_grabbing_world());
   EXPECT_TRUE(hands.make_controller_pose(hand_at(to), 3).tracked);
   hands.update({XrHand{}, hand_at(from)}, kHead, kDt, placement);
-  EXPECT_LT(norm(placement.to_room(held) - to), 1e-12);  // it was let go
+  EXPECT_LT(norm(placement.to_room(held) - to), 1e-12);  // the world was released
 }
 
-TEST(XrControllers, AHandThatVanishesWhileItHoldsDoesNotMoveTheWorld) {
+TEST(XrControllers, ALostHandDoesNotMoveTheGrabbedWorld) {
   XrControllers hands;
   Placement placement;
   placement.meters_per_unit = 0.1;
   const Vec3 left(-0.2, 1.0, -0.5), right(0.2, 1.0, -0.5), middle = placement.to_world((left + right) / 2.0);
   const auto stays = [&] { return norm(placement.to_room(middle) - (left + right) / 2.0) < 1e-12 && placement.meters_per_unit == 0.1; };
   for (int k = 0; k < 3; ++k) hands.update({hand_at(left, 1), hand_at(right, 1)}, kHead, kDt, placement);
-  // what a runtime says of a hand that it has lost: nothing that is one, the button as it was
+  // The state of an untracked hand: an invalid pose, and the last button.
   XrHand lost = hand_at(Vec3(std::nan("")), 1);
   lost.orientation = Quat(std::nan(""), 0.0, 0.0, 0.0);
   lost.is_tracked = false;
@@ -235,13 +235,13 @@ TEST(XrControllers, AHandThatVanishesWhileItHoldsDoesNotMoveTheWorld) {
   EXPECT_FALSE(hands.is_grabbing_world());
   EXPECT_FALSE(hands.grab_center({lost, lost}));
   EXPECT_FALSE(hands.make_controller_pose(lost, 1).tracked);
-  // found elsewhere, still squeezed: it takes hold there
+  // A hand that is tracked again elsewhere and still squeezes grabs there.
   hands.update({hand_at(left + Vec3(1, 1, 1), 1), lost}, kHead, kDt, placement);
   EXPECT_TRUE(stays());
   EXPECT_TRUE(hands.is_grabbing_world());
 }
 
-TEST(XrControllers, TheStickTurnsThePersonAndTheWorldTheOtherWay) {
+TEST(XrControllers, TheStickTurnsTheWorldInTheOppositeDirection) {
   XrControllers hands;
   Placement placement;
   const Vec3 ahead = placement.to_world(kHead + Vec3(0.0, 0.0, -1.0));
@@ -249,12 +249,12 @@ TEST(XrControllers, TheStickTurnsThePersonAndTheWorldTheOtherWay) {
   right.stick_x = -1;  // to the left
   hands.update({XrHand{}, right}, kHead, kDt, placement);
   const Vec3 now = placement.to_room(ahead) - kHead;
-  EXPECT_GT(now.x, 0.1);  // what was ahead is to the right
+  EXPECT_GT(now.x, 0.1);  // the point ahead is now to the right
   EXPECT_NEAR(now.y, 0, 1e-12);
-  EXPECT_EQ(hands.vignette_strength(), 0);  // a step is no motion
+  EXPECT_EQ(hands.vignette_strength(), 0);  // a snap turn is no continuous motion
 }
 
-TEST(XrControllers, AVibrationStopsWithTheFocus) {
+TEST(XrControllers, AVibrationStopsWhenFocusIsLost) {
   XrControllers hands;
   haptics::PeakDetector peaks;
   const XrHand hand = hand_at({0.0, 1.0, -0.3});
@@ -268,9 +268,9 @@ TEST(XrControllers, AVibrationStopsWithTheFocus) {
   (void)hands.next_vibration(peaks, now, true, hand);
   push(0);
   push(1.5);
-  const auto felt = hands.next_vibration(peaks, now += 11'000'000, true, hand);
-  EXPECT_EQ(felt.action, What::vibrate);
-  EXPECT_GT(felt.vibration.amplitude, 0.5);
+  const auto sent = hands.next_vibration(peaks, now += 11'000'000, true, hand);
+  EXPECT_EQ(sent.action, What::vibrate);
+  EXPECT_GT(sent.vibration.amplitude, 0.5);
   push(0);
   EXPECT_EQ(hands.next_vibration(peaks, now += 11'000'000, false, hand).action, What::stop);
   push(1.5);
@@ -279,8 +279,8 @@ TEST(XrControllers, AVibrationStopsWithTheFocus) {
 
 #if __has_include(<openxr/openxr.h>)
 
-/// A scripted clock of milliseconds, and a hand that goes one unit a millisecond: where it is drawn says from when it is. The runtime's
-/// wait and the making of a packet take their scripted time, as in the window's loop, which looks at the hand before both.
+/// A scripted clock in milliseconds, and a hand that moves one unit per millisecond, so that its position states its time. The runtime's
+/// wait and the creation of a packet take scripted times; the window's loop samples the hand before both.
 struct LateHand {
   double now_ms = 0;
   double wait_ms(std::uint64_t frame) const { return 4 + double(frame % 6); }
@@ -288,7 +288,7 @@ struct LateHand {
   Vec3 place() const { return Vec3(now_ms, 0, 0); }
 };
 
-/// Run as a process on a display of its own, by the case after it.
+/// The child process of TheProbeIsNewerByTheWaitAndThePacket, on a display of its own.
 TEST(LateLatching, DISABLED_Child) {
   const std::string result = test::child_variable("CATENA_LATCHING");
   if (result.empty()) GTEST_SKIP() << "it is run by the case after it";
@@ -312,7 +312,7 @@ TEST(LateLatching, DISABLED_Child) {
   ASSERT_TRUE(holder.open_device(host->scene()));
 
   Vec3 looked_at(0.0);
-  std::vector<double> late_ms, early_ms;  // how old the hand is that each eye shows, and would be
+  std::vector<double> late_ms, early_ms;  // age of the drawn hand per eye, with and without late latching
   HeadsetSession::FrameCallbacks content;
   content.make_packet = [&]() -> Result<render::FramePacket> {
     render::FramePacket packet = test::xr_rig::ball_packet({0.0, 0.0, -1.0}, 0.3);
@@ -343,8 +343,8 @@ TEST(LateLatching, DISABLED_Child) {
   (*headset)->request_exit();
 }
 
-/// The hand in the picture is newer by the whole wait for the frame (4 to 9 ms here) and the making of the packet (1.5 ms).
-TEST(LateLatching, TheHandIsNewerByTheWaitAndThePacket) {
+/// The drawn hand is newer by the wait for the frame (4 to 9 ms) and the creation of the packet (1.5 ms).
+TEST(LateLatching, TheProbeIsNewerByTheWaitAndThePacket) {
   if (!test::exists(test::binary_dir() + "/libcatena_xr_runtime.so")) GTEST_SKIP() << "the scripted runtime was not built";
   if (!test::can_drive_windows()) GTEST_SKIP() << "there is no virtual display";
   test::TemporaryFolder folder;

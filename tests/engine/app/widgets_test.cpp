@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena replay --widgets`: a cutting plane held by a scripted hand, against closed forms.
+/// `catena replay --widgets`: a cutting plane dragged by a scripted probe, against closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ class Widgets : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(Widgets, ADragAlongXWithATremblingHandLeavesYAndZ) {
+TEST_F(Widgets, ADragAlongXWithTremorKeepsYAndZ) {
   std::string path;
   for (int k = 0; k < 200; ++k) path += row(k, {1.0, 0.5, 0.0}, 0);
   for (int k = 200; k <= 1200; ++k)
@@ -49,14 +49,14 @@ TEST_F(Widgets, ADragAlongXWithATremblingHandLeavesYAndZ) {
   EXPECT_EQ(table.text(100, "cut_mode"), "explore");
   EXPECT_EQ(table.text(700, "cut_mode"), "translate");
   EXPECT_EQ(table.text(1290, "cut_mode"), "explore");
-  // the plane across x lets go at `step`: from there on the widget goes as far as the hand
+  // The plane across x releases at `step`; then the widget moves as far as the probe.
   EXPECT_EQ(table.number(360, "cut_x"), 0);
   EXPECT_NEAR(table.number(1200, "cut_x"), 0.6 - 0.1, 1e-12);
   EXPECT_NEAR(table.number(table.rows() - 1, "cut_x"), 0.5, 1e-12);
 }
 
-TEST_F(Widgets, ATurnAboutAnAxisKeepsTheAxis) {
-  // on the great circle across the widget's y, away from where it crosses the others: from x towards z by 100 degrees
+TEST_F(Widgets, ARotationAboutAnAxisKeepsTheAxis) {
+  // A path on the great circle across the widget's y axis, away from the other circles: from x towards z by 100 degrees.
   const double angle = 100 * M_PI / 180, start = 40 * M_PI / 180;
   std::string path;
   for (int k = 0; k < 200; ++k) path += row(k, {0.5 * std::cos(start), 0.0, 0.5 * std::sin(start)}, 0);
@@ -69,14 +69,14 @@ TEST_F(Widgets, ATurnAboutAnAxisKeepsTheAxis) {
   ASSERT_EQ(table.text(last, "cut_mode"), "turn");
   EXPECT_EQ(table.number(last, "cut_held"), 2) << "the plane across y";
   for (std::size_t k = 0; k <= last; ++k) EXPECT_NEAR(table.number(k, "cut_ny"), 0, 1e-12);
-  // x goes to z, so z goes to -x
+  // x rotates to z, so z rotates to -x.
   EXPECT_NEAR(table.number(last, "cut_nx"), -std::sin(angle), 1e-12);
   EXPECT_NEAR(table.number(last, "cut_nz"), std::cos(angle), 1e-12);
   EXPECT_EQ(table.number(last, "cut_x"), 0);
   EXPECT_EQ(table.number(last, "cut_z"), 0);
 }
 
-TEST_F(Widgets, ANameTakenByAWidgetsLinkIsRefusedInOneLine) {
+TEST_F(Widgets, ALinkWithTheNameOfAWidgetsLinkIsRefused) {
   test::write_file(folder_ / "bad.json", R"({"fields": {}, "chain": [{"name": "widget_x", "type": "point", "position": [0, 0, 0]}],
     "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1]}]})");
   test::write_file(folder_ / "p.csv", "t,x,y,z\n0,0,0,0\n");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The world in the hand: what is held stays where it is held, with one hand and two.
+/// Grabbing the world with one hand or two: the grabbed points stay at the hands.
 #include "engine/app/viewer/xr/world_grab.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ Vec3 turn_between(const Placement& before, const Placement& now) {
   return rotation_vector(normalized(glm::quat_cast(transpose(now.world_from_room) * before.world_from_room)));
 }
 
-TEST(Placement, WorldAndRoomLeadBack) {
+TEST(Placement, WorldAndRoomTransformsAreInverse) {
   Dice dice;
   for (int i = 0; i < 100; ++i) {
     const Vec3 world = dice.vec(20);
@@ -38,7 +38,7 @@ TEST(Placement, WorldAndRoomLeadBack) {
   }
 }
 
-TEST(WorldGrab, OneHandKeepsWhatItHolds) {
+TEST(WorldGrab, OneHandKeepsTheGrabbedPose) {
   Dice dice;
   for (int i = 0; i < 50; ++i) {
     WorldGrab grab;
@@ -47,18 +47,18 @@ TEST(WorldGrab, OneHandKeepsWhatItHolds) {
     const GrabController start = hands[which] = dice.hand();
     Placement now = grab.move(kSome, hands);
     EXPECT_EQ(now.world_origin, kSome.world_origin) << "taking hold moves nothing";
-    // a point that the hand sees at `seen` of its own axes is seen there ever after
-    const Vec3 seen = dice.vec(0.2), world = now.to_world(start.position_m + rotate(start.orientation, seen));
+    // A world point at `hand_point` in the hand's frame stays there.
+    const Vec3 hand_point = dice.vec(0.2), world = now.to_world(start.position_m + rotate(start.orientation, hand_point));
     for (int k = 0; k < 5; ++k) {
       hands[which] = dice.hand();
       now = grab.move(now, hands);
       EXPECT_EQ(now.meters_per_unit, kSome.meters_per_unit);
-      EXPECT_LT(norm(now.to_room(world) - hands[which].position_m - rotate(hands[which].orientation, seen)), 1e-13);
+      EXPECT_LT(norm(now.to_room(world) - hands[which].position_m - rotate(hands[which].orientation, hand_point)), 1e-13);
     }
   }
 }
 
-TEST(WorldGrab, TwoHandsHoldTwoPlaces) {
+TEST(WorldGrab, TwoHandsKeepTwoGrabbedPoints) {
   Dice dice;
   for (int i = 0; i < 50; ++i) {
     WorldGrab grab;
@@ -74,7 +74,7 @@ TEST(WorldGrab, TwoHandsHoldTwoPlaces) {
   }
 }
 
-TEST(WorldGrab, BothHandsTwistingTogetherTurnTheWorldAboutTheirLine) {
+TEST(WorldGrab, TwistingBothHandsRotatesTheWorldAboutTheirLine) {
   WorldGrab grab;
   std::array<GrabController, 2> hands{GrabController{{-0.2, 1, 0}, kIdentityRotation, true},
                                       GrabController{{0.2, 1, 0}, kIdentityRotation, true}};
@@ -85,7 +85,7 @@ TEST(WorldGrab, BothHandsTwistingTogetherTurnTheWorldAboutTheirLine) {
   EXPECT_LT(norm(turn_between(kSome, now) - Vec3(0.6, 0, 0)), 1e-12);
 }
 
-TEST(WorldGrab, ChangingHandsNeverJumps) {
+TEST(WorldGrab, ChangingTheGrabbingHandsCausesNoJump) {
   Dice dice;
   WorldGrab grab;
   std::array<GrabController, 2> hands{dice.hand(), dice.hand()};
@@ -96,7 +96,7 @@ TEST(WorldGrab, ChangingHandsNeverJumps) {
     hands[1].is_grabbing = (k / 5) % 3 != 0;
     const bool changes = hands[0].is_grabbing != ((k - 1) / 7 % 2 == 0) || hands[1].is_grabbing != ((k - 1) / 5 % 3 != 0);
     const Vec3 before = now.to_room(world);
-    // the hands move a little in each step: what they carry moves a little too
+    // The hands move a little in each step, so the world moves a little.
     for (GrabController& hand : hands) {
       hand.position_m += dice.vec(1e-3);
       hand.orientation = normalized(rotation_from_vector(dice.vec(1e-3)) * hand.orientation);
@@ -110,7 +110,7 @@ TEST(WorldGrab, ChangingHandsNeverJumps) {
   }
 }
 
-TEST(WorldGrab, HandsThatTouchDoNotScaleAndTheScaleHasEnds) {
+TEST(WorldGrab, HandsThatAreTooCloseDoNotScaleAndTheScaleIsLimited) {
   WorldGrab grab(WorldGrab::Options{.min_meters_per_unit = 0.04, .max_meters_per_unit = 0.06});
   std::array<GrabController, 2> hands{GrabController{{0, 1, 0}, kIdentityRotation, true},
                                       GrabController{{0.3, 1, 0}, kIdentityRotation, true}};
@@ -127,7 +127,7 @@ TEST(WorldGrab, HandsThatTouchDoNotScaleAndTheScaleHasEnds) {
   EXPECT_LT(norm(turn_between(kSome, now)), 1e-12);
 }
 
-TEST(WorldGrab, UprightTurnsAboutTheVerticalAlone) {
+TEST(WorldGrab, YawOnlyRotatesAboutTheVerticalOnly) {
   WorldGrab grab(WorldGrab::Options{.yaw_only = true});
   std::array<GrabController, 2> hands{GrabController{{0, 1, 0}, kIdentityRotation, true}, GrabController{}};
   Placement upright;
@@ -139,7 +139,7 @@ TEST(WorldGrab, UprightTurnsAboutTheVerticalAlone) {
   EXPECT_GT(norm(turn_between(upright, now)), 0.5);
 }
 
-TEST(Placement, ScaleIsSaidInAUnitThatAPersonReads) {
+TEST(Placement, TheScaleIsFormattedInAReadableUnit) {
   EXPECT_EQ(format_scale(0.05), "1 unit = 5 cm");
   EXPECT_EQ(format_scale(1), "1 unit = 1 m");
   EXPECT_EQ(format_scale(0.001), "1 unit = 1 mm");

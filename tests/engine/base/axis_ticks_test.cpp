@@ -8,7 +8,7 @@
 #include <random>
 
 namespace catena {
-namespace ticks_test {
+namespace axis_ticks_test {
 
 std::vector<std::string> labels_of(double lo, double hi, int about = 5) {
   std::vector<std::string> labels;
@@ -18,7 +18,7 @@ std::vector<std::string> labels_of(double lo, double hi, int about = 5) {
 
 using Labels = std::vector<std::string>;
 
-TEST(Ticks, ClosedCases) {
+TEST(Ticks, KnownRangesHaveKnownTicks) {
   EXPECT_EQ(labels_of(0, 1), (Labels{"0.0", "0.2", "0.4", "0.6", "0.8", "1.0"}));
   EXPECT_EQ(labels_of(0, 10), (Labels{"0", "2", "4", "6", "8", "10"}));
   EXPECT_EQ(labels_of(-1, 1), (Labels{"-1.0", "-0.5", "0.0", "0.5", "1.0"}));
@@ -39,14 +39,14 @@ TEST(Ticks, LargeAndSmallNumbersHaveExponents) {
   EXPECT_EQ(labels_of(-1e300, 1e300, 3), (Labels{"-1e300", "0", "1e300"}));
 }
 
-TEST(Ticks, NoRangeIsOneTick) {
+TEST(Ticks, AnEmptyRangeHasOneTick) {
   EXPECT_EQ(labels_of(0.3, 0.3), Labels{"0.3"});
   EXPECT_EQ(labels_of(1, std::nextafter(1.0, 2.0)), Labels{"1"});
   EXPECT_TRUE(nice_ticks(0, std::nan("")).empty());
   EXPECT_TRUE(nice_ticks(-std::numeric_limits<double>::infinity(), 0).empty());
 }
 
-/// CellFinder the range, evenly spaced at 1, 2, 5 times a power of ten, as many as promised; values are what labels say.
+/// Ticks lie in the range, evenly spaced at 1, 2 or 5 times a power of ten, in the promised number; and labels equal the values.
 TEST(Ticks, AnyRangeHasNiceTicks) {
   std::mt19937 random(3);
   const auto in = [&](double a, double b) { return a + (b - a) * (static_cast<double>(random()) / 4294967296.0); };
@@ -77,5 +77,5 @@ TEST(Ticks, AnyRangeHasNiceTicks) {
   }
 }
 
-}  // namespace ticks_test
+}  // namespace axis_ticks_test
 }  // namespace catena

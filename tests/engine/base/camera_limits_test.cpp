@@ -6,18 +6,18 @@
 #include <limits>
 
 namespace catena {
-namespace eye_limits_test {
+namespace camera_limits_test {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-TEST(CameraLimits, ReasonableEyesOfAnyScalePass) {
+TEST(CameraLimits, ReasonableCamerasOfAnyScaleAreValid) {
   for (const double unit : {1e-9, 1e-3, 1.0, 1e6, 1e12})
     EXPECT_EQ(validate_view(Vec3(3, -4, 5) * unit, Vec3(0.1, 0, 0) * unit), "") << unit;
   EXPECT_EQ(validate_view({1e6, 0, 0}, {1e6 + 1, 0, 0}), "") << "an eye far from the origin";
   for (const double fovy : {0.01, 30.0, 170.0}) EXPECT_EQ(validate_fovy(fovy), "");
 }
 
-TEST(CameraLimits, AbsurdOnesAreSaid) {
+TEST(CameraLimits, ExtremeCamerasAreRefused) {
   for (const double far : {1e16, -1e30, 1e308, kInf, std::nan("")}) {
     EXPECT_NE(validate_view({0, far, 0}, {0, 0, 0}).find("too far away"), std::string::npos) << far;
     EXPECT_NE(validate_view({0, 1, 0}, {far, 0, 0}).find("too far away"), std::string::npos) << far;
@@ -29,5 +29,5 @@ TEST(CameraLimits, AbsurdOnesAreSaid) {
     EXPECT_NE(validate_fovy(fovy).find("degrees between 0 and 180"), std::string::npos) << fovy;
 }
 
-}  // namespace eye_limits_test
+}  // namespace camera_limits_test
 }  // namespace catena

@@ -19,7 +19,7 @@ void expect_error(const Result<T>& result, std::initializer_list<const char*> pa
   for (const char* part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks " << part;
 }
 
-TEST(Csv, ReadsRowsInTheOrderAsked) {
+TEST(Csv, ReadsColumnsInAnyOrder) {
   const auto rows = parse_probe_path("t,x,y,z\n0,1,2,3\n0.001,-1e-3,.5,+7\n", "p.csv");
   ASSERT_TRUE(rows) << rows.error().message;
   ASSERT_EQ(rows->size(), 2u);
@@ -31,7 +31,7 @@ TEST(Csv, ReadsRowsInTheOrderAsked) {
   EXPECT_EQ((*turned)[0].buttons, 5u);
 }
 
-TEST(Csv, ForgivesWhatSpreadsheetsDo) {
+TEST(Csv, AcceptsTheFormatsOfSpreadsheets) {
   for (const char* text : {"\xEF\xBB\xBFt,x,y,z\r\n0,1,2,3\r\n", "t,x,y,z\n0,1,2,3", " t , x,y,z \n 0 , 1,\t2,3 \n\n\r\n  \n"}) {
     const auto rows = parse_probe_path(text, "p.csv");
     ASSERT_TRUE(rows) << rows.error().message;
@@ -40,7 +40,7 @@ TEST(Csv, ForgivesWhatSpreadsheetsDo) {
   }
 }
 
-TEST(Csv, HeaderErrors) {
+TEST(Csv, HeaderErrorsAreReported) {
   expect_error(parse_probe_path("t,x,y\n0,1,2\n", "p.csv"),
                {"p.csv:1:", "\"z\" is missing", "\"t,x,y,z[,buttons][,qw,qx,qy,qz]\" was expected"});
   expect_error(parse_probe_path("t,x,y,z,w\n0,1,2,3,4\n", "p.csv"), {"p.csv:1:", "unknown column \"w\"", "expected"});
@@ -54,13 +54,13 @@ TEST(Csv, HeaderErrors) {
   expect_error(parse_seeds("t,x,y,z\n0,1,2,3\n", "s.csv"), {"s.csv:1:", "unknown column \"t\"", "\"x,y,z\" was expected"});
 }
 
-TEST(Csv, AnOrientationComesWholeAndIsAUnitQuaternion) {
+TEST(Csv, AnOrientationHasAllColumnsAndIsNormalized) {
   const auto rows = parse_probe_path("t,x,y,z,buttons,qw,qx,qy,qz\n0,1,2,3,0,0.6,0.8,0,0\n1,1,2,3,1,0.7071,0,0,0.7071\n", "p.csv");
   ASSERT_TRUE(rows) << rows.error().message;
   EXPECT_TRUE((*rows)[0].has_orientation);
   EXPECT_NEAR((*rows)[0].orientation.w, 0.6, 1e-15);
   EXPECT_NEAR((*rows)[0].orientation.x, 0.8, 1e-15);
-  EXPECT_NEAR((*rows)[1].orientation.z, std::sqrt(0.5), 1e-15);  // normalised
+  EXPECT_NEAR((*rows)[1].orientation.z, std::sqrt(0.5), 1e-15);  // normalized
   EXPECT_EQ((*rows)[1].buttons, 1u);
   const auto plain = parse_probe_path("t,x,y,z\n0,1,2,3\n", "p.csv");
   ASSERT_TRUE(plain);
@@ -71,7 +71,7 @@ TEST(Csv, AnOrientationComesWholeAndIsAUnitQuaternion) {
                {"p.csv:3:", "length 0", "unit quaternion was expected"});
 }
 
-TEST(Csv, RowErrors) {
+TEST(Csv, RowErrorsNameTheLine) {
   expect_error(parse_seeds("x,y,z\n0,1,2\n0,1\n", "s.csv"), {"s.csv:3:", "has 2 cells", "3 were expected"});
   expect_error(parse_seeds("x,y,z\n0,1,2,\n", "s.csv"), {"s.csv:2:", "has 4 cells", "3 were expected"});
   expect_error(parse_seeds("x,y,z\n0,1,abc\n", "s.csv"), {"s.csv:2:", "\"abc\" in column \"z\"", "finite number was expected"});
@@ -81,7 +81,7 @@ TEST(Csv, RowErrors) {
     expect_error(parse_seeds("x,y,z\n0,1," + std::string(bad) + "\n", "s.csv"), {"s.csv:2:", bad, "finite number was expected"});
 }
 
-TEST(Csv, TimeRisesStrictly) {
+TEST(Csv, TimeMustIncreaseStrictly) {
   expect_error(parse_probe_path("t,x,y,z\n0,1,2,3\n0.1,1,2,3\n0.1,1,2,3\n", "p.csv"), {"p.csv:4:", "t is 0.1 after 0.1", "rising"});
   expect_error(parse_probe_path("t,x,y,z\n1,1,2,3\n0,1,2,3\n", "p.csv"), {"p.csv:3:", "t is 0 after 1", "rising"});
 }
@@ -92,7 +92,7 @@ TEST(Csv, ButtonsAreAMask) {
     expect_error(parse_probe_path("t,x,y,z,buttons\n0,1,2,3," + std::string(bad) + "\n", "p.csv"), {"p.csv:2:", bad, "whole number"});
 }
 
-TEST(Csv, FilesThatCannotBeRead) {
+TEST(Csv, UnreadableFilesAreRefused) {
   const test::TemporaryFolder folder;
   expect_error(read_seeds(folder / "none.csv"), {"none.csv", "No such file", "x,y,z", "expected"});
   expect_error(read_probe_path(folder.path()), {folder.path().c_str(), "is a folder", "expected"});
@@ -109,8 +109,8 @@ TEST(Csv, ManyRowsKeepTheirValues) {
   EXPECT_EQ(rows->back().position.z, 399998.0);
 }
 
-// before: 527 MB for 3 million rows, whatever was allowed
-TEST(Csv, RowsAskForTheirMemory) {
+// The memory of the rows is counted and limited.
+TEST(Csv, TheMemoryOfRowsIsChecked) {
   std::string text = "t,x,y,z\n";
   for (int i = 0; i < 10000; ++i) text += std::to_string(i) + ",0,0,0\n";
   set_memory_limit(1000000);

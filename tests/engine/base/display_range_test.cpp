@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The range that pictures show where nobody states one: outliers and fill values are left out, and nothing of ordinary data is.
+// The default range of values in images: outliers and fill values are left out, ordinary data are not.
 #include "engine/base/display_range.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace display_range_test {
 
 constexpr float kMost = std::numeric_limits<float>::max();
 
-/// `n` values spread over lo..hi, both included.
+/// `n` evenly spaced values of lo..hi, including both ends.
 std::vector<float> spread(int n, double lo, double hi) {
   std::vector<float> values;
   for (int i = 0; i < n; ++i) values.push_back(static_cast<float>(lo + (hi - lo) * i / (n - 1)));
@@ -51,7 +51,7 @@ TEST(DisplayRange, OutliersAndFillValuesAreLeftOut) {
   for (const Case& c : cases) EXPECT_EQ(format_range(display_range(c.values)), c.text);
 }
 
-TEST(DisplayRange, OrdinaryDataKeepTheirRange) {
+TEST(DisplayRange, OrdinaryDataHaveTheirFullRange) {
   std::mt19937 random(1);
   std::lognormal_distribution<double> tail(0, 3);
   std::normal_distribution<double> bell;
@@ -97,7 +97,7 @@ TEST(DisplayRange, ManyEqualValuesMayMeanMissingData) {
   EXPECT_EQ(outlier_note(display_range(spread(700, 0, 1))), "");
 }
 
-TEST(Numbers, ReadableAsPeopleWriteThem) {
+TEST(Numbers, AreFormattedReadably) {
   const std::pair<double, const char*> cases[] = {{1e20f, "1e20"},
                                                   {0.1f, "0.1"},
                                                   {-0.0, "0"},

@@ -5,11 +5,11 @@
 
 #include "tests/support/support.h"
 
-namespace append_file_test {
+namespace durable_append_test {
 
 using namespace catena;
 
-TEST(DurableAppend, TheHeaderComesOnceAndRowsFollow) {
+TEST(DurableAppend, TheHeaderIsWrittenOnceBeforeTheRows) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "t.csv";
   ASSERT_TRUE(append_durably(path, "a,b\n", "1,2\n"));
@@ -17,7 +17,7 @@ TEST(DurableAppend, TheHeaderComesOnceAndRowsFollow) {
   EXPECT_EQ(test::read_file(path), "a,b\n1,2\n3,4\n");
 }
 
-TEST(DurableAppend, WhatCannotBeWrittenIsOneLine) {
+TEST(DurableAppend, AWriteErrorIsOneLine) {
   const test::TemporaryFolder folder;
   for (const std::string& path : {std::string("/dev/full"), folder / "no/such.csv"}) {
     const Outcome done = append_durably(path, "a\n", "1\n");
@@ -26,4 +26,4 @@ TEST(DurableAppend, WhatCannotBeWrittenIsOneLine) {
   }
 }
 
-}  // namespace append_file_test
+}  // namespace durable_append_test

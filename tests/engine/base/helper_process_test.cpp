@@ -16,7 +16,7 @@ namespace helper_process_test {
 
 using test::TemporaryFolder;
 
-/// A script as a program.
+/// Writes a script as a program, and returns its path.
 std::string script(const TemporaryFolder& folder, const std::string& text) {
   const std::string path = folder / "helper";
   test::write_file(path, "#!/bin/sh\n" + text);
@@ -24,10 +24,10 @@ std::string script(const TemporaryFolder& folder, const std::string& text) {
   return path;
 }
 
-TEST(HelperProcess, HasItsDescriptorsAndNothingElse) {
+TEST(HelperProcess, InheritsOnlyTheGivenDescriptors) {
   TemporaryFolder folder;
   ::setenv("CATENA_SECRET", "told", 1);
-  const FileDescriptor other(::open("/dev/null", O_RDONLY));  // inherited by whoever does not close it
+  const FileDescriptor other(::open("/dev/null", O_RDONLY));  // inherited by any child that does not close it
   const FileDescriptor a(::open((folder / "a").c_str(), O_RDWR | O_CREAT, 0600)), b(::open((folder / "b").c_str(), O_RDWR | O_CREAT, 0600));
   const int given[] = {a.get(), b.get()};
   auto helper = HelperProcess::start(script(folder, "ls /proc/self/fd >&3; env >&4; echo gone; exit 5\n"), given);
@@ -35,12 +35,12 @@ TEST(HelperProcess, HasItsDescriptorsAndNothingElse) {
   const ProcessExit end = helper->wait(30);
   EXPECT_EQ(end.cause, ProcessExit::Cause::exited);
   EXPECT_EQ(end.code, 5);
-  // the script's own: 0 to 4, where ls looks, and where the shell keeps its script
+  // The descriptors of the script (0 to 4), the one that ls opens, and the shell's descriptor of its script.
   EXPECT_LE(test::read_file(folder / "a").size(), std::string("0\n1\n2\n3\n4\n10\n5\n").size());
   EXPECT_EQ(test::read_file(folder / "b").find("told"), std::string::npos);
 }
 
-TEST(HelperProcess, SaysHowItEnded) {
+TEST(HelperProcess, ReportsItsExit) {
   TemporaryFolder folder;
   auto killed = HelperProcess::start(script(folder, "kill -SEGV $$\n"), {});
   ASSERT_TRUE(killed);
@@ -55,8 +55,8 @@ TEST(HelperProcess, SaysHowItEnded) {
   EXPECT_NE(absent.error().message.find("cannot be started"), std::string::npos);
 }
 
-// before: "(Invalid argument), expected it beside the program", as if it were not there
-TEST(HelperProcess, TooFewDescriptorsAreALimitOfTheMachine) {
+// A lack of descriptors must not be reported as a missing helper.
+TEST(HelperProcess, TooFewDescriptorsAreASystemFailure) {
   const FileDescriptor file(::open("/dev/null", O_RDONLY));
   const int given[] = {file.get()};
   rlimit before{};

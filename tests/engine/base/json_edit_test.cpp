@@ -27,7 +27,7 @@ std::string removed(std::string_view text, std::string_view pointer) {
 
 // ---- offsets ----
 
-TEST(JsonOffsets, AreTheValuesBytes) {
+TEST(JsonOffsets, AreTheByteRangesOfValues) {
   const std::string text =
       "\xEF\xBB\xBF// caf\xc3\xa9 /* \r\n{ /* \"no\" */ \"k\xc3\xa9y\": \"\xe2\x82\xac\\\"x\" , // {\r\n\"a\":[1e-3 /* ] */ ,-2, {} , "
       "true],\"n\"  :null}";
@@ -58,14 +58,14 @@ TEST(JsonSet, ReplacesTheValueOnly) {
   EXPECT_EQ(set("{\"a\\u0062\\\"\": 2}", "/ab\"", "3"), "{\"a\\u0062\\\"\": 3}");
 }
 
-TEST(JsonSet, LeavesTheCommentsAroundANewValueAway) {
+TEST(JsonSet, DropsCommentsAroundANewValue) {
   EXPECT_EQ(set("[1, 2]", "/0", " /* a */ 7 // b"), "[7, 2]");
   EXPECT_EQ(set("[1, 2]", "/0", "\xEF\xBB\xBF[8 /* kept */]\n"), "[[8 /* kept */], 2]");
 }
 
 // ---- adding ----
 
-TEST(JsonSet, AddsAsTheLayoutIs) {
+TEST(JsonSet, AddsInTheExistingLayout) {
   EXPECT_EQ(set("{\"a\": 1}", "/b", "2"), "{\"a\": 1, \"b\": 2}");
   EXPECT_EQ(set("{\"a\":1,\"b\":2}", "/c", "3"), "{\"a\":1,\"b\":2,\"c\":3}");
   EXPECT_EQ(set("{ \"a\" : 1 }", "/b", "2"), "{ \"a\" : 1, \"b\" : 2 }");
@@ -87,7 +87,7 @@ TEST(JsonSet, AddsAfterTheCommentsOfTheLastLine) {
   EXPECT_EQ(set("[\n 1 /* a\n b */\n]", "/-", "2"), "[\n 1, /* a\n b */\n 2\n]");
 }
 
-TEST(JsonSet, AddsToEmptyOnes) {
+TEST(JsonSet, AddsToEmptyContainers) {
   EXPECT_EQ(set("{}", "/a", "1"), "{\"a\": 1}");
   EXPECT_EQ(set("{ }", "/a", "1"), "{ \"a\": 1 }");
   EXPECT_EQ(set("[]", "/-", "1"), "[1]");
@@ -99,7 +99,7 @@ TEST(JsonSet, AddsToEmptyOnes) {
   EXPECT_EQ(set("{\n   \"w\": [\n   ]\n}", "/w/-", "1"), "{\n   \"w\": [\n      1\n   ]\n}");
 }
 
-TEST(JsonSet, MakesTheParentsThatLack) {
+TEST(JsonSet, AddsMissingParents) {
   EXPECT_EQ(set("{\n  \"a\": 1\n}", "/camera/position", "[1, 2, 3]"), "{\n  \"a\": 1,\n  \"camera\": {\"position\": [1, 2, 3]}\n}");
   EXPECT_EQ(set("{}", "/widgets/-", "{\"name\": \"w\"}"), "{\"widgets\": [{\"name\": \"w\"}]}");
   EXPECT_EQ(set("{}", "/a~1b/0/c\"d", "1"), "{\"a/b\": [{\"c\\\"d\": 1}]}");
@@ -118,7 +118,7 @@ TEST(JsonInsert, PutsAnItemBeforeAnother) {
 
 // ---- removing ----
 
-TEST(JsonRemove, TakesTheCommaAlong) {
+TEST(JsonRemove, RemovesTheComma) {
   EXPECT_EQ(removed("[1, 2, 3]", "/0"), "[2, 3]");
   EXPECT_EQ(removed("[1, 2, 3]", "/1"), "[1, 3]");
   EXPECT_EQ(removed("[1, 2, 3]", "/2"), "[1, 2]");
@@ -131,7 +131,7 @@ TEST(JsonRemove, TakesTheCommaAlong) {
   EXPECT_EQ(removed("{\n  \"a\": 1\n}", "/a"), "{}");
 }
 
-TEST(JsonRemove, TakesTheLineAlong) {
+TEST(JsonRemove, RemovesTheLine) {
   const std::string text = "{\n  \"a\": 1,\n  \"b\": [\n    2\n  ],\n  \"c\": 3\n}\n";
   EXPECT_EQ(removed(text, "/a"), "{\n  \"b\": [\n    2\n  ],\n  \"c\": 3\n}\n");
   EXPECT_EQ(removed(text, "/b"), "{\n  \"a\": 1,\n  \"c\": 3\n}\n");
@@ -142,7 +142,7 @@ TEST(JsonRemove, TakesTheLineAlong) {
   EXPECT_EQ(removed("{\"a\": 1,\n \"b\": 2}", "/a"), "{\"b\": 2}");
 }
 
-TEST(JsonRemove, LeavesTheCommentsAboutIt) {
+TEST(JsonRemove, KeepsTheCommentsAroundTheValue) {
   const std::string text = "{\n  // first\n  \"a\": 1, // one\n  \"b\": 2 /* two */, // zwei\n  \"c\": 3 // three\n}";
   EXPECT_EQ(removed(text, "/a"), "{\n  // first\n  // one\n  \"b\": 2 /* two */, // zwei\n  \"c\": 3 // three\n}");
   EXPECT_EQ(removed(text, "/b"), "{\n  // first\n  \"a\": 1, // one\n  /* two */ // zwei\n  \"c\": 3 // three\n}");
@@ -156,7 +156,7 @@ TEST(JsonRemove, LeavesTheCommentsAboutIt) {
 
 // ---- errors ----
 
-TEST(JsonEdit, ErrorsSayThePlaceAndWhatWasExpected) {
+TEST(JsonEdit, ErrorsNameThePositionAndTheExpectation) {
   const std::string text = "{\n \"a\": [1],\n \"b\": 2}";
   const auto refused = [&](const std::string& message, const char* start, const char* part) {
     EXPECT_TRUE(message.starts_with(start)) << message;
@@ -180,7 +180,7 @@ TEST(JsonEdit, ErrorsSayThePlaceAndWhatWasExpected) {
           "f.json:1: ", "nests too deep");
 }
 
-TEST(JsonText, ReadsBackExactly) {
+TEST(JsonText, WrittenValuesReadBackExactly) {
   std::mt19937_64 random(7);
   for (int i = 0; i < 20000; ++i) {
     const double value = std::bit_cast<double>(random());
@@ -198,7 +198,7 @@ TEST(JsonText, ReadsBackExactly) {
   EXPECT_EQ(read->string, all);
 }
 
-// ---- any edit of any layout does to the text what it does to the tree ----
+// ---- random edits of any layout: the text changes as the tree does ----
 
 using Random = std::mt19937_64;
 std::size_t below(Random& random, std::size_t n) { return static_cast<std::size_t>(random() % n); }
@@ -217,7 +217,7 @@ Node random_tree(Random& random, int depth) {
   return node;
 }
 
-/// Blanks, line ends and comments.
+/// Random blanks, line ends and comments.
 std::string random_space(Random& random, bool comments, const std::string& line_end) {
   std::string out;
   for (std::size_t i = below(random, 3); i > 0; --i) {
@@ -270,7 +270,7 @@ std::string random_text(const Node& node, Random& random, const std::string& lin
   return out;
 }
 
-/// Pointers to every value but the root.
+/// The pointers to all values except the root.
 void all_places(const Node& node, std::string pointer, std::vector<std::string>& places) {
   for (std::size_t i = 0; i < node.items.size(); ++i) {
     places.push_back(pointer + "/" + std::to_string(i));
@@ -291,7 +291,7 @@ void erase(Node& root, const std::string& pointer) {
   if (!parent.items.empty()) parent.items.erase(parent.items.begin() + (child - parent.items.data()));
 }
 
-/// What is left without blanks, line ends and commas.
+/// The text without blanks, line ends and commas.
 std::string bare(std::string_view text) {
   std::string out;
   for (const char c : text)
@@ -302,7 +302,7 @@ std::string bare(std::string_view text) {
 class JsonLayout : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(JsonEdit, JsonLayout, testing::Values("\n", "\r\n", "\r"));
 
-TEST_P(JsonLayout, EditsOfTheTextAreEditsOfTheTree) {
+TEST_P(JsonLayout, EditsOfTheTextEqualEditsOfTheTree) {
   Random random(11);
   int sets = 0, adds = 0, removals = 0;
   for (int round = 0; round < 3000 && !HasFailure(); ++round) {
@@ -339,7 +339,7 @@ TEST_P(JsonLayout, EditsOfTheTextAreEditsOfTheTree) {
           found(tree, place)->items.push_back(value);
         else
           found(tree, place)->members.emplace_back("new/key", value);
-        // the text with something put in, in the container
+        // The text of the container with an inserted value.
         EXPECT_EQ(edited->substr(0, at.begin), text.substr(0, at.begin));
         EXPECT_TRUE(edited->ends_with(text.substr(at.end - 1)));
         const std::size_t there = edited->find(put, at.begin);
@@ -356,15 +356,15 @@ TEST_P(JsonLayout, EditsOfTheTextAreEditsOfTheTree) {
         EXPECT_EQ(edited->substr(0, parent.begin), text.substr(0, parent.begin));
         EXPECT_TRUE(edited->ends_with(text.substr(parent.end)));
         if (parent.items.size() != 1) {
-          // only the member itself has gone, and blanks and commas
+          // Only the member is removed, with blanks and commas.
           const std::string left = bare(*edited), tail = bare(text.substr(at.end)), head = bare(text.substr(0, at.begin));
           ASSERT_TRUE(left.ends_with(tail)) << text << "\n---\n" << *edited;
-          const std::string kept = left.substr(0, left.size() - tail.size());
-          ASSERT_TRUE(head.starts_with(kept)) << text << "\n---\n" << *edited;
+          const std::string head_left = left.substr(0, left.size() - tail.size());
+          ASSERT_TRUE(head.starts_with(head_left)) << text << "\n---\n" << *edited;
           const auto key = [&](const auto& m) { return &m.second == &at; };
           const auto member = std::find_if(parent.members.begin(), parent.members.end(), key);
           const std::string gone = member == parent.members.end() ? "" : bare(serialize_string(member->first)) + ":";
-          EXPECT_TRUE(gone.empty() ? kept == head : head.substr(kept.size()).starts_with(gone)) << text << "\n---\n" << *edited;
+          EXPECT_TRUE(gone.empty() ? head_left == head : head.substr(head_left.size()).starts_with(gone)) << text << "\n---\n" << *edited;
         }
         ++removals;
       }

@@ -12,7 +12,7 @@ Result<Mat3> rotation(const std::string& text) {
   return json::as_rotation(*node, "rotation");
 }
 
-TEST(JsonRotation, RowsNineNumbersOrAxisAndAngle) {
+TEST(JsonRotation, ReadsRowsNineNumbersOrAxisAndAngle) {
   const Mat3 expected(Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1));  // columns
   for (const char* text :
        {"[[0, -1, 0], [1, 0, 0], [0, 0, 1]]", "[0, -1, 0, 1, 0, 0, 0, 0, 1]", R"({"axis": [0, 0, 3], "angle_deg": 90})"}) {
@@ -22,7 +22,7 @@ TEST(JsonRotation, RowsNineNumbersOrAxisAndAngle) {
   }
 }
 
-TEST(JsonRotation, RefusesWhatIsNone) {
+TEST(JsonRotation, RefusesInvalidRotations) {
   for (const char* text :
        {"[1, 0, 0]", "3", "[[1, 0, 0], [0, 1, 0]]", "[1, 0, 0, 0, 1, 0, 0, 0, -1]", "[1, 0, 0, 0, 1, 0, 0, 0, 1.1]",
         R"({"axis": [0, 0, 0], "angle_deg": 1})", R"({"axis": [0, 0, 1]})", R"({"axis": [0, 0, 1], "angle_deg": 1, "x": 1})"}) {

@@ -41,7 +41,7 @@ TEST(Json, ReadsEveryKindWithItsLine) {
   EXPECT_EQ(root.find("nothing"), nullptr);
 }
 
-TEST(Json, CommentsStandWhereverBlanksMay) {
+TEST(Json, CommentsAreAllowedWhereverBlanksAre) {
   const Node root =
       object_of("{\"chain\": [ // \"none\": [1]\n ], \"o\": { /* ] */ }, \"a\" /* : 0, */ : [1 /* , 2 */], \"s\": \"// /* no\"}");
   EXPECT_TRUE(root.find("chain")->items.empty());
@@ -52,7 +52,7 @@ TEST(Json, CommentsStandWhereverBlanksMay) {
   EXPECT_FALSE(parse("[1 / 2]", "f"));
 }
 
-TEST(Json, NumbersReadExactly) {
+TEST(Json, NumbersAreReadExactly) {
   const Node root = object_of("[0.1, -0, 1e-320, 12345678901234567890, -9007199254740993, 1.7976931348623157e308]");
   EXPECT_EQ(root.items[0].number, 0.1);
   EXPECT_TRUE(std::signbit(root.items[1].number));
@@ -70,11 +70,11 @@ TEST(Json, BadNumbersAreErrors) {
   expect_parts(error_of("{\n\"a\": NaN}"), {"scene.json:2:", "expected"});
 }
 
-TEST(Json, DuplicateKeysNameTheSecondLine) {
+TEST(Json, DuplicateKeysNameTheLineOfTheSecond) {
   expect_parts(error_of("{\"a\": 1,\n \"b\": {\"c\": 1,\n\n \"c\": 2}}"), {"scene.json:4:", "duplicate key \"c\"", "expected once"});
 }
 
-TEST(Json, BrokenTextIsAnErrorWithALine) {
+TEST(Json, InvalidTextIsAnErrorWithALine) {
   expect_parts(error_of(""), {"scene.json:1:", "expected"});
   expect_parts(error_of("{\"a\": 1"), {"scene.json:1:", "expected"});
   expect_parts(error_of("{\"a\": 1,\n}"), {"scene.json:2:", "expected"});
@@ -122,7 +122,7 @@ TEST(Json, ReadersCheckKindAndRange) {
   expect_parts(get_boolean(root, "s", true).error().message, {"scene.json:2:", "true or false"});
 }
 
-TEST(Json, FilesThatCannotBeRead) {
+TEST(Json, UnreadableFilesAreRefused) {
   const test::TemporaryFolder folder;
   const auto message = [](const std::string& path) {
     const auto result = read(path);
@@ -140,8 +140,8 @@ class JsonMemory : public testing::Test {
   ~JsonMemory() override { set_memory_limit(std::nullopt); }
 };
 
-// before: each of these took a hundred times its length, whatever was allowed
-TEST_F(JsonMemory, ManyValuesAreAskedForBeforeTheyAreParsed) {
+// The memory of many small values, a hundred times the length of the text, must be counted.
+TEST_F(JsonMemory, TheMemoryOfManyValuesIsCheckedBeforeParsing) {
   for (const std::string& item : {std::string("[]"), std::string("{}"), std::string("1"), std::string("\"\""), std::string("null")}) {
     std::string text = "{\"x\": [" + item;
     for (int i = 0; i < 20000; ++i) text += "," + item;
@@ -149,14 +149,14 @@ TEST_F(JsonMemory, ManyValuesAreAskedForBeforeTheyAreParsed) {
   }
 }
 
-TEST_F(JsonMemory, OrdinaryTextsAreParsedWhateverIsAllowed) {
+TEST_F(JsonMemory, OrdinaryTextsAreParsedAtAnyLimit) {
   const MemoryReservation held(1000000);
   std::string text = "{ // a comment, with [brackets], words: and \"strings\"\n";
   for (int i = 0; i < 200; ++i) text += "\"key" + std::to_string(i) + "\": [1, 2.5, {\"name\": \"a, [b] {c}\"}], /* [[[ */\n";
   EXPECT_EQ(error_of(text + "\"last\": null}"), "no error");
 }
 
-// before: each item's label began with the whole key
+// The label of an item must not contain the whole key.
 TEST(Json, ALongKeyIsNotRepeatedInEachItem) {
   const auto node = parse("{\"" + std::string(1000000, 'k') + "\": [[1, 2], 3]}", "scene.json");
   ASSERT_TRUE(node);

@@ -13,7 +13,7 @@ class MemoryLimit : public testing::Test {
   ~MemoryLimit() override { set_memory_limit(std::nullopt); }
 };
 
-TEST_F(MemoryLimit, WhatIsFreeWithoutALimit) {
+TEST_F(MemoryLimit, WithoutALimitFreeMemoryApplies) {
   const std::uint64_t allowed = available_memory();
   EXPECT_GT(allowed, 0u);
   EXPECT_TRUE(check_memory_available("it", 1));
@@ -22,7 +22,7 @@ TEST_F(MemoryLimit, WhatIsFreeWithoutALimit) {
   EXPECT_FALSE(check_memory_available("it", std::numeric_limits<double>::quiet_NaN()));
 }
 
-TEST_F(MemoryLimit, ALimitLessWhatIsHeld) {
+TEST_F(MemoryLimit, ReservationsReduceTheAvailableMemory) {
   set_memory_limit(1000000);
   EXPECT_EQ(available_memory(), 1000000u);
   {
@@ -36,7 +36,7 @@ TEST_F(MemoryLimit, ALimitLessWhatIsHeld) {
   EXPECT_EQ(available_memory(), 1000000u);
 }
 
-TEST_F(MemoryLimit, TheSentence) {
+TEST_F(MemoryLimit, TheErrorMessageHasNeededAndAllowedMemory) {
   set_memory_limit(2000000);
   const Outcome outcome = check_memory_available("a.raw: the grid of 3 x 4 x 5 voxels", 2000001);
   ASSERT_FALSE(outcome);

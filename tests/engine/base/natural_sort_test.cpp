@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The order of series of files by the numbers in their names.
+/// Natural sort of the files of a series by the numbers in their names.
 #include "engine/base/natural_sort.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <random>
 
 namespace catena {
-namespace name_order_test {
+namespace natural_sort_test {
 
 TEST(NameOrder, NumbersWithDecimalsSignsAndExponentsCompareAsNumbers) {
   const std::vector<std::vector<std::string>> series{
@@ -19,7 +19,7 @@ TEST(NameOrder, NumbersWithDecimalsSignsAndExponentsCompareAsNumbers) {
       {"s_-10_a", "s_-2_a", "s_3_a"},
       {"p_-1.vti", "p_+0.5.vti", "p_+2.vti", "p_10.vti"},
       {"f_1e-05.vti", "f_2.5e-05.vti", "f_1e-04.vti", "f_0.001.vti", "f_1E+2.vti"},
-      {"r1.1.vtu", "r1.2.vtu", "r1.9.vtu", "r1.10.vtu"},  // 1.1 and 1.10 would be equal
+      {"r1.1.vtu", "r1.2.vtu", "r1.9.vtu", "r1.10.vtu"},  // as decimals, 1.1 and 1.10 would be equal
       {"v1.2.3", "v1.2.10", "v1.10.1"},
       {"2024-01-05.nc", "2024-01-15.nc", "2024-11-02.nc", "2025-01-01.nc"},
       {"a2b9.5.vti", "a2b10.vti", "a10b1.vti"},
@@ -40,5 +40,5 @@ TEST(NameOrder, NumbersWithDecimalsSignsAndExponentsCompareAsNumbers) {
   }
 }
 
-}  // namespace name_order_test
+}  // namespace natural_sort_test
 }  // namespace catena

@@ -27,12 +27,12 @@ TEST(Numbers, EveryDoubleReadsBackExactly) {
     EXPECT_EQ(std::bit_cast<std::uint64_t>(*parse_double(to_text(value))), std::bit_cast<std::uint64_t>(value));
 }
 
-TEST(Numbers, OnlyWholeWordsAreNumbers) {
+TEST(Numbers, OnlyCompleteTextsAreNumbers) {
   for (const char* good : {"1", " 1 ", "+1", "1e3", "-.5", "1.", "\t2\r"}) EXPECT_TRUE(parse_double(good)) << good;
   for (const char* bad : {"", " ", "1x", "x1", "1 2", "0x10", "1,5", "--1", "+-1", "+"}) EXPECT_FALSE(parse_double(bad)) << bad;
 }
 
-TEST(Numbers, TooSmallIsZeroAndTooLargeIsNoNumber) {
+TEST(Numbers, UnderflowIsZeroAndOverflowIsRefused) {
   EXPECT_EQ(parse_double("1e-400"), 0.0);
   EXPECT_FALSE(parse_double("1e999"));
 }

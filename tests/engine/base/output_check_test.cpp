@@ -35,13 +35,13 @@ class OutputCheck : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(OutputCheck, NamesOfOneFileAreSeenThrough) {
+TEST_F(OutputCheck, DifferentNamesOfAFileAreRecognized) {
   for (const char* name : {"in.csv", "./in.csv", "sub/../in.csv", "soft.csv", "hard.csv", "other/../in.csv", "sub/.././soft.csv"})
     EXPECT_TRUE(same(name, "in.csv")) << name;
   for (const char* name : {"IN.csv", "In.csv", "in.csv.part1", "new.csv", "sub"}) EXPECT_FALSE(same(name, "in.csv")) << name;
 }
 
-TEST_F(OutputCheck, SoAreNamesOfWhatIsNotThereYet) {
+TEST_F(OutputCheck, DifferentNamesOfANonexistentFileAreRecognized) {
   for (const char* name : {"new.csv", "./new.csv", "sub/../new.csv", "dangling.csv", "twice.csv"})
     EXPECT_TRUE(same(name, "new.csv")) << name;
   EXPECT_TRUE(same("sub/new.csv", "other/new.csv"));
@@ -52,14 +52,14 @@ TEST_F(OutputCheck, SoAreNamesOfWhatIsNotThereYet) {
   EXPECT_TRUE(same("nowhere/./a", "nowhere/a"));
 }
 
-TEST_F(OutputCheck, DevicesAndPipesAreNobodysOwn) {
+TEST_F(OutputCheck, DevicesAndPipesNeverConflict) {
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
   EXPECT_FALSE(same("pipe", "pipe"));
   EXPECT_FALSE(is_same_file("/dev/null", "/dev/null"));
   EXPECT_TRUE(check_outputs({{"-o", "/dev/null"}, {"--stats", "/dev/null"}}, {"/dev/null"}));
 }
 
-TEST_F(OutputCheck, SaysInOneLineWhatIsWrong) {
+TEST_F(OutputCheck, ConflictsAreOneErrorLine) {
   const auto why = [&](const std::vector<PlannedOutput>& outputs) {
     const Outcome done = check_outputs(outputs, {at("in.csv")});
     return done ? std::string("fine") : done.error().message;

@@ -26,7 +26,7 @@ std::size_t files_in(const std::string& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
-/// The number of a process that has ended.
+/// The process id of a process that has ended.
 pid_t ended_process() {
   const pid_t child = ::fork();
   if (child == 0) ::_exit(0);
@@ -40,7 +40,7 @@ Outcome write_to(const std::string& path, const std::string& text) {
   return file.commit();
 }
 
-TEST(OutputFile, IsThereWholeOrNotAtAll) {
+TEST(OutputFile, IsWrittenAtomically) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "a.txt";
   {
@@ -55,8 +55,8 @@ TEST(OutputFile, IsThereWholeOrNotAtAll) {
   EXPECT_EQ(files_in(folder.path()), 1u);
 }
 
-TEST(OutputFile, WritesThroughNoLinkThatSomebodyPutInItsWay) {
-  // whatever name the unfinished file has had so far, a link there must not lead to another's file
+TEST(OutputFile, FollowsNoLinkAtATemporaryName) {
+  // Links under names that earlier temporary files had must not be followed.
   const test::TemporaryFolder folder;
   const std::string path = folder / "a.txt", victim = folder / "victim";
   test::write_file(victim, "precious");
@@ -66,7 +66,7 @@ TEST(OutputFile, WritesThroughNoLinkThatSomebodyPutInItsWay) {
   EXPECT_EQ(test::read_file(path), "new");
 }
 
-TEST(OutputFile, TwoForOnePlaceDoNotShareAnUnfinishedFile) {
+TEST(OutputFile, TwoWritersOfAPathHaveSeparateTemporaries) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "a.txt";
   auto first = OutputFile::open(path), second = OutputFile::open(path);
@@ -79,10 +79,10 @@ TEST(OutputFile, TwoForOnePlaceDoNotShareAnUnfinishedFile) {
   EXPECT_EQ(test::read_file(path), "the second");
 }
 
-TEST(OutputFile, WhatEndedProgramsLeftIsRemovedAndNothingElse) {
+TEST(OutputFile, OnlyTemporariesOfEndedProcessesAreRemoved) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "a.txt", dead = std::to_string(ended_process());
-  // a number is no name of this program's: "split" makes such names
+  // A number alone is no temporary name of this program: `split` makes such names.
   const std::string number = path + ".part" + dead, ours = path + ".part" + dead + "-0123456789ab", longer = ours + "c",
                     capitals = path + ".part" + dead + "-0123456789AB", folder_of_numbers = number + "0";
   const std::string locked = path + ".part" + dead + "-ba9876543210", others = (folder / "b.txt") + ".part" + dead,
@@ -102,7 +102,7 @@ TEST(OutputFile, WhatEndedProgramsLeftIsRemovedAndNothingElse) {
   ::close(lock);
 }
 
-TEST(OutputFile, FoldersOfEndedProgramsGoWhoeverHasTheirNumberNow) {
+TEST(OutputFile, TemporaryFoldersAreRemovedUnlessLockedOrRecent) {
   const test::TemporaryFolder folder;
   const auto make = [&](pid_t pid, const char* digits, std::time_t age_s) {
     const std::string path = (folder / "tables.part") + std::to_string(pid) + "-" + digits;
@@ -122,7 +122,7 @@ TEST(OutputFile, FoldersOfEndedProgramsGoWhoeverHasTheirNumberNow) {
   for (const std::string& path : {held, young}) EXPECT_TRUE(test::exists(path + "/plot0.svg")) << path;
 }
 
-TEST(OutputFile, AProgramThatIsKilledLeavesTheOldFileAndItsRemainsGoWithTheNext) {
+TEST(OutputFile, AKilledProcessKeepsTheOldFileAndItsTemporariesAreRemovedLater) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "a.txt";
   test::write_file(path, "old");
@@ -135,7 +135,7 @@ TEST(OutputFile, AProgramThatIsKilledLeavesTheOldFileAndItsRemainsGoWithTheNext)
   ::waitpid(child, nullptr, 0);
   EXPECT_EQ(test::read_file(path), "old");
   EXPECT_EQ(files_in(folder.path()), 2u);
-  // this process has looked at another folder last
+  // The last folder that this process has cleaned is another one.
   const test::TemporaryFolder other;
   ASSERT_TRUE(write_to(other / "x", "x"));
   ASSERT_TRUE(write_to(path, "new"));
@@ -143,7 +143,7 @@ TEST(OutputFile, AProgramThatIsKilledLeavesTheOldFileAndItsRemainsGoWithTheNext)
   EXPECT_EQ(files_in(folder.path()), 1u);
 }
 
-TEST(OutputFile, ARenameThatFailsLeavesWhatWasThere) {
+TEST(OutputFile, AFailedRenameKeepsTheOldFile) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "a";
   auto file = OutputFile::open(path);
@@ -156,7 +156,7 @@ TEST(OutputFile, ARenameThatFailsLeavesWhatWasThere) {
   EXPECT_TRUE(fs::is_directory(path + "/inside"));
 }
 
-TEST(OutputFile, AFolderThatDisappearsIsOneSentence) {
+TEST(OutputFile, AFolderThatDisappearsIsOneErrorLine) {
   const test::TemporaryFolder folder;
   const std::string inner = folder / "inner", path = inner + "/a.txt";
   fs::create_directory(inner);
@@ -170,12 +170,12 @@ TEST(OutputFile, AFolderThatDisappearsIsOneSentence) {
   EXPECT_EQ(OutputFile::open(path).error().message, path + ": cannot write: No such file or directory");
 }
 
-TEST(OutputFile, AFullDiskLeavesTheOldFile) {
+TEST(OutputFile, AFullDiskKeepsTheOldFile) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "a.txt";
   test::write_file(path, "old");
   EXPECT_EQ(write_to("/dev/full", "x").error().message, "/dev/full: cannot write: No space left on device");
-  // a limit on the size of files ends a write as a full disk does
+  // A file size limit ends a write as a full disk does.
   const pid_t child = ::fork();
   if (child == 0) {
     ::signal(SIGXFSZ, SIG_IGN);
@@ -194,7 +194,7 @@ TEST(OutputFile, AFullDiskLeavesTheOldFile) {
   EXPECT_EQ(files_in(folder.path()), 1u);
 }
 
-TEST(OutputFile, AFileThatIsReplacedKeepsItsPermissions) {
+TEST(OutputFile, AReplacedFileKeepsItsPermissions) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "a.txt";
   test::write_file(path, "old");
@@ -205,7 +205,7 @@ TEST(OutputFile, AFileThatIsReplacedKeepsItsPermissions) {
   EXPECT_EQ(about.st_mode & 0777u, 0640u);
 }
 
-TEST(OutputFile, ALinkStaysALink) {
+TEST(OutputFile, ASymbolicLinkStaysALink) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "real.txt", "old");
   fs::create_symlink("real.txt", folder / "link.txt");
@@ -214,7 +214,7 @@ TEST(OutputFile, ALinkStaysALink) {
   EXPECT_EQ(test::read_file(folder / "real.txt"), "new");
 }
 
-TEST(OutputFile, ANameOfTheGreatestLengthCanBeWritten) {
+TEST(OutputFile, ANameOfMaximumLengthCanBeWritten) {
   const test::TemporaryFolder folder;
   const std::string path = folder / (std::string(251, 'n') + ".txt");
   ASSERT_TRUE(write_to(path, "new"));

@@ -12,7 +12,7 @@ constexpr double kPi = 3.14159265358979323846;
 
 void expect_near(const Vec3& a, const Vec3& b, double tolerance) { EXPECT_LE(norm(a - b), tolerance) << a.x << " " << a.y << " " << a.z; }
 
-// 60 directions over the sphere, and the axes
+// Directions over the sphere, and the axes.
 std::vector<Vec3> directions() {
   std::vector<Vec3> out = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
   for (int k = 0; k < 60; ++k) {
@@ -29,7 +29,7 @@ TEST(Rotation, RotatesLikeItsMatrix) {
   expect_near(rotate(rotation_from_vector({0, 0, kPi / 2}), {1, 0, 0}), {0, 1, 0}, 1e-15);  // right-handed
 }
 
-TEST(Rotation, LogTakesBackExpFromNothingToHalfATurn) {
+TEST(Rotation, LogInvertsExpUpToHalfATurn) {
   for (const Vec3& axis : directions())
     for (const double angle : {1e-300, 1e-17, 1e-9, 1e-3, 0.5, 1.5, 3.0, kPi - 1e-3, kPi - 1e-9}) {
       const Vec3 v = axis * angle;
@@ -37,13 +37,13 @@ TEST(Rotation, LogTakesBackExpFromNothingToHalfATurn) {
       const Quat q = rotation_from_vector(v);
       expect_near(rotation_vector({-q.w, -q.x, -q.y, -q.z}), v, 3e-15 * std::min(1.0, 2 * angle));
     }
-  // beyond half a turn: the shorter way back
+  // Beyond half a turn, the logarithm is the shorter rotation back.
   expect_near(rotation_vector(rotation_from_vector({0, 0, kPi + 0.25})), {0, 0, -(kPi - 0.25)}, 3e-15);
   EXPECT_EQ(rotation_vector(kIdentityRotation), Vec3(0.0));
   EXPECT_EQ(rotation_from_vector(Vec3(0.0)), kIdentityRotation);
 }
 
-TEST(Rotation, TheShortestArcTurnsOneOntoTheOther) {
+TEST(Rotation, TheShortestArcRotatesOneDirectionOntoTheOther) {
   for (const Vec3& a : directions())
     for (const Vec3& b : directions()) {
       const Quat q = shortest_arc(a, b);
@@ -54,7 +54,7 @@ TEST(Rotation, TheShortestArcTurnsOneOntoTheOther) {
     }
 }
 
-TEST(Rotation, TheShortestArcIsAsGoodNearNothingAndNearHalfATurn) {
+TEST(Rotation, TheShortestArcIsAccurateNearZeroAndHalfATurn) {
   for (const Vec3& a : directions())
     for (const Vec3& other : directions()) {
       const Vec3 square = direction(cross(a, other));
@@ -69,11 +69,11 @@ TEST(Rotation, TheShortestArcIsAsGoodNearNothingAndNearHalfATurn) {
     }
 }
 
-TEST(Rotation, NothingUsableIsNoRotation) {
+TEST(Rotation, InvalidInputIsTheIdentity) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const Quat& q : {Quat(0, 0, 0, 0), Quat(nan, 0, 0, 0), Quat(1, inf, 0, 0)}) EXPECT_EQ(normalized(q), kIdentityRotation);
   const Quat tiny = normalized({3e-320, 0, 4e-320, 0}), huge = normalized({3e307, 0, 4e307, 0});
-  EXPECT_NEAR(tiny.w, 0.6, 1e-3);  // denormals carry few digits
+  EXPECT_NEAR(tiny.w, 0.6, 1e-3);  // denormals have few digits
   EXPECT_NEAR(huge.y, 0.8, 1e-15);
   EXPECT_EQ(rotation_from_vector({inf, 0, 0}), kIdentityRotation);
 }

@@ -27,7 +27,7 @@ std::string why_not(const std::string& path, std::uint64_t most = kMaxTextBytes)
   return text ? "read" : text.error().message;
 }
 
-TEST(ReadText, ReadsRegularFilesAlsoThroughLinks) {
+TEST(ReadText, ReadsRegularFilesAndLinksToThem) {
   const test::TemporaryFolder folder;
   std::string text(200000, 'x');
   text[1] = '\0';
@@ -37,11 +37,11 @@ TEST(ReadText, ReadsRegularFilesAlsoThroughLinks) {
   EXPECT_EQ(read_text_file(folder / "link", "a list").value(), text);
   test::write_file(folder / "empty", "");
   EXPECT_EQ(read_text_file(folder / "empty", "a list").value(), "");
-  // a size of 0 is no promise
+  // A reported size of 0 is not trusted.
   EXPECT_NE(read_text_file("/proc/self/status", "a list").value().find("Pid:"), std::string::npos);
 }
 
-TEST(ReadText, WaitsForNoPipeDeviceSocketOrFolder) {
+TEST(ReadText, RefusesPipesDevicesSocketsAndFoldersWithoutBlocking) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   std::filesystem::create_symlink("/dev/zero", folder / "zero");
@@ -59,7 +59,7 @@ TEST(ReadText, WaitsForNoPipeDeviceSocketOrFolder) {
   ::close(socket);
 }
 
-TEST(ReadText, ASizeBeyondTheLimitIsSaidBeforeAnythingIsAllocated) {
+TEST(ReadText, ASizeBeyondTheLimitIsRefusedBeforeAllocation) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "sparse";
   test::write_file(path, "x");

@@ -8,7 +8,7 @@
 namespace catena {
 namespace vec_test {
 
-TEST(Vec, NormAndDirectionToBothEndsOfTheDoubles) {
+TEST(Vec, NormAndDirectionAreAccurateOverTheRangeOfDoubles) {
   for (const double scale : {1e-323, 1e-300, 1e-150, 1.0, 1e150, 1e307}) {
     const Vec3 v = scale * Vec3(3, -4, 12);
     if (scale > 1e-320) {
@@ -21,7 +21,7 @@ TEST(Vec, NormAndDirectionToBothEndsOfTheDoubles) {
   EXPECT_EQ(direction(Vec3(0.0)), Vec3(0.0));
 }
 
-TEST(Vec, WhatIsNotFiniteIsNeverLost) {
+TEST(Vec, NonFiniteVectorsHaveANonFiniteNormAndNoDirection) {
   const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
   const double some[] = {0, -1, 1e200, inf, -inf, nan};
   for (const double x : some)

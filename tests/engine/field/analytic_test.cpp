@@ -28,7 +28,7 @@ double at(const ScalarFieldPtr& f, const Vec3& p) {
   return f->sample(p, c).value;
 }
 
-/// div and curl by central differences
+/// The divergence by central differences.
 double divergence(const VectorFieldPtr& f, const Vec3& p) {
   constexpr double h = 1e-5;
   double sum = 0;
@@ -54,13 +54,13 @@ void expect_gradient(const ScalarFieldPtr& f, const Vec3& p, double tolerance) {
   }
 }
 
-TEST(AnalyticScalars, GradientsAreTheDerivatives) {
+TEST(AnalyticScalars, GradientsEqualDifferences) {
   for (const char* name : {"sphere", "plane", "torus", "constant", "linear", "gaussian", "marschner-lobb", "tanh"})
     for (const double scale : {1.0, -2.5}) {
       Random random(1);
       for (int trial = 0; trial < 200; ++trial) expect_gradient(scalar(name, scale), random.in_box(Vec3(-2.0), Vec3(2.0)), 1e-5);
     }
-  // the steep part of the wall
+  // The steep part of the wall.
   Random random(2);
   for (int trial = 0; trial < 100; ++trial) expect_gradient(scalar("tanh"), random.in_box(Vec3(-2, -2, -0.1), Vec3(2, 2, 0.1)), 1e-6);
   for (const char* part : {"density", "transmural"})
@@ -68,7 +68,7 @@ TEST(AnalyticScalars, GradientsAreTheDerivatives) {
       expect_gradient(scalar("left-ventricle", 1, part), random.in_box(Vec3(-2.0), Vec3(2.0)), 2e-4);
 }
 
-TEST(AnalyticScalars, KnownValues) {
+TEST(AnalyticScalars, HaveKnownValues) {
   EXPECT_EQ(at(scalar("sphere"), Vec3(3, 4, 0)), 5);
   EXPECT_EQ(at(scalar("sphere", 2), Vec3(3, 4, 0)), 10);
   EXPECT_EQ(at(scalar("plane"), Vec3(3, 4, -0.25)), -0.25);
@@ -80,7 +80,7 @@ TEST(AnalyticScalars, KnownValues) {
   EXPECT_NEAR(at(scalar("tanh"), Vec3(0, 0, 0.05)), std::tanh(1.0), 1e-15);
 }
 
-TEST(AnalyticScalars, RangesHoldAndFollowTheScale) {
+TEST(AnalyticScalars, RangesAreValidAndFollowTheScale) {
   Random random(3);
   for (const char* name : {"sphere", "plane", "torus", "constant", "linear", "gaussian", "marschner-lobb", "tanh", "left-ventricle"})
     for (const double scale : {1.0, -3.0}) {
@@ -105,7 +105,7 @@ TEST(AnalyticScalars, TheCentreOfTheSphereHasNoGradient) {
   EXPECT_EQ(s.gradient, Vec3(0.0));
 }
 
-TEST(AnalyticVectors, KnownValues) {
+TEST(AnalyticVectors, HaveKnownValues) {
   const Vec3 p(0.3, -0.4, 0.7);
   EXPECT_EQ(at(vector("circle"), p), Vec3(0.4, 0.3, 0));
   EXPECT_EQ(at(vector("circle", 2), p), Vec3(0.8, 0.6, 0));
@@ -127,7 +127,7 @@ TEST(AnalyticVectors, UniformTakesADirection) {
   EXPECT_EQ(at(f, Vec3(5, 6, 7)), Vec3(0, 0, -3));
 }
 
-TEST(AnalyticVectors, FlowsAreFreeOfDivergence) {
+TEST(AnalyticVectors, FlowsAreDivergenceFree) {
   Random random(4);
   for (const char* name : {"circle", "saddle", "helix", "rankine", "lamb-oseen", "hill", "abc"})
     for (int trial = 0; trial < 100; ++trial) {
@@ -147,7 +147,7 @@ TEST(AnalyticVectors, HillIsContinuousAcrossItsSphere) {
   }
 }
 
-TEST(AnalyticVectors, ReadAsLineFieldsTheyAreCoherent) {
+TEST(AnalyticVectors, AreCoherentAsLineFields) {
   Cursor c;
   const LineSample line = vector("circle")->sample_line(Vec3(2, 0, 0), c);
   EXPECT_EQ(line.axis, Vec3(-0.0, 1, 0));
@@ -156,7 +156,7 @@ TEST(AnalyticVectors, ReadAsLineFieldsTheyAreCoherent) {
   EXPECT_EQ(vector("circle")->sample_line(Vec3(0.0), c).coherence, 0);
 }
 
-TEST(Analytic, SaysWhyAPlaceIsOutside) {
+TEST(Analytic, ReportsWhyAPositionIsOutside) {
   Cursor c;
   const AnyField fibre = make_analytic("left-ventricle", {1, Vec3(1, 0, 0), "fibre"}).value();
   EXPECT_EQ(fibre.vector->status_outside(Vec3(1.9, 1.9, 1.9), c), SampleStatus::masked);
@@ -164,7 +164,7 @@ TEST(Analytic, SaysWhyAPlaceIsOutside) {
   EXPECT_EQ(vector("circle")->status_outside(Vec3(50.0), c), SampleStatus::ok) << "a formula has no box";
 }
 
-TEST(Analytic, NothingBadComesOutOfBadPoints) {
+TEST(Analytic, ExtremePositionsGiveFiniteValues) {
   Cursor c;
   for (const auto name : analytic_names()) {
     const AnyField f = make_analytic(name).value();
@@ -183,7 +183,7 @@ TEST(Analytic, NothingBadComesOutOfBadPoints) {
   }
 }
 
-TEST(Analytic, NamesDomainAndErrors) {
+TEST(Analytic, NamesDomainsAndErrors) {
   EXPECT_EQ(analytic_names().size(), 19u);
   EXPECT_TRUE(is_analytic("lamb-oseen"));
   EXPECT_FALSE(is_analytic("Circle"));
@@ -198,7 +198,7 @@ TEST(Analytic, NamesDomainAndErrors) {
   EXPECT_FALSE(make_analytic("sphere", {.scale = 1, .direction = Vec3(1, 0, 0), .part = "fibre"}));
 }
 
-TEST(LeftVentricle, FibresTurnWithDepthInTheWall) {
+TEST(LeftVentricle, FibresRotateWithDepthInTheWall) {
   const auto fibre = make_analytic("left-ventricle", {.scale = 1, .direction = Vec3(1, 0, 0), .part = "fibre"}).value().vector;
   const auto depth = scalar("left-ventricle", 1, "transmural"), density = scalar("left-ventricle");
   Random random(6);
@@ -217,7 +217,7 @@ TEST(LeftVentricle, FibresTurnWithDepthInTheWall) {
     ++tried;
     const bool wall = t.value >= 0 && t.value <= 1 && p.z <= 0.8;
     EXPECT_TRUE(!wall || d == 1);
-    // unit, tangent to the wall, at the helix angle
+    // The direction has unit length, is tangent to the wall, and has the helix angle.
     const Vec3 around = direction(Vec3(-p.y, p.x, 0));
     Vec3 along = direction(cross(t.gradient, around));
     if (along.z < 0) along = -along;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace catena::field {
-namespace coarsen_test {
+namespace box_downsample_test {
 
 std::shared_ptr<const ScalarGrid> grid_of(const Index3& n, const std::function<double(int, int, int)>& f, const Mapping& mapping = {},
                                           const std::function<bool(int, int, int)>& valid = nullptr) {
@@ -27,7 +27,7 @@ CoarseGrid coarse_of(const ScalarGrid& grid, int factor) {
   return std::move(*coarse);
 }
 
-TEST(BoxDownsample, ALinearFieldStaysWhatItIsUpToTheFaces) {
+TEST(BoxDownsample, ALinearFieldIsUnchangedUpToTheFaces) {
   const Mapping mapping = Mapping::from_linear({{0.5, 0.1, 0}, {0, 0.25, 0.05}, {0.02, 0, 1}}, {3, -2, 7});
   for (const Index3 n : {Index3{32, 32, 32}, Index3{21, 34, 17}}) {
     const auto grid = grid_of(
@@ -44,7 +44,7 @@ TEST(BoxDownsample, ALinearFieldStaysWhatItIsUpToTheFaces) {
             ASSERT_TRUE(here.inside) << "factor " << factor;
             ASSERT_NEAR(here.value, fine.value, 1e-4) << "factor " << factor << " at " << index.x << " " << index.y << " " << index.z;
           }
-      // the box is less than a voxel larger than what is to be drawn
+      // The box of the grid exceeds the domain by less than a voxel.
       for (int a = 0; a < 3; ++a) {
         EXPECT_GE(coarse.domain.lo[a], coarse.grid->index_box().lo[a]);
         EXPECT_LT(coarse.domain.lo[a], coarse.grid->index_box().lo[a] + 1);
@@ -72,7 +72,7 @@ TEST(BoxDownsample, AVoxelIsTheAverageOfItsBox) {
 }
 
 TEST(BoxDownsample, ASparseGridStaysSparse) {
-  // a ball in the middle of nothing
+  // A ball in an empty grid.
   const auto grid = grid_of({128, 128, 128}, [](int x, int y, int z) { return std::hypot(x - 64, y - 64, z - 64) < 12 ? 1.0 : 0.0; });
   const CoarseGrid coarse = coarse_of(*grid, 2);
   float value = -1;
@@ -87,7 +87,7 @@ TEST(BoxDownsample, ASparseGridStaysSparse) {
 }
 
 TEST(BoxDownsample, OnlyValidVoxelsAreAveraged) {
-  // the left half is invalid and holds nonsense; one NaN on the right
+  // The left half is invalid, with meaningless values; a NaN is on the right.
   const auto grid = grid_of(
       {16, 16, 16}, [](int x, int y, int z) { return x < 8                         ? 1e6
                                                      : x == 12 && y == 4 && z == 4 ? NAN
@@ -106,5 +106,5 @@ TEST(BoxDownsample, OnlyValidVoxelsAreAveraged) {
       }
 }
 
-}  // namespace coarsen_test
+}  // namespace box_downsample_test
 }  // namespace catena::field

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Fields that a program brings: functions, and numbers that it gives layer by layer.
+/// Fields of a calling program: functions, and grids that it fills layer by layer.
 #include "engine/field/callable_field.h"
 
 #include <gtest/gtest.h>
@@ -8,14 +8,14 @@
 
 #include "engine/field/grid/grid_from_slices.h"
 
-namespace function_test {
+namespace callable_field_test {
 
 using namespace catena;
 using namespace catena::field;
 
 const Bounds kBox{Vec3(-1.0, -2.0, -3.0), Vec3(1.0, 2.0, 3.0)};
 
-TEST(CallableFieldDeathTest, ABoxThatHoldsNothingOrHasNoEndIsABug) {
+TEST(CallableFieldDeathTest, AnEmptyOrUnboundedBoxIsABug) {
   const VectorFunction f = [](const Vec3& p) { return p; };
   EXPECT_DEATH(make_callable_field("f", Bounds{}, f), "is_box");
   EXPECT_DEATH(make_callable_field("f", Bounds{Vec3(0.0), Vec3(std::numeric_limits<double>::infinity())}, f), "is_box");
@@ -36,14 +36,14 @@ TEST(CallableField, IsSampledExactlyWithinItsBox) {
   EXPECT_EQ(s.gradient, Vec3(1, 1, 0));
   EXPECT_EQ(f->world_bounds().hi, kBox.hi);
   EXPECT_EQ(f->min_value(), -2);
-  // a little beyond: the function goes on, but nothing is there
+  // A little outside the box, the function is evaluated, but the position is outside.
   EXPECT_FALSE(f->sample({1.5, 0, 0}, cursor).inside);
   EXPECT_EQ(f->sample({1.5, 0, 0}, cursor).value, 2.25);
   EXPECT_EQ(f->status_outside({1.5, 0, 0}, cursor), SampleStatus::outside_box);
   EXPECT_EQ(f->status_outside({0.5, 0, 0}, cursor), SampleStatus::ok);
 }
 
-TEST(CallableField, WhatIsNotFiniteIsNotInside) {
+TEST(CallableField, NonFiniteValuesAreOutside) {
   const VectorFieldPtr f = make_callable_field("f", kBox, VectorFunction([](const Vec3& p) { return Vec3(1 / p.x, 0, 0); }));
   Cursor cursor;
   EXPECT_TRUE(f->sample({0.5, 0, 0}, cursor).inside);
@@ -52,7 +52,7 @@ TEST(CallableField, WhatIsNotFiniteIsNotInside) {
   EXPECT_FALSE(f->sample(Vec3(std::numeric_limits<double>::quiet_NaN()), cursor).inside);
 }
 
-TEST(GridFromSlices, AsksForEachLayerOnceInOrder) {
+TEST(GridFromSlices, RequestsEachLayerOnceInOrder) {
   SliceSource layers;
   layers.size = {3, 4, 20};
   int next = 0;
@@ -68,7 +68,7 @@ TEST(GridFromSlices, AsksForEachLayerOnceInOrder) {
   EXPECT_EQ(grid->scalar->sample(Vec3(10.0) + 2.0 * Vec3(2, 3, 19), cursor).value, 2 + 3 * 3 + 12 * 19);
 }
 
-TEST(GridFromSlices, RefusesWhatIsNoGrid) {
+TEST(GridFromSlices, RefusesInvalidGrids) {
   SliceSource layers;
   layers.read = [](int, std::span<float> out) { std::fill(out.begin(), out.end(), std::numeric_limits<float>::quiet_NaN()); };
   layers.size = {1, 4, 4};
@@ -79,7 +79,7 @@ TEST(GridFromSlices, RefusesWhatIsNoGrid) {
   EXPECT_NE(make_grid_from_slices("g", Mapping::from_linear(Mat3(0.0), Vec3(0.0)), layers).error().message.find("inverted"),
             std::string::npos);
   layers.size = {65536, 65536, 65536};
-  EXPECT_FALSE(make_grid_from_slices("g", {}, layers));  // before anything is read
+  EXPECT_FALSE(make_grid_from_slices("g", {}, layers));  // before any layer is read
 }
 
-}  // namespace function_test
+}  // namespace callable_field_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Masks of cells beside masks of voxels: a cell is valid where both say so, in the grid and in what is made of it.
+/// Masks of cells together with masks of voxels: a cell is valid if both masks allow it, in a grid and in grids derived from it.
 #include <gtest/gtest.h>
 
 #include "engine/field/derived/box_downsample.h"
@@ -17,7 +17,7 @@ struct Made {
   std::vector<float> values;
   std::vector<std::uint8_t> valid, cells;
 
-  /// Large holes of cells and single ones, and holes of voxels.
+  /// Makes large holes and single invalid cells, and holes of voxels.
   Made() {
     catena::test::Random random{3};
     for (int z = 0; z < n.z; ++z)
@@ -49,14 +49,14 @@ void expect_cells(const Made& made, const ScalarGrid& grid) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST(CellMask, ACellIsValidWhereBothMasksSaySo) {
+TEST(CellMask, ACellIsValidIfBothMasksAllowIt) {
   const Made made;
   expect_cells(made, *made.grid());
-  // without a cell that is masked of itself it is a mask of voxels
+  // Without an invalid cell of its own, a grid has a mask of voxels only.
   EXPECT_FALSE(make_scalar_grid("g", {}, made.n, made.values, made.valid)->has_cell_mask());
 }
 
-TEST(CellMask, AVdbKeepsIt) {
+TEST(CellMask, AVdbStoresIt) {
   const Made made;
   const catena::test::TemporaryFolder folder;
   AnyField field;
@@ -71,7 +71,7 @@ TEST(CellMask, AVdbKeepsIt) {
   EXPECT_FALSE(load(request)->scalar->grid()->has_mask());
 }
 
-TEST(CellMask, LengthsOfVectorsHaveIt) {
+TEST(CellMask, MagnitudesOfVectorsHaveIt) {
   const Made made;
   std::vector<float> xyz;
   for (const float v : made.values) xyz.insert(xyz.end(), {v, 0, 0});
@@ -80,8 +80,8 @@ TEST(CellMask, LengthsOfVectorsHaveIt) {
   expect_cells(made, **lengths);
 }
 
-TEST(CellMask, CoarseCellsAreInvalidWhereHalfOfTheFineOnesAre) {
-  // a wall two cells thick, from voxel 20 to 22
+TEST(CellMask, CoarseCellsAreInvalidIfHalfOfTheFineOnesAre) {
+  // A wall two cells thick, from voxel 20 to 22.
   const Index3 n{41, 33, 25};
   std::vector<float> values(static_cast<std::size_t>(n.x * n.y * n.z), 1.f);
   std::vector<std::uint8_t> valid(values.size(), 1), cells(values.size(), 1);

@@ -16,7 +16,7 @@ ScalarCell random_cell(Random& random) {
   return c;
 }
 
-TEST(ScalarCell, TakesTheCornerValuesAtTheCorners) {
+TEST(ScalarCell, EqualsTheCornerValuesAtTheCorners) {
   Random random(1);
   const ScalarCell c = random_cell(random);
   for (int n = 0; n < 8; ++n) EXPECT_NEAR(c.value(Vec3(n & 1, n >> 1 & 1, n >> 2)), c.corner[n], 1e-15);
@@ -29,7 +29,7 @@ TEST(ScalarCell, GradientIsTheDerivative) {
     const Vec3 f = random.in_box(Vec3(0.0), Vec3(1.0));
     const Vec3 g = c.gradient(f);
     for (int a = 0; a < 3; ++a) {
-      // along one axis the polynomial is linear: a wide difference is exact
+      // Along one axis the polynomial is linear, so a wide difference is exact.
       Vec3 lo = f, hi = f;
       lo[a] = 0, hi[a] = 1;
       EXPECT_NEAR(g[a], c.value(hi) - c.value(lo), 1e-13);

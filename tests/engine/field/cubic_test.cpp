@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Cubic cells against a sampler of this file's own: dense arrays in long double, ghosts by Lagrange's formula along rows, weights from
-// the cubic Hermite form. And what the interpolation is for: smoothness, exactness for polynomials of second degree, the domain.
+// Cubic interpolation against an independent sampler: dense arrays in long double, ghost samples by Lagrange's formula along rows, and
+// weights of the cubic Hermite form. Also its properties: smoothness, exactness for quadratic polynomials, and the domain.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -18,7 +18,7 @@ using test::Block;
 using test::Random;
 using Real = long double;
 
-/// A block with holes, read by the cubic.
+/// The reference: a block with holes, with cubic interpolation.
 class Reference {
  public:
   Reference(const Block& block, std::vector<std::uint8_t> valid) : block_(block), valid_(std::move(valid)) {
@@ -54,7 +54,7 @@ class Reference {
 
  private:
   static int layer(int base, int i, int n) { return n == 1 ? 0 : base - 1 + i; }
-  /// From values and slopes (c_1 - c_-1) / 2 at both ends.
+  /// Weights from values and slopes (c_1 - c_-1) / 2 at both ends.
   static void hermite(Real t, Real (&w)[4]) {
     const Real h00 = (1 + 2 * t) * (1 - t) * (1 - t), h10 = t * (1 - t) * (1 - t), h01 = t * t * (3 - 2 * t), h11 = t * t * (t - 1);
     w[0] = -h10 / 2;
@@ -78,7 +78,7 @@ class Reference {
         int length = 0;
         while (length < 3 && present(x + (length + 1) * d[0], y + (length + 1) * d[1], z + (length + 1) * d[2])) ++length;
         if (length == 0) continue;
-        // Lagrange through the points 1..length, at 0
+        // The Lagrange polynomial through the points 1..length, at 0.
         for (int i = 1; i <= length; ++i) {
           Real weight = 1;
           for (int j = 1; j <= length; ++j)
@@ -106,7 +106,7 @@ std::shared_ptr<const ScalarGrid> smooth(const std::shared_ptr<const ScalarGrid>
   return made ? *made : nullptr;
 }
 
-/// All three components from one block, shifted, so that they differ.
+/// Vectors whose components are shifted copies of one block.
 std::vector<float> vectors_of(const Block& block) {
   std::vector<float> xyz(3 * block.values.size());
   for (std::size_t n = 0; n < block.values.size(); ++n)
@@ -114,7 +114,7 @@ std::vector<float> vectors_of(const Block& block) {
   return xyz;
 }
 
-TEST(CubicGrid, AgreesWithTheDefinitionEverywhereWithHolesAndUnderEveryMapping) {
+TEST(CubicGrid, AgreesWithTheReferenceWithHolesAndAnyMapping) {
   Block block = test::random_block({19, 11, 26}, 5);
   Random random(6);
   std::vector<std::uint8_t> valid(block.values.size(), 1);
@@ -142,7 +142,7 @@ TEST(CubicGrid, AgreesWithTheDefinitionEverywhereWithHolesAndUnderEveryMapping) 
   }
 }
 
-TEST(CubicGrid, VectorsAreThreeNumbers) {
+TEST(CubicGrid, VectorsAreInterpolatedPerComponent) {
   const Block block = test::random_block({9, 13, 8}, 8);
   const std::vector<float> xyz = vectors_of(block);
   const auto grid = *make_vector_grid("v", {}, block.size, xyz)->as_cubic();
@@ -159,7 +159,7 @@ TEST(CubicGrid, VectorsAreThreeNumbers) {
   }
 }
 
-TEST(CubicGrid, ValueAndGradientAreContinuousAndBelongTogether) {
+TEST(CubicGrid, ValueAndGradientAreContinuousAndConsistent) {
   const Block block = test::random_block({17, 17, 17}, 9);
   const auto grid = smooth(make_scalar_grid("g", {}, block.size, block.values));
   Cursor cursor;
@@ -182,7 +182,7 @@ TEST(CubicGrid, ValueAndGradientAreContinuousAndBelongTogether) {
   }
 }
 
-TEST(CubicGrid, SecondDegreeIsRepeatedToTheBorderAndCurvedHolesAreBridged) {
+TEST(CubicGrid, ReproducesQuadraticsUpToTheBorderAndAcrossHoles) {
   const auto f = [](double x, double y, double z) { return 3 + x * (2 - 0.25 * x) + y * (z + 0.125 * y) - 0.5 * z * x; };
   Block block{{12, 12, 12}, {}};
   for (int z = 0; z < 12; ++z)
@@ -205,7 +205,7 @@ TEST(CubicGrid, SecondDegreeIsRepeatedToTheBorderAndCurvedHolesAreBridged) {
   EXPECT_GT(inside, 3500);
 }
 
-TEST(CubicGrid, SamplesAreKeptAndWhatIsEqualIsFlat) {
+TEST(CubicGrid, InterpolatesTheSamplesAndConstantsAreFlat) {
   Block block = test::random_block({10, 10, 10}, 12);
   const auto grid = smooth(make_scalar_grid("g", {}, block.size, block.values));
   Cursor cursor;
@@ -222,7 +222,7 @@ TEST(CubicGrid, SamplesAreKeptAndWhatIsEqualIsFlat) {
   }
 }
 
-TEST(CubicGrid, LayersAndRowsAreThatThin) {
+TEST(CubicGrid, HandlesSingleLayersAndRows) {
   for (const Index3& size : {Index3{7, 9, 1}, Index3{1, 1, 9}, Index3{1, 1, 1}, Index3{2, 2, 2}}) {
     const Block block = test::random_block(size, 14);
     const auto linear = make_scalar_grid("g", {}, size, block.values);
@@ -243,7 +243,7 @@ TEST(CubicGrid, LayersAndRowsAreThatThin) {
   }
 }
 
-TEST(CubicGrid, BeyondTheBoxItGoesOnStraight) {
+TEST(CubicGrid, ExtrapolatesLinearlyOutsideTheBox) {
   const Block block = test::random_block({6, 6, 6}, 16);
   const auto grid = smooth(make_scalar_grid("g", {}, block.size, block.values));
   Cursor cursor;
@@ -254,7 +254,7 @@ TEST(CubicGrid, BeyondTheBoxItGoesOnStraight) {
   EXPECT_TRUE(std::isfinite(grid->sample(Vec3(1e300, -1e300, 0), cursor).value));
 }
 
-TEST(CubicGrid, TheWalkIsOnlyMemory) {
+TEST(CubicGrid, TheCursorDoesNotChangeValues) {
   const Block block = test::random_block({40, 33, 29}, 17);
   const auto grid = smooth(make_scalar_grid("g", {}, block.size, block.values));
   Random random(18);
@@ -268,7 +268,7 @@ TEST(CubicGrid, TheWalkIsOnlyMemory) {
   }
 }
 
-TEST(CubicGrid, ReadBlocksHaveGhosts) {
+TEST(CubicGrid, ReadBlocksContainGhostSamples) {
   const Block block = test::random_block({9, 9, 9}, 19);
   const auto grid = smooth(make_scalar_grid("g", {}, block.size, block.values));
   std::vector<float> padded(11 * 11 * 11);
@@ -280,8 +280,8 @@ TEST(CubicGrid, ReadBlocksHaveGhosts) {
                                                         2.0 * grid->max_value() - grid->min_value())));
 }
 
-/// Twenty times nearer to a smooth function than linear cells, as sampled on 80 nodes.
-TEST(CubicGrid, IsTwentyTimesNearerToASmoothFunction) {
+/// The interpolation error of a smooth function on 80 nodes is a twentieth of that of linear cells.
+TEST(CubicGrid, HasATwentiethOfTheLinearErrorForASmoothFunction) {
   const auto f = [](const Vec3& p) { return std::sin(p.x) * std::cos(2 * p.y) + std::sin(3 * p.z); };
   constexpr int n = 80;
   constexpr double h = 6.283185307179586 / (n - 1);

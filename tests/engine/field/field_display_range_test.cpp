@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The display range of grids: exact ends and counts, whatever is sampled, masked or constant; and what is scaled by it.
+// The display range of grids: exact ends and counts for sampled, masked and constant grids, and the quantities scaled by it.
 #include "engine/field/field_display_range.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include "tests/support/support.h"
 
 namespace catena::field {
-namespace display_range_test {
+namespace field_display_range_test {
 
 std::vector<float> waves(const Index3& n) {
   std::vector<float> values;
@@ -22,8 +22,8 @@ std::vector<float> waves(const Index3& n) {
   return values;
 }
 
-TEST(GridDisplayRange, CountsEveryValueBeyond) {
-  const Index3 n{160, 120, 100};  // more blocks than the sample has
+TEST(GridDisplayRange, CountsEveryOutlier) {
+  const Index3 n{160, 120, 100};  // more blocks than are sampled
   std::vector<float> values = waves(n);
   const auto clean = make_scalar_grid("g", {}, n, values);
   EXPECT_FALSE(display_range(*clean).has_outliers());
@@ -44,13 +44,13 @@ TEST(GridDisplayRange, CountsEveryValueBeyond) {
   EXPECT_EQ(&range, &display_range(*grid->with_interpolation(Interpolation::nearest))) << "found once";
 }
 
-TEST(GridDisplayRange, OfMasksTilesVectorsAndFiles) {
+TEST(GridDisplayRange, HandlesMasksTilesVectorsAndFiles) {
   const Index3 n{32, 32, 32};
   std::vector<float> values = waves(n), vectors;
   std::vector<std::uint8_t> valid(values.size(), 1);
   values[777] = 1e20f, valid[777] = 0;
   EXPECT_FALSE(display_range(*make_scalar_grid("g", {}, n, values, valid)).has_outliers()) << "masked values do not count";
-  // constant blocks have no leaves
+  // Constant blocks have no leaf nodes.
   for (std::size_t i = 0; i < values.size() / 2; ++i) values[i] = -9999;
   const auto half = make_scalar_grid("g", {}, n, values);
   EXPECT_EQ(display_range(*half).below.count, values.size() / 2);
@@ -60,7 +60,7 @@ TEST(GridDisplayRange, OfMasksTilesVectorsAndFiles) {
   EXPECT_EQ(format_range(display_range(*flow)).substr(0, 5), "1 .. ");
   EXPECT_EQ(display_range(*flow).above.count, 1u);
   EXPECT_LT(compute_max_magnitude(*flow), 2);
-  // what a reader process says of a file
+  // The range of a file, as described by a reader process.
   const catena::test::TemporaryFolder folder;
   for (const char* name : {"f.vdb", "f.nrrd", "f.vti"}) {
     const Outcome written = write_field(folder / name, {half, nullptr}, "g", {});
@@ -71,7 +71,7 @@ TEST(GridDisplayRange, OfMasksTilesVectorsAndFiles) {
   }
 }
 
-TEST(GridDisplayRange, SlopesOfOutliersScaleNothing) {
+TEST(GridDisplayRange, OutliersDoNotInfluenceTheMaximumGradient) {
   const Index3 n{24, 24, 24};
   std::vector<float> values = waves(n);
   const double clean = compute_max_gradient(*make_scalar_grid("g", {}, n, values));
@@ -81,5 +81,5 @@ TEST(GridDisplayRange, SlopesOfOutliersScaleNothing) {
   }
 }
 
-}  // namespace display_range_test
+}  // namespace field_display_range_test
 }  // namespace catena::field

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Helpers of the field tests: repeatable random numbers, mappings of every kind, an independent trilinear formula, reading.
+/// Helpers of the field tests: repeatable random numbers, mappings of every kind, an independent trilinear formula, and loading.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ class Random {
   std::uint64_t state_;
 };
 
-/// Identity, anisotropic, rotated and sheared with a negative origin, mirrored.
+/// Mappings: identity, anisotropic, rotated and sheared with a negative origin, and mirrored.
 inline std::vector<Mapping> mappings() {
   return {Mapping{}, Mapping::from_linear(Mat3(0.957, 0, 0, 0, 0.957, 0, 0, 0, 1.5), Vec3(-90, -125, -71)),
           Mapping::from_linear(Mat3(0.8, 0.6, 0.0, -0.3, 0.4, 0.2, 0.1, 0.05, 0.9), Vec3(-3, 7, -11)),
@@ -34,7 +34,7 @@ struct Block {
   Index3 size;
   std::vector<float> values;
   double at(int x, int y, int z) const { return values[(static_cast<std::size_t>(z) * size.y + y) * size.x + x]; }
-  /// sum of corner * weights, straight from the definition
+  /// The trilinear interpolation by definition: the sum of corner * weight.
   double trilinear(const Vec3& p) const {
     const auto base = [](double v, int n) { return std::min(std::max(static_cast<int>(std::floor(v)), 0), n - 2); };
     const int x = base(p.x, size.x), y = base(p.y, size.y), z = base(p.z, size.z);
@@ -55,7 +55,7 @@ inline Block random_block(const Index3& size, std::uint64_t seed) {
   return b;
 }
 
-/// The one grid of a file; where it cannot be loaded the test fails.
+/// Loads the only grid of a file; the test fails if it cannot be loaded.
 inline AnyField read(const std::string& path) {
   LoadRequest request;
   request.path = path;

@@ -21,7 +21,7 @@ bool same_bits(const ScalarSample& a, const ScalarSample& b) {
          a.inside == b.inside;
 }
 
-TEST(ScalarGrid, AgreesWithTheTrilinearFormulaUnderEveryMapping) {
+TEST(ScalarGrid, EqualsTheTrilinearFormulaForAnyMapping) {
   const Block block = test::random_block({19, 11, 14}, 5);
   for (const Mapping& mapping : test::mappings()) {
     const auto grid = make_scalar_grid("g", mapping, block.size, block.values);
@@ -43,7 +43,7 @@ TEST(ScalarGrid, GradientIsACovector) {
     Random random(8);
     Cursor cursor;
     for (int trial = 0; trial < 300; ++trial) {
-      // well within a cell, so that the differences do not leave it
+      // The differences must stay within a cell.
       const Vec3 f = random.in_box(Vec3(0.1), Vec3(0.9));
       const Vec3 index =
           Vec3(static_cast<int>(random.uniform(0, 8)), static_cast<int>(random.uniform(0, 8)), static_cast<int>(random.uniform(0, 8))) + f;
@@ -109,7 +109,7 @@ TEST(ScalarGrid, IsSafeFarAwayAndForNonFinitePoints) {
   }
 }
 
-TEST(ScalarGrid, CursorsNeverChangeBits) {
+TEST(ScalarGrid, CursorsNeverChangeValues) {
   const Block a = test::random_block({20, 20, 20}, 11), b = test::random_block({20, 20, 20}, 12);
   const auto grid = make_scalar_grid("a", {}, a.size, a.values), other = make_scalar_grid("b", {}, b.size, b.values);
   Random random(13);
@@ -128,7 +128,7 @@ TEST(ScalarGrid, CursorsNeverChangeBits) {
 }
 
 TEST(ScalarGrid, ACursorOfAFreedGridIsNotTrusted) {
-  // grids made and freed in turn often share an address; their values differ
+  // Successive grids often have the same address; their values differ.
   Cursor cursor;
   for (int n = 0; n < 50; ++n) {
     const std::vector<float> values(8, static_cast<float>(n));
@@ -147,7 +147,7 @@ TEST(ScalarGrid, SamplingAllocatesNothing) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-TEST(ScalarGrid, CellsAreClampedAndHoldTheCorners) {
+TEST(ScalarGrid, CellsAreClampedAndHaveTheirCornerValues) {
   const Block block = test::random_block({9, 10, 11}, 16);
   const auto grid = make_scalar_grid("g", {}, block.size, block.values);
   Cursor cursor;
@@ -174,7 +174,7 @@ TEST(ScalarGrid, OneLayerHasNoDerivativeAcross) {
   EXPECT_EQ(grid->cell_base(Vec3(2, 3, 5)).z, 0);
 }
 
-TEST(ScalarGridMask, ACellCountsOnlyWithEightValidCorners) {
+TEST(ScalarGridMask, ACellNeedsEightValidCorners) {
   const Block block = test::random_block({21, 17, 13}, 18);
   Random random(19);
   std::vector<std::uint8_t> valid(block.values.size());
@@ -280,7 +280,7 @@ TEST(ScalarGrid, RunsOfOneValueAreConstantBlocks) {
   EXPECT_LT(grid->bytes(), 4u * 72 * 72 * 72 / 3);
 }
 
-TEST(Field, TheLengthIsTheLongestEdgeAndVersionsDiffer) {
+TEST(Field, TheDomainLengthIsTheLongestEdgeAndVersionsDiffer) {
   const std::vector<float> values(3 * 5 * 4, 1.f);
   const auto a = make_scalar_grid("g", Mapping::from_linear(Mat3(3, 0, 0, 0, 1, 0, 0, 0, 2), Vec3(0.0)), {3, 5, 4}, values);
   const auto b = make_scalar_grid("g", {}, {3, 5, 4}, values);

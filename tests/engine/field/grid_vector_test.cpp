@@ -12,7 +12,7 @@ namespace grid_vector_test {
 using test::Block;
 using test::Random;
 
-TEST(VectorGrid, AgreesWithTheTrilinearFormulaInEachComponent) {
+TEST(VectorGrid, EqualsTheTrilinearFormulaInEachComponent) {
   const Index3 size{12, 17, 10};
   const std::array<Block, 3> parts{test::random_block(size, 1), test::random_block(size, 2), test::random_block(size, 3)};
   std::vector<float> xyz;
@@ -29,7 +29,7 @@ TEST(VectorGrid, AgreesWithTheTrilinearFormulaInEachComponent) {
       for (int a = 0; a < 3; ++a) ASSERT_NEAR(s.value[a], parts[a].trilinear(index), 1e-12 * (1 + norm(mapping.origin)));
     }
   }
-  // as a block
+  // Reading as a block.
   const auto grid = make_vector_grid("v", {}, size, xyz);
   std::vector<float> out(xyz.size());
   grid->read_block({0, 0, 0}, size, out);
@@ -82,7 +82,7 @@ TEST(VectorGrid, MaskBoundsTheFlow) {
   EXPECT_TRUE(grid->sample(Vec3(1.5, 2.5, 2.5), cursor).inside);
 }
 
-TEST(VectorGrid, SaysWhyAPlaceIsOutside) {
+TEST(VectorGrid, ReportsWhyAPositionIsOutside) {
   std::vector<float> xyz(3 * 64, 1.f);
   std::vector<std::uint8_t> valid(64, 1);
   valid[63] = 0;
@@ -107,7 +107,7 @@ TEST(VectorGrid, FarAndNonFinitePointsAreOutside) {
   }
 }
 
-TEST(VectorGrid, SamplingMarksNodesThatTheFieldDoesNotCover) {
+TEST(VectorGrid, SamplingMasksNodesOutsideTheField) {
   const auto fibre = make_analytic("left-ventricle", {1, Vec3(1, 0, 0), "fibre"}).value().vector;
   const auto grid = sample_on_grid(*fibre, 41, -2, 2);
   EXPECT_TRUE(grid->has_mask());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Label maps: the nearest voxel's value, never a mix; surfaces of labels where they belong.
+/// Label maps: values of the nearest voxel, never mixed, and the positions of label surfaces.
 #include "engine/field/derived/label_surface.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace catena::field {
 namespace label_surface_test {
 
-/// Turned, anisotropic, away from the origin.
+/// A rotated, anisotropic mapping away from the origin.
 Mapping turned() {
   const Mat3 turn = Mat3(Vec3(0.8, 0.6, 0.0), Vec3(-0.6, 0.8, 0.0), Vec3(0.0, 0.0, 1.0));
   return Mapping::from_linear(turn * Mat3(Vec3(1.5, 0, 0), Vec3(0, 0.5, 0), Vec3(0, 0, 2)), {7, -3, 11});
@@ -28,13 +28,13 @@ std::shared_ptr<const ScalarGrid> map_of(const Index3& n, const Label& label, co
   return make_scalar_grid("map", mapping, n, values)->with_interpolation(Interpolation::nearest);
 }
 
-/// Neighbours whose mean is a label, too, and labels far apart.
+/// Labels such that the mean of two neighbors may be another label, and with large differences.
 double scattered(int x, int y, int z) {
   constexpr double labels[] = {0, 17, 34, 2035, 14175};
   return labels[(7 * x + 11 * y + 5 * z + x * y) % 5];
 }
 
-TEST(Nearest, ARandomPlaceHasTheValueOfTheNearestVoxelCentreAndNoGradient) {
+TEST(Nearest, APositionHasTheValueOfTheNearestVoxelAndNoGradient) {
   const auto map = map_of({13, 9, 11}, scattered);
   catena::test::Random random{3};
   const auto share = [&] { return double(random.next() >> 11) * 0x1p-53; };
@@ -50,7 +50,7 @@ TEST(Nearest, ARandomPlaceHasTheValueOfTheNearestVoxelCentreAndNoGradient) {
   }
 }
 
-TEST(Nearest, TheSameVoxelsAreReadInBothWays) {
+TEST(Nearest, BothInterpolationsReadTheSameVoxels) {
   const auto nearest = map_of({4, 4, 4}, [](int x, int, int) { return x; }, {});
   const auto linear = nearest->with_interpolation(Interpolation::linear);
   Cursor a, b;
@@ -60,7 +60,7 @@ TEST(Nearest, TheSameVoxelsAreReadInBothWays) {
   EXPECT_NE(nearest->version(), linear->version());
 }
 
-TEST(Nearest, AtLessResolutionNoLabelIsInvented) {
+TEST(Nearest, DownsamplingInventsNoLabel) {
   const auto map = map_of({37, 40, 33}, scattered);
   std::set<double> labels;
   const auto fine = count_labels(*map);
@@ -76,7 +76,7 @@ TEST(Nearest, AtLessResolutionNoLabelIsInvented) {
   }
 }
 
-TEST(LabelCounts, EveryValueItsVoxelsAndItsBox) {
+TEST(LabelCounts, HaveVoxelsAndABoxForEveryValue) {
   const auto map = map_of({20, 30, 40}, [](int x, int y, int z) { return x == 3 && y >= 4 && y <= 6 && z == 25 ? 9 : 0; });
   const auto counts = count_labels(*map);
   ASSERT_TRUE(counts && counts->size() == 2);
@@ -89,7 +89,7 @@ TEST(LabelCounts, EveryValueItsVoxelsAndItsBox) {
   EXPECT_FALSE(count_labels(*map_of({4, 4, 4}, [](int x, int, int) { return 0.5 * x; }))) << "no whole numbers";
 }
 
-/// Two labels that meet at x = 5.5: halfway between their voxel centres, wherever the map lies in the world.
+/// Two labels that meet at x = 5.5: the surface is halfway between voxel centers, for any mapping.
 TEST(LabelSurface, LiesHalfwayBetweenTheVoxelCentresOfTwoLabels) {
   const auto map = map_of({12, 10, 10}, [](int x, int, int) { return x <= 5 ? 17 : 18; });
   const auto surface = make_label_surface(*map, *count_labels(*map), {17}, 0, "left");
@@ -100,13 +100,14 @@ TEST(LabelSurface, LiesHalfwayBetweenTheVoxelCentresOfTwoLabels) {
     const ScalarSample s = (*surface)->sample(met, cursor);
     ASSERT_TRUE(s.inside);
     EXPECT_NEAR(s.value, kLabelLevel, 1e-12);
-    // along x the values fall from 1 to 0 over one voxel, which is 1.5 long
+    // Along x the values fall from 1 to 0 over one voxel, whose length is 1.5.
     EXPECT_NEAR(norm(s.gradient), 1 / 1.5, 1e-9);
   }
 }
 
-/// A plane of the world in two grids that are turned against each other: where the one's label ends the other's distance is 0.
-TEST(LabelSurface, LiesAtTheSamePlaceOfTheWorldAsAnotherGridSaysIt) {
+/// A plane of the world in two grids with different orientations: the surface of a label in one is the zero level of a distance in the
+/// other.
+TEST(LabelSurface, HasTheWorldPositionOfAnotherGridsPlane) {
   const auto map = map_of({12, 10, 10}, [](int x, int, int) { return x <= 5 ? 17 : 0; });
   const Mapping& mapping = map->mapping();
   const Vec3 on = mapping.world_from_index({5.5, 4, 4}), normal = direction(mapping.world_from_index_linear[0]);
@@ -132,7 +133,7 @@ TEST(LabelSurface, LiesAtTheSamePlaceOfTheWorldAsAnotherGridSaysIt) {
   }
 }
 
-TEST(LabelSurface, OfSeveralLabelsHasNoWallBetweenThemAndIsClosedWhereTheMapEnds) {
+TEST(LabelSurface, SeveralLabelsHaveNoInnerWallAndAClosedSurface) {
   const auto map = map_of({12, 10, 10}, [](int x, int, int) { return x <= 5 ? 17 : 18; });
   const auto both = make_label_surface(*map, *count_labels(*map), {17, 18}, 0, "both");
   ASSERT_TRUE(both);
@@ -142,8 +143,8 @@ TEST(LabelSurface, OfSeveralLabelsHasNoWallBetweenThemAndIsClosedWhereTheMapEnds
   EXPECT_EQ((*both)->sample(map->mapping().world_from_index({-1, 5, 5}), cursor).value, 0);
 }
 
-/// Whatever the shape, thin sheets, single voxels and holes included: every voxel centre stays on its side.
-TEST(LabelSurface, SmoothedLeavesEveryVoxelCentreOnItsSide) {
+/// Each voxel center stays on its side of the smoothed surface, for any shape: thin sheets, single voxels and holes.
+TEST(LabelSurface, SmoothingKeepsEveryVoxelCenterOnItsSide) {
   const auto label = [](int x, int y, int z) {
     const double r = std::hypot(x - 15.0, y - 15.0, z - 15.0);
     const bool sheet = x == 28, line = x == 2 && y == 2, dot = x == 25 && y == 3 && z == 3, hole = x == 15 && y == 15 && z == 15;
@@ -165,7 +166,7 @@ TEST(LabelSurface, SmoothedLeavesEveryVoxelCentreOnItsSide) {
 }
 
 /// A ball of radius 9.3: the smoothed surface is within a quarter of a voxel of the sphere, the raw one within 0.9.
-TEST(LabelSurface, SmoothedIsNearerToABallThanItsVoxels) {
+TEST(LabelSurface, SmoothingReducesTheDistanceToASphere) {
   const auto ball = [](int x, int y, int z) { return std::hypot(x - 15.0, y - 15.0, z - 15.0) < 9.3 ? 1 : 0; };
   const auto map = map_of({31, 31, 31}, ball, {});
   double worst[2] = {0, 0};
@@ -192,7 +193,7 @@ TEST(LabelSurface, SmoothedIsNearerToABallThanItsVoxels) {
   RecordProperty("smooth", std::to_string(worst[1]));
 }
 
-TEST(LabelSurface, IsSmallForASmallLabel) {
+TEST(LabelSurface, TheGridOfASmallLabelIsSmall) {
   const auto map =
       map_of({160, 160, 160}, [](int x, int y, int z) { return x > 70 && x < 75 && y > 70 && y < 75 && z > 70 && z < 75 ? 2 : 1; });
   const auto surface = make_label_surface(*map, *count_labels(*map), {2}, kDefaultLabelSmoothing, "s");
@@ -200,7 +201,7 @@ TEST(LabelSurface, IsSmallForASmallLabel) {
   EXPECT_LT((*surface)->bytes(), 1u << 19) << "the map has 16 MB";
 }
 
-TEST(LabelAt, TheNearestVoxelThatIsALabel) {
+TEST(LabelAt, FindsTheNearestLabelVoxelOfTheCell) {
   const auto map = map_of({8, 8, 8}, [](int x, int, int) { return x < 4 ? 3 : 0; }, {});
   EXPECT_EQ(label_at(*map, {3.2, 2, 2}), 3);
   EXPECT_EQ(label_at(*map, {3.8, 2, 2}), 3) << "of the cell";

@@ -10,7 +10,7 @@ namespace line_axis_test {
 
 using test::Random;
 
-/// Eigenvalues (falling) and the leading eigenvector by Jacobi rotations in long double: another way to the same answer.
+/// Eigenvalues in descending order and the leading eigenvector by Jacobi rotations in long double: an independent reference.
 struct Jacobi {
   long double values[3];
   Vec3 axis;
@@ -54,7 +54,7 @@ TEST(LineField, IsTheLeadingEigenvectorOfTheDyads) {
     worst_rest = std::max(worst_rest, std::fabs(got.speed * got.speed - static_cast<double>(truth.values[0])));
   }
   EXPECT_LE(worst_axis, 2e-14);
-  EXPECT_LE(worst_rest, 1e-7);  // near a double eigenvalue the root itself is known to half the digits
+  EXPECT_LE(worst_rest, 1e-7);  // near a double eigenvalue, the root is known to half the digits only
 }
 
 TEST(LineField, SignsOfTheCornersDoNotMatter) {
@@ -73,8 +73,8 @@ TEST(LineField, SignsOfTheCornersDoNotMatter) {
   }
 }
 
-TEST(LineField, WhereATangentIsNearlyNormalItStaysOnTheFibre) {
-  // corners that all but agree on +-(0, .97, -.2): turned to the side of a tangent across them, they would cancel
+TEST(LineField, ANearlyPerpendicularTangentDoesNotCancelTheFibre) {
+  // The corners nearly agree on +-(0, .97, -.2). If they were oriented along a perpendicular tangent, they would cancel.
   const Vec3 fibre = direction(Vec3(0, 0.97, -0.2));
   std::array<Vec3, 8> corner;
   for (std::size_t c = 0; c < 8; ++c) corner[c] = (c % 3 == 0 ? -1.0 : 1.0) * direction(fibre + Vec3(c % 2 == 0 ? 0.05 : -0.05, 0, 0));
@@ -84,7 +84,7 @@ TEST(LineField, WhereATangentIsNearlyNormalItStaysOnTheFibre) {
   EXPECT_GT(line.speed, 0.99);
 }
 
-TEST(LineField, CoherenceTellsWhereAxesDisagree) {
+TEST(LineField, CoherenceIsLowWhereAxesDisagree) {
   std::array<Vec3, 8> corner;
   for (std::size_t c = 0; c < 8; ++c) corner[c] = (c & 1) ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
   for (const double x : {0.0, 0.2, 0.45, 0.5, 0.7, 1.0}) {

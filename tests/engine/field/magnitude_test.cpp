@@ -12,7 +12,7 @@
 namespace catena::field {
 namespace magnitude_test {
 
-TEST(Magnitude, OfFormulasOverTheirBox) {
+TEST(Magnitude, MaximaOfFormulasAreOverTheirBox) {
   EXPECT_DOUBLE_EQ(compute_max_magnitude(*make_analytic("circle")->vector), std::sqrt(8.0));
   EXPECT_DOUBLE_EQ(compute_max_magnitude(*make_analytic("uniform", {.scale = 3, .part = {}})->vector), 3);
   EXPECT_DOUBLE_EQ(compute_max_gradient(*make_analytic("linear")->scalar), std::sqrt(3.0));
@@ -23,7 +23,7 @@ TEST(Magnitude, OfFormulasOverTheirBox) {
   }
 }
 
-TEST(Magnitude, OfGridsIsThatOfTheirCells) {
+TEST(Magnitude, TheMaximumGradientOfAGridIsThatOfItsCells) {
   for (const Mapping& mapping : test::mappings()) {
     const test::Block block = test::random_block({6, 5, 4}, 3);
     const auto grid = make_scalar_grid("g", mapping, block.size, block.values);
@@ -31,7 +31,7 @@ TEST(Magnitude, OfGridsIsThatOfTheirCells) {
     for (int z = 0; z < 3; ++z)
       for (int y = 0; y < 4; ++y)
         for (int x = 0; x < 5; ++x) {
-          // central differences over one voxel are the trilinear gradient in the centre
+          // Central differences over one voxel equal the trilinear gradient at the center.
           const Vec3 c(x + 0.5, y + 0.5, z + 0.5);
           Vec3 g;
           for (int a = 0; a < 3; ++a) {
@@ -45,7 +45,7 @@ TEST(Magnitude, OfGridsIsThatOfTheirCells) {
   }
 }
 
-TEST(Magnitude, SkipsWhatIsNotFinite) {
+TEST(Magnitude, SkipsNonFiniteValues) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::vector<float> values{0, 1, 2, nan, 4, 9, 0, 1, 2, nan, 4, 9, 0, 1, 2, nan, 4, 9, 0, 1, 2, nan, 4, 9};
   const auto grid = make_scalar_grid("g", Mapping{}, {6, 2, 2}, values);
@@ -55,12 +55,12 @@ TEST(Magnitude, SkipsWhatIsNotFinite) {
   EXPECT_DOUBLE_EQ(compute_max_magnitude(*make_vector_grid("v", Mapping{}, {6, 2, 2}, xyz)), 9);
 }
 
-TEST(Magnitude, OfAFlatGridIsZero) {
+TEST(Magnitude, TheMaximumGradientOfASingleLayerIsZero) {
   const std::vector<float> values(27, 4.0F);
   EXPECT_EQ(compute_max_gradient(*make_scalar_grid("g", Mapping{}, {3, 3, 3}, values)), 0);
 }
 
-TEST(Magnitude, AsAGridIsTheLengthAtEachVoxel) {
+TEST(Magnitude, TheGridHasTheLengthAtEachVoxel) {
   const std::vector<float> xyz{3, 4, 0, 0, 0, 2, 1, 2, 2, 0, -5, 12, 0, 0, 0, 6, 8, 0, 1, 0, 0, 0, 1, 0};
   const auto made = make_magnitude_grid(*make_vector_grid("v", Mapping{}, {2, 2, 2}, xyz), "it");
   ASSERT_TRUE(made) << made.error().message;
@@ -69,8 +69,8 @@ TEST(Magnitude, AsAGridIsTheLengthAtEachVoxel) {
   EXPECT_EQ(values, (std::vector<float>{5, 2, 3, 13, 0, 10, 1, 1}));
 }
 
-// before: a bug was said, and the program aborted
-TEST(Magnitude, BeyondAllFloatsIsAnError) {
+// A magnitude beyond the range of floats must be an error, not a failed assertion.
+TEST(Magnitude, AMagnitudeBeyondFloatsIsAnError) {
   const std::vector<float> xyz(24, 3e38F);
   const auto made = make_magnitude_grid(*make_vector_grid("v", Mapping{}, {2, 2, 2}, xyz), "the magnitude of \"v\"");
   ASSERT_FALSE(made);
@@ -78,7 +78,7 @@ TEST(Magnitude, BeyondAllFloatsIsAnError) {
             "the magnitude of \"v\" has no finite value in any active voxel; magnitudes that fit into 32-bit floats were expected");
 }
 
-TEST(Magnitude, AsAGridAsksForItsMemory) {
+TEST(Magnitude, TheGridsMemoryIsChecked) {
   const auto grid = make_vector_grid("v", Mapping{}, {64, 64, 64}, std::vector<float>(3 * 64 * 64 * 64, 1.0F));
   set_memory_limit(900000);
   const auto made = make_magnitude_grid(*grid, "it");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Sizes that headers, layouts and scenes state are believed only as far as the memory limit goes.
+/// Sizes in headers, layouts and scenes are accepted only within the memory limit.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -30,8 +30,8 @@ class Memory : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// 512 GB on paper, and not a block on the disk.
-TEST_F(Memory, ASparseRawFile) {
+/// A sparse file of 512 GB without a block on the disk.
+TEST_F(Memory, ASparseRawFileIsRefused) {
   const std::string path = folder_ / "sparse.raw";
   catena::test::write_file(path, "");
   std::filesystem::resize_file(path, std::uint64_t{4} << 36);
@@ -46,7 +46,7 @@ TEST_F(Memory, ASparseRawFile) {
   EXPECT_FALSE(catena::test::exists(folder_ / "o.vdb"));
 }
 
-TEST_F(Memory, ANiftiHeaderThatPromisesMuch) {
+TEST_F(Memory, ANiftiHeaderWithAHugeSizeIsRefused) {
   std::string file(352 + 4096, '\0');
   const auto put = [&]<class T>(std::size_t at, T v) { std::memcpy(file.data() + at, &v, sizeof v); };
   put(0, std::int32_t{348});
@@ -55,7 +55,7 @@ TEST_F(Memory, ANiftiHeaderThatPromisesMuch) {
   for (std::size_t d = 0; d < 8; ++d) put(76 + 4 * d, 1.f);
   put(108, 352.f);
   std::memcpy(file.data() + 344, "n+1", 4);
-  // a bomb, if it were compressed: 64 MB of zeros
+  // 64 MB of zeros: compressed, this would be a decompression bomb.
   catena::test::write_file(folder_ / "a.nii", file);
   std::filesystem::resize_file(folder_ / "a.nii", 352 + 64'000'000);
   LoadRequest request;
@@ -65,17 +65,17 @@ TEST_F(Memory, ANiftiHeaderThatPromisesMuch) {
   expect_refused(field.error().message, "the grid of 400 x 400 x 400 voxels needs");
 }
 
-TEST_F(Memory, AFieldOnTooManyNodes) {
+TEST_F(Memory, AFieldOnTooManyNodesIsRefused) {
   const auto sphere = make_analytic("sphere");
   ASSERT_TRUE(sphere);
   const auto sampled = try_sample_on_grid(*sphere, 1024, -2, 2);
   ASSERT_FALSE(sampled);
-  expect_refused(sampled.error().message, "1024 nodes an axis");
+  expect_refused(sampled.error().message, "1024 nodes per axis");
   EXPECT_TRUE(try_sample_on_grid(*sphere, 32, -2, 2));
 }
 
-/// What is loaded counts, and counts no more when it goes.
-TEST_F(Memory, WhatIsHeldCounts) {
+/// Loaded data count against the limit until they are released.
+TEST_F(Memory, LoadedDataCountAgainstTheLimit) {
   const test::Block block = test::random_block({128, 128, 64}, 1);
   const std::uint64_t before = available_memory();
   {

@@ -31,7 +31,7 @@ void expect_range(const std::string& path, const std::string& grid, double lo, d
   EXPECT_EQ(field->grid()->stats().nan_count, 0u);
 }
 
-TEST(RealData, Combustor) {
+TEST(RealData, TheCombustorHasItsKnownProperties) {
   CATENA_NEED(path, "combustor_cfd.vdb");
   expect_range(path, "density", 0.198, 0.707, 5e-4);
   const auto velocity = load_grid(path, "velocity").vector;
@@ -42,7 +42,7 @@ TEST(RealData, Combustor) {
   EXPECT_TRUE(velocity->sample(Vec3(1.6, -0.57, 27.09), cursor).inside);
 }
 
-TEST(RealData, CarotidCraniumAndWeather) {
+TEST(RealData, CarotidCraniumAndWeatherHaveTheirKnownProperties) {
   CATENA_NEED(carotid, "carotid_flow.vdb");
   CATENA_NEED(cranium, "cranium_ct.vdb");
   CATENA_NEED(weather, "weather_uvt.vdb");
@@ -53,7 +53,7 @@ TEST(RealData, CarotidCraniumAndWeather) {
   EXPECT_NEAR(load_grid(carotid, "velocity").vector->grid()->stats().max, 22.7, 0.1);
 }
 
-TEST(RealData, TheSyntheticHelixIsTheFormula) {
+TEST(RealData, TheSyntheticHelixEqualsTheFormula) {
   CATENA_NEED(path, "synth_helix.vdb");
   const auto field = load_grid(path, "velocity").vector;
   Cursor cursor;
@@ -70,7 +70,7 @@ TEST(RealData, TheBrainEqualsItsPackage) {
   if (!catena::test::exists(package)) GTEST_SKIP() << "package mricron-data is not installed";
   const auto vdb = load_grid(path).scalar, nii = load_grid(package).scalar;
   EXPECT_EQ(nii->max_value(), 133);
-  // voxel by voxel, in the world of either
+  // Compares voxel by voxel, at the world positions of both.
   Cursor a, b;
   const Box& box = nii->index_box();
   double worst = 0;

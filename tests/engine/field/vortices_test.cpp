@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The field of vortices: nowhere divergent, another at every seed, flat in two dimensions, and the same bits everywhere.
+// The analytic field of vortices: divergence-free, dependent on the seed, planar in two dimensions, and bit-identical on every machine.
 #include <gtest/gtest.h>
 
 #include "engine/base/hash.h"
@@ -24,7 +24,7 @@ Vec3 at(const VectorField& field, const Vec3& p) {
   return field.sample(p, cursor).value;
 }
 
-TEST(Vortices, HaveNoDivergence) {
+TEST(Vortices, AreDivergenceFree) {
   Random random(3);
   constexpr double h = 1e-4;
   for (const int dimensions : {2, 3})
@@ -47,7 +47,7 @@ TEST(Vortices, HaveNoDivergence) {
     }
 }
 
-TEST(Vortices, OfTwoDimensionsLieInThePlane) {
+TEST(Vortices, TwoDimensionalVorticesArePlanar) {
   const auto field = vortices(4, 2);
   for (const double z : {-1.0, 0.0, 3.0}) {
     EXPECT_EQ(at(*field, Vec3(0.3, -0.7, z)), at(*field, Vec3(0.3, -0.7, 0)));
@@ -55,7 +55,7 @@ TEST(Vortices, OfTwoDimensionsLieInThePlane) {
   }
 }
 
-TEST(Vortices, FollowTheSeedAndTheCentre) {
+TEST(Vortices, DependOnTheSeedAndTheCenter) {
   const Vec3 p(0.25, 0.5, -0.125), center(1, -2, 0.5);
   EXPECT_NE(at(*vortices(1, 3), p), at(*vortices(2, 3), p));
   EXPECT_EQ(at(*vortices(1, 3, center), p + center), at(*vortices(1, 3), p));
@@ -65,7 +65,7 @@ TEST(Vortices, FollowTheSeedAndTheCentre) {
   EXPECT_FALSE(make_analytic("vortices", parameters));
 }
 
-TEST(Vortices, AreTheSameBitsOnEveryMachine) {
+TEST(Vortices, AreBitIdenticalOnEveryMachine) {
   Fnv1a hash;
   for (const int dimensions : {2, 3})
     for (int seed = 0; seed < 10; ++seed)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a scene writes over its picture: every key, and one line for every mistake.
+/// Text and legends over the image of a scene: every key, and a one-line error for every mistake.
 #include "engine/scene/annotations.h"
 
 #include <gtest/gtest.h>
@@ -64,7 +64,7 @@ TEST(Annotations, EveryKeyIsRead) {
   EXPECT_EQ(all.color->b, 0.0f);
 }
 
-TEST(Annotations, NothingIsWrittenUnlessAsked) {
+TEST(Annotations, ThereAreNoAnnotationsByDefault) {
   const auto scene = parse_scene(with(R"("orientation_marker": false)"), "scene.json");
   ASSERT_TRUE(scene) << scene.error().message;
   const Annotations& all = scene->annotations;
@@ -75,10 +75,10 @@ TEST(Annotations, NothingIsWrittenUnlessAsked) {
   EXPECT_FALSE(first_scalar_bar(EntityStore()));
 }
 
-TEST(Annotations, MistakesAreOneLine) {
+TEST(Annotations, ErrorsAreOneLine) {
   expect_error(R"("scalar_bars": {})", {"array of objects was expected"});
-  expect_error(R"("scalar_bars": [{}])", {"names nothing", "\"volume\": INDEX", "expected"});
-  expect_error(R"("scalar_bars": [{"volume": 0, "field": "d"}])", {"several things", "expected"});
+  expect_error(R"("scalar_bars": [{}])", {"names no item", "\"volume\": INDEX", "expected"});
+  expect_error(R"("scalar_bars": [{"volume": 0, "field": "d"}])", {"several items", "expected"});
   expect_error(R"("scalar_bars": [{"volume": 1}])", {"\"volume\"", "expected"});
   expect_error(R"("scalar_bars": [{"streamlines": 0}])", {"shows no values", "\"color_by\" was expected"});
   expect_error(R"("scalar_bars": [{"field": "e"}])", {"no volume", "\"e\"", "expected"});
@@ -96,7 +96,7 @@ TEST(Annotations, MistakesAreOneLine) {
   expect_error(R"("title": 3)", {"title", "expected"});
   expect_error(R"("orientation_marker": 3)", {"true, false or an object was expected"});
   expect_error(R"("orientation_marker": {"position": "left"})", {"bottom-left, bottom-right, top-left, top-right"});
-  expect_error(R"("orientation_marker": {"names": ["a"]})", {"names, of x, y and z, were expected"});
+  expect_error(R"("orientation_marker": {"names": ["a"]})", {"names of the x, y and z axes were expected"});
   expect_error(R"("status": "on")", {"true or false was expected"});
   expect_error(R"("overlay": {"scale": 0})", {"> 0 was expected"});
   expect_error(R"("overlay": {"scale": 100})", {"from 0 to 20"});
@@ -106,7 +106,7 @@ TEST(Annotations, MistakesAreOneLine) {
   EXPECT_NE(none.error().message.find("has no volumes"), std::string::npos) << none.error().message;
 }
 
-TEST(Annotations, TheCursorKeepsWhatEveryLinkSays) {
+TEST(Annotations, TheCursorHasTheStatusOfEveryLink) {
   auto scene = parse_scene("{}", "scene.json");
   ASSERT_TRUE(scene);
   HapticState state;

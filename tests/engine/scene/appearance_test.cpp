@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// "projection", "color_by" and "jitter" of the scene file.
+/// The keys "projection", "color_by" and "jitter" of the scene file.
 #include <gtest/gtest.h>
 
 #include "engine/scene/scene.h"
 
 namespace catena::scene {
-namespace look_test {
+namespace appearance_test {
 
 const std::string kFields = R"({"fields": {"s": {"analytic": "sphere"}, "t": {"analytic": "torus"}},)";
 
@@ -17,7 +17,7 @@ Volume first_volume(Scene& scene) {
   return found;
 }
 
-TEST(SceneAppearance, AVolumeIsCompositeUnlessItSaysOtherwise) {
+TEST(SceneAppearance, AVolumesDefaultProjectionIsComposite) {
   auto scene = parse(R"("volumes": [{"field": "s"}])");
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(first_volume(*scene).projection, Volume::Projection::composite);
@@ -52,7 +52,7 @@ TEST(SceneAppearance, ColoursByAnotherField) {
   EXPECT_EQ(surfaces, 1);
 }
 
-TEST(SceneAppearance, WrongOnesNameTheirLine) {
+TEST(SceneAppearance, ErrorsNameTheLine) {
   for (const auto& [text, expected] :
        {std::pair{R"("jitter": 1)", "true or false was expected"},
         {R"("volumes": [{"field": "s", "projection": "max"}])", "maximum"},
@@ -70,5 +70,5 @@ TEST(SceneAppearance, WrongOnesNameTheirLine) {
   }
 }
 
-}  // namespace look_test
+}  // namespace appearance_test
 }  // namespace catena::scene

@@ -9,11 +9,11 @@
 #include "tests/support/support.h"
 
 namespace catena::scene {
-namespace data_kind_test {
+namespace classify_scalar_test {
 
 constexpr int kSize = 48;
 
-/// The same noise everywhere, -1 to 1.
+/// Repeatable noise from -1 to 1.
 double noise(int i) {
   auto x = static_cast<std::uint32_t>(i) * 2654435761u;
   x ^= x >> 15;
@@ -22,7 +22,7 @@ double noise(int i) {
   return x / 2147483648.0 - 1;
 }
 
-/// value(p, n): p from -1 to 1, n the number of the voxel.
+/// The grid of value(p, n), with p from -1 to 1 and n the index of the voxel.
 template <class Value>
 std::shared_ptr<const field::ScalarGrid> grid_of(const Value& value, double edge = 1) {
   std::vector<float> values;
@@ -44,69 +44,72 @@ double head(const Vec3& p, int n, double air, double tissue, double bone) {
   return (r > 0.9 ? air : r > 0.7 ? bone : tissue) + 0.03 * (tissue - air) * noise(n);
 }
 
-TEST(DataClassification, ComputedTomographyByItsScaleOrItsUnit) {
+TEST(DataClassification, CtIsRecognizedByItsScaleOrUnit) {
   EXPECT_EQ(kind(grid_of([](const Vec3& p, int n) { return head(p, n, -1000, 40, 900); })), DataKind::ct);
   EXPECT_EQ(kind(grid_of([](const Vec3& p, int n) { return head(p, n, 0, 40, 900); }), {"HU", "", false, false}), DataKind::ct);
   EXPECT_NE(kind(grid_of([](const Vec3& p, int n) { return head(p, n, -100, 4, 90); })), DataKind::ct);
 }
 
-TEST(DataClassification, AScanWithoutAScaleIsMrOfAPatientOnly) {
+TEST(DataClassification, OnlyScansInPatientCoordinatesAreMr) {
   const auto scan = grid_of([](const Vec3& p, int n) { return std::max(0.0, head(p, n, 0, 100, 60)); });
   EXPECT_EQ(kind(scan, kPatient), DataKind::mr);
   EXPECT_NE(kind(scan), DataKind::mr);
 }
 
-TEST(DataClassification, LabelsAreWholeNumbersWithEqualNeighbours) {
+TEST(DataClassification, LabelMapsAreIntegersWithEqualNeighbours) {
   const auto label = [](const Vec3& p) { return norm(p) > 0.9 ? 0 : 1 + int(3 * (p.x + 1)) + 10 * int(3 * (p.y + 1)); };
   EXPECT_EQ(kind(grid_of([&](const Vec3& p, int) { return label(p); }), kPatient), DataKind::label_map);
-  // regions of a voxel's thickness are regions, numbers at random are none, however few
+  // Regions of one voxel's thickness are label regions; random integers are not, however few values there are.
   const auto sheets = [](const Vec3&, int n) { return n / (kSize * kSize) == 20 ? 3 : n / kSize % kSize == 30 ? 5 : 0; };
   EXPECT_EQ(kind(grid_of(sheets)), DataKind::label_map);
-  for (const int most : {2, 4, 9})
-    EXPECT_NE(kind(grid_of([&](const Vec3&, int n) { return std::floor(most * (0.5 + 0.499 * noise(n))); })), DataKind::label_map) << most;
-  // whole numbers alone are none: an 8-bit scan
+  for (const int max_value : {2, 4, 9})
+    EXPECT_NE(kind(grid_of([&](const Vec3&, int n) { return std::floor(max_value * (0.5 + 0.499 * noise(n))); })), DataKind::label_map)
+        << max_value;
+  // Integers alone do not make a label map: an 8-bit scan.
   EXPECT_EQ(kind(grid_of([](const Vec3& p, int n) { return std::round(std::max(0.0, head(p, n, 0, 100, 60))); }), kPatient), DataKind::mr);
 }
 
-TEST(DataClassification, VesselsAreFewBrightAndRough) {
+TEST(DataClassification, AngiogramsHaveFewBrightRoughVoxels) {
   const auto vessel = [](const Vec3& p, int n) {
     const double d = std::hypot(p.y - 0.4 * std::sin(3 * p.x), p.z);
     return 100 + 20 * noise(n) + (d < 0.06 ? 500 : 0);
   };
   EXPECT_EQ(kind(grid_of(vessel)), DataKind::angiogram);
   EXPECT_EQ(kind(grid_of(vessel), kPatient), DataKind::angiogram);
-  // as small and bright, but smooth, even on a coarse grid
+  // Small and bright but smooth data are no vessels, even on a coarse grid.
   const auto coarse = *field::make_analytic("gaussian");
   EXPECT_EQ(kind(field::sample_on_grid(*coarse.scalar, 24, -2, 2)), DataKind::simulation);
   EXPECT_EQ(kind(grid_of([](const Vec3& p, int) { return std::exp(-30 * dot(p, p)); })), DataKind::simulation);
 }
 
-TEST(DataClassification, DistancesHaveSlopeOneAndBothSigns) {
+TEST(DataClassification, LevelSetsHaveUnitSlopeAndBothSigns) {
   const double edge = 2.0 / (kSize - 1);
   EXPECT_EQ(kind(grid_of([](const Vec3& p, int) { return norm(p) - 0.6; }, edge)), DataKind::level_set);
   EXPECT_EQ(kind(grid_of([](const Vec3& p, int) { return norm(p); }, edge)), DataKind::simulation);
   EXPECT_EQ(kind(grid_of([](const Vec3& p, int) { return 2 * (norm(p) - 0.6); }, edge)), DataKind::simulation);
-  EXPECT_EQ(kind(grid_of([](const Vec3& p, int) { return dot(p, p); }), {"", "", false, true}), DataKind::level_set) << "the file says so";
+  EXPECT_EQ(kind(grid_of([](const Vec3& p, int) { return dot(p, p); }), {"", "", false, true}), DataKind::level_set)
+      << "the file declares it";
 }
 
-TEST(DataClassification, PlateausCloudsAndQuantities) {
+TEST(DataClassification, SolidsCloudsAndSimulations) {
   EXPECT_EQ(kind(grid_of([](const Vec3& p, int) { return 1 / (1 + std::exp(60 * (norm(p) - 0.6))); })), DataKind::solid);
   EXPECT_EQ(kind(grid_of([](const Vec3& p, int) { return std::max(0.0, 0.5 - norm(p)) * (1.5 + std::sin(9 * p.x)); })), DataKind::cloud);
   EXPECT_EQ(kind(grid_of([](const Vec3& p, int) { return std::sin(3 * p.x) + p.y * p.z; })), DataKind::simulation);
   EXPECT_EQ(kind(grid_of([](const Vec3&, int) { return 7; })), DataKind::simulation) << "one value";
 }
 
-TEST(DataClassification, SaysWhy) {
+TEST(DataClassification, ExplainsTheKind) {
   const ScalarStats facts = compute_scalar_stats(*grid_of([](const Vec3& p, int n) { return head(p, n, -1000, 40, 900); }), {});
   const std::string reason = explain_kind(classify_scalar(facts), facts);
-  EXPECT_NE(reason.find(" % of the values are air near -1000"), std::string::npos) << reason;
+  EXPECT_NE(reason.find(" % of the values are near -1000 (air)"), std::string::npos) << reason;
   EXPECT_GT(facts.air_share, 0.3);
   EXPECT_GT(facts.threshold, -1000);
   EXPECT_LT(facts.threshold, 900);
 }
 
-// the thresholds were chosen on other files: ch2, ch2bet, aal, JHU-WhiteMatter-labels-1mm, brodmann, cranium_ct, combustor_cfd, weather_uvt
-TEST(DataClassification, RealFilesThatNothingWasTunedOn) {
+// The thresholds were tuned on other files: ch2, ch2bet, aal, JHU-WhiteMatter-labels-1mm, brodmann, cranium_ct, combustor_cfd,
+// weather_uvt.
+TEST(DataClassification, RealFilesBeyondTheTuningSet) {
   int seen = 0;
   const auto look = [&](const std::string& path, const std::string& grid, DataKind expected) {
     if (path.empty() || !std::filesystem::exists(path)) return;
@@ -133,5 +136,5 @@ TEST(DataClassification, RealFilesThatNothingWasTunedOn) {
   if (seen == 0) GTEST_SKIP() << "no such files";
 }
 
-}  // namespace data_kind_test
+}  // namespace classify_scalar_test
 }  // namespace catena::scene

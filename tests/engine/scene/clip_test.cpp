@@ -13,7 +13,7 @@ TEST(SceneClip, PlanesAndBoxesBecomePlanes) {
   ASSERT_TRUE(scene);
   ASSERT_EQ(scene->clip_planes.size(), 7u);
   EXPECT_EQ(scene->clip_planes[0].normal, Vec3(0, 0, -2));
-  // every plane of the box keeps its middle and not what lies beyond
+  // The box's planes keep its center and cut what is outside.
   for (std::size_t i = 1; i < 7; ++i) {
     const ClipPlane& plane = scene->clip_planes[i];
     EXPECT_GT(dot(plane.normal, Vec3(0.5, 1, 1.5) - plane.point), 0);
@@ -21,7 +21,7 @@ TEST(SceneClip, PlanesAndBoxesBecomePlanes) {
   }
 }
 
-TEST(SceneClip, WrongClipsNameTheirLine) {
+TEST(SceneClip, ErrorsNameTheLine) {
   for (const auto& [text, expected] : {std::pair{R"({"plane": 1})", "an array of objects was expected"},
                                        {R"([{}])", "one of \"plane\", \"box\" and \"widget\" was expected"},
                                        {R"([{"plane": {"point": [0,0,0], "normal": [0,0,0]}}])", "a vector other than [0, 0, 0]"},

@@ -13,7 +13,7 @@ struct Published {
   double r, g, b;
 };
 
-/// The colour of a table where it has `value`, by its definition: linear between neighbours.
+/// The color of a table at `value`, by definition: linear between neighbors.
 Vec3 at(const std::vector<ColorPoint>& table, double value) {
   for (std::size_t i = 1; i < table.size(); ++i)
     if (value <= table[i].value) {
@@ -30,8 +30,8 @@ double off(const std::vector<ColorPoint>& table, double value, const Published& 
   return std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
 }
 
-/// Entries out of the tables of 256 as their authors publish them (matplotlib's _cm_listed.py).
-TEST(ColorMaps, AreThePublishedOnes) {
+/// Entries of the published tables of 256 colors (matplotlib's _cm_listed.py).
+TEST(ColorMaps, EqualThePublishedTables) {
   const std::pair<const char*, std::vector<Published>> maps[] = {
       {"viridis",
        {{0, 0.267004, 0.004874, 0.329415},
@@ -89,15 +89,15 @@ TEST(ColorMaps, AreThePublishedOnes) {
       EXPECT_LE(off(make_color_map(name, 0, 255), entry.at, entry), 1 / 255.0) << name << " " << entry.at;
 }
 
-/// Eight of the 33 points of Moreland's own table, CoolWarmFloat33.csv.
-TEST(ColorMaps, CoolWarmIsMorelands) {
+/// Eight of the 33 points of Moreland's table, CoolWarmFloat33.csv.
+TEST(ColorMaps, CoolWarmEqualsMorelandsTable) {
   const Published points[] = {{0, 0.229806, 0.298718, 0.753683},  {5, 0.424370, 0.558148, 0.945620},  {11, 0.681291, 0.788965, 0.990363},
                               {16, 0.865395, 0.865410, 0.865396}, {21, 0.967328, 0.734133, 0.628752}, {27, 0.899046, 0.439559, 0.343230},
                               {31, 0.752535, 0.157246, 0.184115}, {32, 0.705673, 0.015556, 0.150233}};
   for (const Published& point : points) EXPECT_LE(off(make_color_map("cool-warm", 0, 32), point.at, point), 0.3 / 255) << point.at;
 }
 
-TEST(ColorMaps, RiseFromTheLowestToTheHighestValue) {
+TEST(ColorMaps, CoverTheRangeFromTheMinimumToTheMaximum) {
   for (const std::string_view name : color_map_names())
     for (const auto& [lo, hi] : {std::pair{0.0, 1.0}, std::pair{-1024.0, 2986.0}, std::pair{1.0, std::nextafter(1.0, 2.0)},
                                  std::pair{1.0, 1 + 1e-14}, std::pair{-3e38, 3e38}, std::pair{0.0, 1e-45}}) {
@@ -105,7 +105,7 @@ TEST(ColorMaps, RiseFromTheLowestToTheHighestValue) {
       EXPECT_EQ(table.front().value, lo);
       EXPECT_EQ(table.back().value, hi);
       for (std::size_t i = 1; i < table.size(); ++i) ASSERT_GT(table[i].value, table[i - 1].value) << name << " " << lo << " " << hi;
-      // reversed: the ends change places
+      // A reversed map has swapped ends.
       EXPECT_EQ(back.front().color.r, table.back().color.r);
       EXPECT_EQ(back.back().color.b, table.front().color.b);
       for (const ColorPoint& point : table)
@@ -127,13 +127,13 @@ TEST(ColorMaps, OneValueHasTheMiddleColour) {
   EXPECT_NEAR(table[0].color.g, 0.5669, 2 / 255.0);
 }
 
-TEST(ColorMaps, UnknownNamesAreToldApart) {
+TEST(ColorMaps, UnknownNamesAreRefusedWithASuggestion) {
   EXPECT_TRUE(is_color_map("cividis") && is_color_map("cool-warm_r"));
   for (const char* name : {"", "_r", "Viridis", "viridis_r_r", "jet"}) EXPECT_FALSE(is_color_map(name)) << name;
   EXPECT_NE(unknown_color_map_message("virdis").find("did you mean \"viridis\"?"), std::string::npos);
 }
 
-TEST(ColorMaps, ATableComesBeforeAName) {
+TEST(ColorMaps, ATableOverridesAName) {
   const std::vector<ColorPoint> table = {{5, {1, 0, 0}}};
   EXPECT_EQ(make_color_table(table, {"grey", {}}, 0, 1).size(), 1u);
   EXPECT_EQ(make_color_table({}, {"grey", {}}, 2, 3).front().value, 2);
@@ -141,8 +141,8 @@ TEST(ColorMaps, ATableComesBeforeAName) {
   EXPECT_EQ(make_color_table({}, {}, 3, 2).back().value, 1) << "no values at all: 0 to 1";
 }
 
-/// Colours at values by hand: a logarithm's decades are as long, symlog is odd and linear about 0.
-TEST(ColorMaps, LieOnTheirScale) {
+/// Colors at values by closed forms: the decades of a logarithm have equal lengths; symlog is odd, and linear about 0.
+TEST(ColorMaps, FollowTheValueMapping) {
   using Kind = ValueMapping::Kind;
   const auto grey_at = [](const std::vector<ColorPoint>& table, double value) {
     std::size_t i = 1;
@@ -158,7 +158,7 @@ TEST(ColorMaps, LieOnTheirScale) {
   for (const auto& [value, place] :
        {std::pair{-100.0, -far}, {-10.0, -1 - std::log(10.0)}, {-0.5, -0.5}, {0.0, 0.0}, {1.0, 1.0}, {100.0, far}})
     EXPECT_NEAR(grey_at(both, value), 0.5 + 0.5 * place / far, 1e-3) << value;
-  // a table of values alike; without linear_below a thousandth of the greatest
+  // The same for a table of values; without linear_below, a thousandth of the maximum magnitude.
   const std::vector<ColorPoint> rows{{0.01, {0, 0, 0}}, {100, {1, 0, 0}}};
   EXPECT_NEAR(grey_at(make_color_table(rows, {"", {}, {Kind::log, 0}}, 0, 0), 1), 0.5, 1e-3);
   EXPECT_EQ(linear_below({Kind::symlog, 0}, -7, 2), 7e-3);
@@ -166,7 +166,7 @@ TEST(ColorMaps, LieOnTheirScale) {
   EXPECT_TRUE(mapping_error({Kind::symlog, 0}, 0, "x").empty());
 }
 
-TEST(ColorSpaces, LabAndMshOfKnownColours) {
+TEST(ColorSpaces, LabAndMshOfKnownColoursAreRight) {
   const Vec3 white = lab_from_srgb({1, 1, 1}), red = lab_from_srgb({1, 0, 0});
   EXPECT_LT(norm(white - Vec3(100, 0, 0)), 0.02);
   EXPECT_LT(norm(red - Vec3(53.24, 80.09, 67.20)), 0.05);
@@ -176,8 +176,8 @@ TEST(ColorSpaces, LabAndMshOfKnownColours) {
   }
 }
 
-TEST(ColorSpaces, HsvGoesTheShorterWayOnlyWhereItWraps) {
-  // from red to blue through magenta, or through green, which does not pass red
+TEST(ColorSpaces, HsvTakesTheShorterHuePathOnlyWithWrapping) {
+  // From red to blue through magenta, or through green without wrapping around red.
   EXPECT_LT(norm(interpolate_colors(ColorSpace::hsv_wrap, {1, 0, 0}, {0, 0, 1}, 0.5) - Vec3(1, 0, 1)), 1e-12);
   EXPECT_LT(norm(interpolate_colors(ColorSpace::hsv, {1, 0, 0}, {0, 0, 1}, 0.5) - Vec3(0, 1, 0)), 1e-12);
   EXPECT_LT(norm(interpolate_colors(ColorSpace::hsv, {1, 0, 0}, {0, 1, 0}, 0.5) - Vec3(1, 1, 0)), 1e-12);

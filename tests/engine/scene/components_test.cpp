@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a component's description writes reads back as the same component; "color_by" as a word reads as the object does, with a note.
+// Components written by their descriptions read back as equal components.
 #include <gtest/gtest.h>
 
 #include "engine/scene/scene.h"
@@ -22,7 +22,7 @@ Scene scene_of(const std::string& part) {
   return scene ? std::move(*scene) : Scene();
 }
 
-/// The first T of the scene, as its description writes it.
+/// The first T of the scene, written by its description.
 template <class T>
 std::string written(const Scene& scene) {
   std::string text;
@@ -39,7 +39,7 @@ void comes_back(const std::string& key, const std::string& item) {
   EXPECT_EQ(again, item);
 }
 
-TEST(Components, WhatIsWrittenReadsBack) {
+TEST(Components, WrittenComponentsReadBack) {
   comes_back<Volume>("volumes", R"({"field": "s"})");
   comes_back<Volume>("volumes", R"({"field": "s", "color": "magma", "range": [0, 2], "shade": true, "clip": false})");
   comes_back<Volume>("volumes",
@@ -62,12 +62,12 @@ TEST(Components, WhatIsWrittenReadsBack) {
       "streamlines", R"({"field": "v", "seeds": {"evenly_spaced": {"distance": 0.5, "count": 20000}}, "color": [0, 1, 0], "arrows": 2})");
 }
 
-TEST(Components, AnEditorsSchemaIsNamedByAString) {
+TEST(Components, TheSchemaKeyIsAString) {
   EXPECT_TRUE(parse_scene(R"({"$schema": "scene.schema.json"})", "s.json"));
   EXPECT_FALSE(parse_scene(R"({"$schema": 3})", "s.json"));
 }
 
-TEST(Components, ALineIsColoredByOneOfFieldAndQuantity) {
+TEST(Components, ColorByHasEitherAFieldOrAQuantity) {
   const std::string seeds = R"("streamlines": [{"field": "v", "seeds": [[1, 0, 0]], )";
   const auto both = parse_scene(std::string(kHead) + seeds + R"("color_by": {"quantity": "speed", "field": "s"}}]})", "s.json");
   ASSERT_FALSE(both);

@@ -13,9 +13,9 @@
 #include "tests/support/support.h"
 
 namespace catena::scene {
-namespace first_look_test {
+namespace default_visualization_test {
 
-/// A grid of 32^3 over -1..1 in a file, and the scene that shows it; what the scene says can be prepared.
+/// The default scene of a file with a grid of 32^3 over -1..1; the scene is also prepared for rendering.
 template <class Value>
 Scene scene_of(const std::string& path, const Value& value, const NamedColors& colors = {}) {
   constexpr int kSize = 32;
@@ -41,22 +41,22 @@ std::vector<double> levels(const Scene& scene) {
   return all;
 }
 
-field::AnyField ramp_up_to(double most) {
+field::AnyField ramp_up_to(double maximum) {
   std::vector<float> values(8);
-  values.back() = float(most);
+  values.back() = float(maximum);
   return {field::make_scalar_grid("g", field::Mapping::from_linear(Mat3(1.0), Vec3(0.0)), {2, 2, 2}, values), nullptr};
 }
 
-TEST(DefaultVisualization, ValuesThatNoSceneCanStateAreSaid) {
-  for (const double most : {3e-35, 3e35}) {
-    const auto look = scene_for_field(ramp_up_to(most));
+TEST(DefaultVisualization, ValuesOutOfTheRangeOfFloatsAreRefused) {
+  for (const double maximum : {3e-35, 3e35}) {
+    const auto look = scene_for_field(ramp_up_to(maximum));
     ASSERT_FALSE(look);
-    EXPECT_NE(look.error().message.find("its values go from 0 to 3e"), std::string::npos) << look.error().message;
+    EXPECT_NE(look.error().message.find("the values range from 0 to 3e"), std::string::npos) << look.error().message;
   }
   EXPECT_TRUE(scene_for_field(ramp_up_to(1e-29)));
 }
 
-TEST(DefaultVisualization, OutliersAndFillValuesChangeNothingButTheNotes) {
+TEST(DefaultVisualization, OutliersAndFillValuesChangeOnlyTheNotes) {
   const test::TemporaryFolder folder;
   const auto wave = [](const Vec3& p) { return 1.5 + std::sin(2 * p.x) * std::cos(1.5 * p.y + p.z); };
   const auto is_first = [](const Vec3& p) { return p.x < -0.99 && p.y < -0.99 && p.z < -0.99; };
@@ -76,26 +76,26 @@ TEST(DefaultVisualization, OutliersAndFillValuesChangeNothingButTheNotes) {
     EXPECT_EQ(text, clean) << outlier;
     EXPECT_NE(why.find("1 value of"), std::string::npos) << why;
   }
-  // the lower third is missing
+  // The lower third of the values is missing.
   const auto [text, why] = text_of_look("c.vdb", [&](const Vec3& p) { return p.z < -0.35 ? -9999 : wave(p); });
   EXPECT_EQ(text.substr(0, 2), "0 ") << text;
   EXPECT_EQ(text.find("-9999"), std::string::npos) << text;
   EXPECT_NE(why.find("of the values are exactly -9999: perhaps missing data"), std::string::npos) << why;
 }
 
-TEST(DefaultVisualization, ValuesTooSmallForPicturesAreSaidOfScenesToo) {
+TEST(DefaultVisualization, ValuesTooSmallToRenderHaveANote) {
   const test::TemporaryFolder folder;
-  for (const double most : {1e-35, 1e-29}) {
-    ASSERT_TRUE(field::write_vdb(folder / "f.vdb", {{ramp_up_to(most), "g"}}));
+  for (const double maximum : {1e-35, 1e-29}) {
+    ASSERT_TRUE(field::write_vdb(folder / "f.vdb", {{ramp_up_to(maximum), "g"}}));
     auto scene = parse_scene("{\"fields\": {\"f\": {\"file\": \"f.vdb\"}}}", folder / "s.json");
     ASSERT_TRUE(scene) << scene.error().message;
     ASSERT_TRUE(resolve_field(*scene, "f", {}));
-    const auto says = [](const std::string& note) { return note.find("field \"f\": its values are at most 1e-35") != std::string::npos; };
-    EXPECT_EQ(std::ranges::count_if(scene->notes, says), most < 1e-30 ? 1 : 0);
+    const auto says = [](const std::string& note) { return note.find("field \"f\": the largest magnitude is 1e-35") != std::string::npos; };
+    EXPECT_EQ(std::ranges::count_if(scene->notes, says), maximum < 1e-30 ? 1 : 0);
   }
 }
 
-TEST(DefaultVisualization, BoneUnderSkin) {
+TEST(DefaultVisualization, ACtShowsBoneUnderSkin) {
   const test::TemporaryFolder folder;
   const Scene scene = scene_of(folder / "a.vdb", [](const Vec3& p) { return norm(p) > 0.9 ? -1000 : norm(p) > 0.7 ? 900 : 40; });
   EXPECT_EQ(levels(scene), (std::vector<double>{250, -300}));
@@ -111,7 +111,7 @@ TEST(DefaultVisualization, ACtWithoutBoneHasAnOpaqueSkin) {
   scene.entities.each<Isosurface>([](Entity, const Isosurface& surface) { EXPECT_EQ(surface.opacity, 1); });
 }
 
-TEST(DefaultVisualization, ALevelSetAtZeroAndASolidBetweenItsPlateaus) {
+TEST(DefaultVisualization, ALevelSetIsShownAtZeroAndASolidBetweenItsPlateaus) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(levels(scene_of(folder / "a.vdb", [](const Vec3& p) { return norm(p) - 0.6; })), std::vector<double>{0});
   const auto solid = levels(scene_of(folder / "b.vdb", [](const Vec3& p) { return 3 + std::tanh(40 * (norm(p) - 0.6)); }));
@@ -119,7 +119,7 @@ TEST(DefaultVisualization, ALevelSetAtZeroAndASolidBetweenItsPlateaus) {
   EXPECT_NEAR(solid[0], 3, 0.6);
 }
 
-TEST(DefaultVisualization, ALabelMapIsOneSurfaceWithAColourALabelAndALegend) {
+TEST(DefaultVisualization, ALabelMapIsOneSurfaceWithLabelColoursAndALegend) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "a.txt", "1 one\n2 two\n");
   const Scene scene =
@@ -141,7 +141,7 @@ TEST(DefaultVisualization, ALabelMapIsOneSurfaceWithAColourALabelAndALegend) {
   EXPECT_NE(scene.notes[0].find("names from a.txt"), std::string::npos) << scene.notes[0];
 }
 
-TEST(DefaultVisualization, AQuantityHasAMapWithItsBarAndItsLowValuesAreSeen) {
+TEST(DefaultVisualization, ASimulationHasAColourMapAScalarBarAndVisibleLowValues) {
   const test::TemporaryFolder folder;
   const Scene scene = scene_of(folder / "a.vdb", [](const Vec3& p) { return 1000 + p.x + 0.2 * std::sin(3 * p.y); });
   ASSERT_EQ(scene.entities.count<Volume>(), 1u);
@@ -168,7 +168,7 @@ TEST(DefaultVisualization, AStatedMapMakesAnyKindAVolume) {
   EXPECT_EQ(scene.entities.count<Volume>(), 1u);
 }
 
-TEST(DefaultVisualization, OneValueAlone) {
+TEST(DefaultVisualization, AConstantFieldIsAVolume) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(scene_of(folder / "a.vdb", [](const Vec3&) { return 7; }).entities.count<Volume>(), 1u);
 }
@@ -190,7 +190,7 @@ TEST(DefaultVisualization, FibresHaveOneColorAndNoSpeedBar) {
   }
 }
 
-TEST(DefaultVisualization, ARampIsAQuantityAlongAnyAxis) {
+TEST(DefaultVisualization, ARampAlongAnyAxisIsAVolume) {
   const test::TemporaryFolder folder;
   for (int axis = 0; axis < 3; ++axis) {
     const Scene scene = scene_of(folder / "a.vdb", [&](const Vec3& p) { return 0.37 * p[axis]; });
@@ -213,7 +213,7 @@ TEST(DefaultVisualization, ASingleImageIsASlice) {
   EXPECT_TRUE(prepared) << prepared.error().message;
 }
 
-TEST(DefaultVisualization, RandomSignsAreAxesAndAFlowIsNot) {
+TEST(DefaultVisualization, RandomSignsMakeALineField) {
   constexpr int kSize = 24;
   std::vector<float> signs, flow;
   std::uint32_t state = 7;
@@ -221,7 +221,7 @@ TEST(DefaultVisualization, RandomSignsAreAxesAndAFlowIsNot) {
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x) {
         state = 1664525 * state + 1013904223;
-        const Vec3 v = (1 + 0.05 * x) * Vec3(std::cos(0.1 * y), std::sin(0.1 * y), 0.3);  // of different lengths, as with FA
+        const Vec3 v = (1 + 0.05 * x) * Vec3(std::cos(0.1 * y), std::sin(0.1 * y), 0.3);  // lengths vary, as with FA
         const double sign = (state >> 31) != 0 ? -1 : 1;
         for (int a = 0; a < 3; ++a) {
           signs.push_back(static_cast<float>(sign * v[a]));
@@ -239,7 +239,7 @@ TEST(DefaultVisualization, RandomSignsAreAxesAndAFlowIsNot) {
   }
 }
 
-TEST(DefaultVisualization, FibresAreShownInTheirBody) {
+TEST(DefaultVisualization, FibresAreShownInsideTheirTranslucentBody) {
   const test::TemporaryFolder folder;
   const auto body = *field::make_analytic("left-ventricle"), fibre = *field::make_analytic("left-ventricle", {1, {}, "fibre"});
   const auto shape = field::sample_on_grid(*body.scalar, 48, -3, 3);
@@ -254,9 +254,9 @@ TEST(DefaultVisualization, FibresAreShownInTheirBody) {
   EXPECT_TRUE(prepared) << prepared.error().message;
 }
 
-TEST(DefaultVisualization, AFieldWithoutLinesIsStillAPicture) {
+TEST(DefaultVisualization, AFieldWithoutLinesIsStillShown) {
   const test::TemporaryFolder folder;
-  // a single voxel that moves: its line is shorter than lines are apart
+  // The velocity is nonzero in a single voxel: the line is shorter than the spacing of lines.
   constexpr int kSize = 80;
   std::vector<float> still(3 * kSize * kSize * kSize, 0.f), dot = still;
   dot[3 * 36 * (1 + kSize + kSize * kSize)] = 1;
@@ -272,5 +272,5 @@ TEST(DefaultVisualization, AFieldWithoutLinesIsStillAPicture) {
   }
 }
 
-}  // namespace first_look_test
+}  // namespace default_visualization_test
 }  // namespace catena::scene

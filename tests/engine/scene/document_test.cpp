@@ -51,7 +51,7 @@ const std::string kQuad = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
 // ---- edits and history ----
 
-TEST(Document, OpensTheFileAsItIs) {
+TEST(Document, OpeningKeepsTheTextUnchanged) {
   const test::TemporaryFolder folder;
   Document document = open_text(folder);
   EXPECT_EQ(document.text(), kText);
@@ -100,12 +100,12 @@ TEST(Document, AnEditIsReadAndUndone) {
   EXPECT_FALSE(document.can_redo());
 }
 
-TEST(Document, ADragIsOneStep) {
+TEST(Document, ADragIsOneUndoStep) {
   const test::TemporaryFolder folder;
   Document document = open_text(folder);
   for (const char* level : {"0.5", "0.6", "0.7"}) expect_done(document.set("/isosurfaces/0/level", level, "level", "drag-1"));
   for (const char* level : {"0.8", "0.9"}) expect_done(document.set("/isosurfaces/0/level", level, "level", "drag-2"));
-  expect_done(document.set("/isosurfaces/0/level", "0.9", "level"));  // changes nothing
+  expect_done(document.set("/isosurfaces/0/level", "0.9", "level"));  // no change
   for (const char* level : {"1.5", "1.6"}) expect_done(document.set("/isosurfaces/0/level", level, "level"));
   std::vector<std::string> levels;
   for (; document.can_undo(); document.undo()) {
@@ -116,7 +116,7 @@ TEST(Document, ADragIsOneStep) {
   EXPECT_EQ(document.text(), kText);
 }
 
-TEST(Document, ASavedStepIsNotDraggedOn) {
+TEST(Document, ADragAfterASaveIsANewUndoStep) {
   const test::TemporaryFolder folder;
   Document document = open_text(folder);
   expect_done(document.set("/isosurfaces/0/level", "0.5", "level", "d"));
@@ -128,7 +128,7 @@ TEST(Document, ASavedStepIsNotDraggedOn) {
   EXPECT_FALSE(document.is_modified());
 }
 
-TEST(Document, AnEditThatMakesNoSceneChangesNothing) {
+TEST(Document, AnInvalidEditChangesNothing) {
   const test::TemporaryFolder folder;
   Document document = open_text(folder);
   const auto refused = [&](const Outcome& outcome, const char* part) {
@@ -147,10 +147,10 @@ TEST(Document, AnEditThatMakesNoSceneChangesNothing) {
   refused(document.apply({{"/background", "[0, 0, 0]"}, {"/fog", "3"}}, "x"), "fog");
 }
 
-TEST(Document, SeveralEditsAreOneStep) {
+TEST(Document, SeveralEditsAreOneUndoStep) {
   const test::TemporaryFolder folder;
   Document document = open_text(folder);
-  // neither alone makes a scene
+  // Neither edit alone gives a valid scene.
   expect_done(document.apply(
       {{"/fields/t", R"({"analytic": "plane"})"}, {"/isosurfaces/0/field", "\"t\""}, {"/fields/s", std::nullopt}, {"/fog", {}}}, "field"));
   EXPECT_NE(document.text().find("{\"t\": {\"analytic\": \"plane\"}}, // a ball\r\n"), std::string::npos) << document.text();
@@ -171,10 +171,10 @@ TEST(Document, TheHistoryIsBounded) {
   Document large = open_text(folder, "{} //" + std::string(Document::kMaxHistoryBytes / 10, ' '));
   for (int i = 0; i < 15; ++i) expect_done(large.set("/jitter", i % 2 == 0 ? "true" : "false", "jitter"));
   for (steps = 0; large.can_undo(); large.undo()) ++steps;
-  EXPECT_EQ(steps, 8u);  // nine texts of a tenth and some bytes
+  EXPECT_EQ(steps, 8u);  // nine texts of about a tenth of the limit
   EXPECT_TRUE(large.is_modified());
 
-  // one text larger than all that is kept is still there
+  // A single text above the limit is kept.
   Document huge = open_text(folder, "{} //" + std::string(Document::kMaxHistoryBytes + 10, ' '));
   expect_done(huge.set("/jitter", "true", "jitter"));
   EXPECT_NE(huge.text().find("jitter"), std::string::npos);
@@ -184,7 +184,7 @@ TEST(Document, TheHistoryIsBounded) {
 
 // ---- saving ----
 
-TEST(Document, SavesByteForByteAndWholeOrNotAtAll) {
+TEST(Document, SavesByteExactlyAndAtomically) {
   const test::TemporaryFolder folder;
   Document document = open_text(folder);
   expect_done(document.save(folder / "b.json"));
@@ -221,7 +221,7 @@ void write_files(const test::TemporaryFolder& folder) {
   test::write_file(folder / "data/t.json", R"({"color": "magma", "opacity": [[0, 0], [2, 0.5]]})");
 }
 
-/// Every string of the text that names a file, as a path.
+/// Expects that every string in the text that names a file resolves to the same path.
 void expect_same_files(const Document& a, const Document& b) {
   const auto old_root = json::parse(a.text(), ""), new_root = json::parse(b.text(), "");
   for (const char* pointer : {"/fields/b/file", "/fields/v/file", "/device/firmware", "/meshes/0/file", "/meshes/0/color_by/transfer",
@@ -232,7 +232,7 @@ void expect_same_files(const Document& a, const Document& b) {
   }
 }
 
-TEST(Document, InAnotherFolderItNamesTheSameFiles) {
+TEST(Document, SavingToAnotherFolderAdaptsPaths) {
   const test::TemporaryFolder folder;
   write_files(folder);
   Document before = open_text(folder, kFiles), document = open(folder / "a.json");
@@ -244,7 +244,7 @@ TEST(Document, InAnotherFolderItNamesTheSameFiles) {
     expect_same_files(before, document);
     Document again = open(folder / place);
     EXPECT_EQ(again.text(), document.text());
-    // the history went along
+    // The undo history has adapted paths.
     document.undo();
     EXPECT_TRUE(document.read()) << message_of(document.read());
     expect_same_files(before, document);
@@ -255,7 +255,7 @@ TEST(Document, InAnotherFolderItNamesTheSameFiles) {
   EXPECT_EQ(test::read_file(folder / "a.json"), kFiles);
 }
 
-TEST(Document, AFileThatIsALinkKeepsItsName) {
+TEST(Document, SymbolicLinksKeepTheirNames) {
   const test::TemporaryFolder folder;
   fs::create_directories(folder / "store");
   fs::create_directories(folder / "s");
@@ -267,7 +267,7 @@ TEST(Document, AFileThatIsALinkKeepsItsName) {
   EXPECT_NE(document.text().find("\"../s/a.vdb\""), std::string::npos) << document.text();
 }
 
-TEST(Document, RefusesToBecomeOneOfItsFiles) {
+TEST(Document, RefusesToOverwriteItsInputs) {
   const test::TemporaryFolder folder;
   write_files(folder);
   fs::create_symlink(folder / "data/t.json", folder / "t2.json");
@@ -280,7 +280,7 @@ TEST(Document, RefusesToBecomeOneOfItsFiles) {
 
 // ---- overrides ----
 
-TEST(Document, OverridesStayUntilTheyAreSaved) {
+TEST(Document, OverridesApplyAndAreWrittenOnSave) {
   const test::TemporaryFolder folder;
   fs::create_directories(folder / "data");
   write_grids(folder / "data/a.vdb");
@@ -324,7 +324,7 @@ TEST(Document, OverridesStayUntilTheyAreSaved) {
 
 // ---- data files ----
 
-TEST(Document, ADataFileIsTheSceneThatShowsIt) {
+TEST(Document, ADataFileOpensAsItsDefaultScene) {
   const test::TemporaryFolder folder;
   write_grids(folder / "a b\"c.vdb");
   const auto before = field::load_counters();
@@ -336,7 +336,7 @@ TEST(Document, ADataFileIsTheSceneThatShowsIt) {
   Scene scene = std::move(*read);
   const auto ball = resolve_rendered_field(scene, find_field(scene, "ball"), {});
   ASSERT_TRUE(ball) << message_of(ball);
-  EXPECT_EQ(field::load_counters().grids, before.grids + 1);  // once for all
+  EXPECT_EQ(field::load_counters().grids, before.grids + 1);  // read once
   const auto bare = scene_for_file(folder / "a b\"c.vdb");
   ASSERT_TRUE(bare) << message_of(bare);
   EXPECT_EQ(bare->path, folder / "a b\"c.vdb");
@@ -356,7 +356,7 @@ TEST(Document, ADataFileIsTheSceneThatShowsIt) {
   EXPECT_NE(message_of(Document::open(document.path(), {}, {"viridis", {}})).find("expected"), std::string::npos);
 }
 
-TEST(Document, TheNameOfAMapLeavesABareVolumesOpacity) {
+TEST(Document, ANamedMapKeepsADataFilesOpacity) {
   const test::TemporaryFolder folder;
   write_grids(folder / "a.vdb");
   const auto plain = scene_for_file(folder / "a.vdb", {}, {"grey", {}}), named = scene_for_file(folder / "a.vdb", {}, {"magma", {}});
@@ -373,7 +373,7 @@ TEST(Document, TheNameOfAMapLeavesABareVolumesOpacity) {
   EXPECT_NE(to_json(a.colors), to_json(b.colors));
 }
 
-TEST(Document, AMeshFileAndAFlow) {
+TEST(Document, MeshAndVectorFilesOpenAsScenes) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "q.obj", kQuad);
   Document document = open(folder / "q.obj");
@@ -394,7 +394,7 @@ TEST(Document, AMeshFileAndAFlow) {
   });
 }
 
-// ---- the scenes of the house ----
+// // ---- bundled scenes ----
 
 class SceneDocumentRoundTrip : public testing::TestWithParam<std::string> {};
 
@@ -440,7 +440,7 @@ TEST_P(SceneDocumentRoundTrip, IsEditedUndoneAndSaved) {
     const auto now = json::parse(document.text(), "");
     const std::string at = pointer.ends_with("/-") ? pointer.substr(0, pointer.size() - 1) + "0" : pointer;
     ASSERT_NE(json::find_value(*now, at), nullptr) << at;
-    // what is put in stands in one place, all else is as it was
+    // The edit changes one place of the text only.
     std::size_t same = 0;
     while (same < before.size() && before[same] == document.text()[same]) ++same;
     std::size_t tail = 0;
@@ -454,7 +454,7 @@ TEST_P(SceneDocumentRoundTrip, IsEditedUndoneAndSaved) {
   while (document.can_undo()) document.undo();
   EXPECT_EQ(document.text(), text);
 
-  // elsewhere, and back
+  // The scene is saved to another folder, and its paths resolve to the same files.
   const test::TemporaryFolder folder;
   expect_done(document.save(folder / "moved.json"));
   Document moved = open(folder / "moved.json");
@@ -475,7 +475,7 @@ TEST_P(SceneDocumentRoundTrip, IsEditedUndoneAndSaved) {
   EXPECT_EQ(i, files.size());
 }
 
-TEST(Document, WhatIsOnTheDiskIsComparedAndTakenOver) {
+TEST(Document, ChangesOnDiskAreDetectedAndReloaded) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "a.json", mine = R"({"fields": {"a": {"analytic": "circle"}}})",
                     theirs = R"({"fields": {"b": {"analytic": "saddle"}}})";

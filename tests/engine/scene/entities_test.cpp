@@ -6,7 +6,7 @@
 #include <string>
 
 namespace catena::scene {
-namespace world_test {
+namespace entities_test {
 
 TEST(EntityStore, KeepsComponentsByEntityInOrderOfInsertion) {
   EntityStore world;
@@ -37,5 +37,5 @@ TEST(EntityStore, RemovalKeepsTheOthers) {
   EXPECT_EQ(world.get<int>(entities[1]), 7);
 }
 
-}  // namespace world_test
+}  // namespace entities_test
 }  // namespace catena::scene

@@ -4,11 +4,11 @@
 #include "engine/scene/scene.h"
 
 namespace catena::scene {
-namespace aids_test {
+namespace environment_test {
 
 Result<Scene> parse(const std::string& rest) { return parse_scene("{\"fields\": {},\n" + rest + "}", "s.json"); }
 
-TEST(SceneEnvironment, TrueFalseAndObjects) {
+TEST(SceneEnvironment, AidsAreBooleansOrObjects) {
   const auto scene = parse(R"("bounding_box": true, "axes": {"ticks": 3, "names": ["u", "v", "w"]}, "ground": {"height": -2, "tile": 0.5},
     "fog": {"color": [0, 0, 1], "near": 2, "far": 9}, "lights": [{"direction": [1, 0, 0], "intensity": 0.5, "fixed_to": "camera"}])");
   ASSERT_TRUE(scene) << scene.error().message;
@@ -23,7 +23,7 @@ TEST(SceneEnvironment, TrueFalseAndObjects) {
   EXPECT_FALSE(none->bounding_box || none->axes || none->ground || none->fog);
 }
 
-TEST(SceneEnvironment, WrongOnesNameTheirLine) {
+TEST(SceneEnvironment, ErrorsNameTheLine) {
   for (const auto& [text, expected] : {std::pair{R"("bounding_box": 1)", "neither true, false nor an object"},
                                        {R"("bounding_box": {"field": "f"})", "unknown field \"f\""},
                                        {R"("axes": {"names": ["a"]})", "three names"},
@@ -47,5 +47,5 @@ TEST(SceneEnvironment, WrongOnesNameTheirLine) {
   EXPECT_NE(scene.error().message.find("more than 4 lights"), std::string::npos);
 }
 
-}  // namespace aids_test
+}  // namespace environment_test
 }  // namespace catena::scene

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// "glyphs": every key, what is written reads back, wrong ones name their line.
+// "glyphs" of the scene file: every key, writing and reading back, and errors with their line.
 #include <gtest/gtest.h>
 
 #include "engine/scene/scene.h"
@@ -66,7 +66,7 @@ TEST_F(Glyphs, EveryKeyIsRead) {
   EXPECT_EQ(sets[3].support, GlyphSet::Support::isosurface);
   EXPECT_EQ(sets[3].anchor, GlyphSet::Anchor::head);
   EXPECT_EQ(sets[4].support_entity, find_mesh(*scene, "m")) << "felt, not drawn";
-  // what is not said: the domain, by magnitude, in the middle, clipped
+  // The defaults: in the domain, scaled by magnitude, centered, clipped.
   EXPECT_EQ(sets[5].support, GlyphSet::Support::box);
   EXPECT_FALSE(sets[5].box || sets[5].constant_length || sets[5].color_by);
   EXPECT_EQ(sets[5].spacing, 0);
@@ -74,7 +74,7 @@ TEST_F(Glyphs, EveryKeyIsRead) {
   EXPECT_TRUE(sets[5].clipped);
 }
 
-TEST_F(Glyphs, WhatIsWrittenReadsBack) {
+TEST_F(Glyphs, WrittenGlyphsReadBack) {
   for (
       const std::string item :
       {R"({"field": "v"})", R"({"field": "v", "on": {"box": {"min": [0, 0, 0], "max": [1, 2, 3]}}, "spacing": 0.25, "scale": "constant"})",
@@ -89,7 +89,7 @@ TEST_F(Glyphs, WhatIsWrittenReadsBack) {
   }
 }
 
-TEST_F(Glyphs, WrongOnesNameTheirLine) {
+TEST_F(Glyphs, ErrorsNameTheLine) {
   for (const auto& [text, expected] :
        {std::pair{R"({})", "an array of objects was expected"},
         {R"([{}])", "\"field\" is missing"},
@@ -127,7 +127,7 @@ TEST_F(Glyphs, WrongOnesNameTheirLine) {
   EXPECT_NE(none.error().message.find("the scene has no slices; one was expected for glyphs"), std::string::npos) << none.error().message;
 }
 
-TEST_F(Glyphs, AScalarBarNamesThem) {
+TEST_F(Glyphs, AScalarBarRefersToGlyphs) {
   const std::string sets = R"([{"field": "v", "color_by": {"quantity": "speed"}}, {"field": "v"}])";
   const auto scene = parse(sets, R"(, "scalar_bars": [{"glyphs": 0}, {"field": "v"}])");
   ASSERT_TRUE(scene) << scene.error().message;

@@ -22,7 +22,7 @@ std::string refused(const std::string& text) {
   return table ? std::string() : table.error().message;
 }
 
-TEST(LabelTables, FreeSurfer) {
+TEST(LabelTables, ReadsFreeSurferTables) {
   const LabelTable table =
       table_of("#No. Label Name:  R   G   B   A\r\n\r\n0   Unknown  0 0 0 0\r\n17  Left-Hippocampus  220 216 20  0\r\n");
   ASSERT_EQ(table.size(), 2u);
@@ -31,7 +31,7 @@ TEST(LabelTables, FreeSurfer) {
   EXPECT_EQ(table[1].color, (Color{220 / 255.f, 216 / 255.f, 20 / 255.f}));
 }
 
-TEST(LabelTables, ItkSnap) {
+TEST(LabelTables, ReadsItkSnapTables) {
   const LabelTable table = table_of(
       "# ITK-SnAP Label Description File\n    0     0    0    0        0  0  0    \"Clear Label\"\n"
       "    5   255    0  255        1  1  1    \"Left Ventricle 2\"\n");
@@ -40,7 +40,7 @@ TEST(LabelTables, ItkSnap) {
   EXPECT_EQ(table[1].color, (Color{1, 0, 1}));
 }
 
-TEST(LabelTables, NumbersAndNames) {
+TEST(LabelTables, ReadsNumbersAndNames) {
   const LabelTable table = table_of("2 Precentral_R 2002\r\n1 Precentral_L 2001\r\n7\tGenu of corpus callosum\n");
   ASSERT_EQ(table.size(), 3u);
   EXPECT_EQ(table[0].name, "Precentral_L");
@@ -49,7 +49,7 @@ TEST(LabelTables, NumbersAndNames) {
   EXPECT_FALSE(table[0].color);
 }
 
-TEST(LabelTables, ColumnsByTheirNames) {
+TEST(LabelTables, ReadsColumnsByTheirNames) {
   for (const char separator : {',', '\t', ';'}) {
     std::string text = "r,g,b,name,index\n0.5,1,0,\"a name\",12\n0,0,1,other,3\n";
     std::replace(text.begin(), text.end(), ',', separator);
@@ -62,21 +62,21 @@ TEST(LabelTables, ColumnsByTheirNames) {
   EXPECT_EQ(table_of("id,label,red,green,blue\n4,x,255,0,51\n")[0].color, (Color{1, 0, 0.2f}));
 }
 
-TEST(LabelTables, WhatIsWrongIsSaidWithItsLine) {
-  EXPECT_EQ(refused("1 a\nx b\n"), "t.txt:2: a row begins with \"x\"; the whole number of a label, at most 16777216 in size, was expected");
+TEST(LabelTables, ErrorsNameTheLine) {
+  EXPECT_EQ(refused("1 a\nx b\n"), "t.txt:2: the row begins with \"x\"; an integer label of magnitude at most 16777216 was expected");
   EXPECT_EQ(refused("1.5 a\n").substr(0, 8), "t.txt:1:");
-  EXPECT_EQ(refused("1 a\n2\n"), "t.txt:2: label 2 has no name; a name after the number was expected");
-  EXPECT_EQ(refused("# nothing\n"), "t.txt: the table has no label; rows of a number and a name were expected");
+  EXPECT_EQ(refused("1 a\n2\n"), "t.txt:2: label 2 has no name; a name was expected after the number");
+  EXPECT_EQ(refused("# nothing\n"), "t.txt: the table has no labels; rows with a number and a name were expected");
   EXPECT_NE(refused("1 a 300 0 0 0\n").find("colour component \"300\""), std::string::npos);
 }
 
-TEST(LabelTables, OfTwoRowsTheFirstCountsAndNamesAreCutAndPrintable) {
+TEST(LabelTables, TheFirstOfEqualLabelsCountsAndNamesAreShortAndPrintable) {
   EXPECT_EQ(table_of("1 a\n1 b\n")[0].name, "a");
   EXPECT_EQ(table_of("1 " + std::string(300, 'x'))[0].name.size(), 200u);
   EXPECT_EQ(table_of("1 a\x1b[2J")[0].name, "a?[2J");
 }
 
-TEST(LabelTables, TheOneBesideAMapIsFoundAndItsColorsToo) {
+TEST(LabelTables, TheTableNextToALabelMapIsFoundWithItsColors) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(find_label_table(folder / "a.nii.gz"), "");
   std::string lut(768, '\0');
@@ -93,7 +93,7 @@ TEST(LabelTables, TheOneBesideAMapIsFoundAndItsColorsToo) {
   for (const char* map : {"b.vdb", "b.nrrd", "b.MHA", "b.nii"}) EXPECT_EQ(find_label_table(folder / map), folder / "b.csv") << map;
 }
 
-TEST(LabelTables, OfADebianPackage) {
+TEST(LabelTables, ReadsATableOfADebianPackage) {
   const std::string path = "/usr/share/mricron/templates/aal.nii.txt";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path;
   const auto table = read_label_table(path);

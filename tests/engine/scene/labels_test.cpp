@@ -16,7 +16,7 @@
 namespace catena::scene {
 namespace labels_test {
 
-/// 16^3 voxels in a raw file: x below 5 is label 3, y below 5 beyond that label 70, the rest 0.
+/// 16^3 voxels in a raw file: label 3 for x below 5; for other x label 70 for y below 5; and 0 elsewhere.
 class LabelScene : public testing::Test {
  protected:
   void SetUp() override {
@@ -44,7 +44,7 @@ class LabelScene : public testing::Test {
 
 const std::string kTable = ", \"labels\": {\"file\": \"m.txt\"}";
 
-TEST_F(LabelScene, AFieldIsLinearUnlessItSaysOtherwiseOrHasLabels) {
+TEST_F(LabelScene, TheDefaultInterpolationIsLinearAndNearestForLabels) {
   for (const auto& [field, wanted] :
        {std::pair{"", field::Interpolation::linear},
         {", \"interpolation\": \"nearest\"", field::Interpolation::nearest},
@@ -58,13 +58,13 @@ TEST_F(LabelScene, AFieldIsLinearUnlessItSaysOtherwiseOrHasLabels) {
     const bool mixed = wanted == field::Interpolation::linear && *field != '\0';
     ASSERT_EQ(scene->notes.size(), mixed ? 1u : 0u) << field;
     if (mixed) {
-      EXPECT_NE(scene->notes[0].find("stand for nothing"), std::string::npos) << scene->notes[0];
+      EXPECT_NE(scene->notes[0].find("meaningless values between labels"), std::string::npos) << scene->notes[0];
     }
   }
 }
 
-TEST_F(LabelScene, AFileThatSaysSoIsNotReadByCellsWithoutAWord) {
-  // a header of 348 bytes and 4 for extensions: 4^3 bytes, intent 1002
+TEST_F(LabelScene, InterpolatingAFileWithLabelIntentHasANote) {
+  // A header of 348 bytes, 4 bytes for extensions, and 4^3 bytes of data; the intent is 1002.
   std::string file(352, '\0');
   const auto put = [&](std::size_t at, auto value) { std::memcpy(file.data() + at, &value, sizeof(value)); };
   put(0, std::int32_t{348});
@@ -107,7 +107,7 @@ TEST_F(LabelScene, NamesAndColoursComeFromTheTable) {
   EXPECT_EQ(scene->referenced_files.size(), 2u) << "the table is a file that the scene names";
 }
 
-TEST_F(LabelScene, ALabelIsAFieldByNumberNameOrTogether) {
+TEST_F(LabelScene, LabelFieldsAreSelectedByNumberNameOrList) {
   auto scene = read(
       kTable, R"(, "a": {"label": 3, "of": "m", "smooth": 0}, "b": {"label": "right", "of": "m"}, "c": {"label": [3, "right"], "of": "m"},
       "d": {"label": "*", "of": "m", "smooth": 0}},
@@ -134,15 +134,15 @@ TEST_F(LabelScene, ALabelIsAFieldByNumberNameOrTogether) {
   }
 }
 
-TEST_F(LabelScene, WhatCannotBeIsSaidInOneLine) {
+TEST_F(LabelScene, ErrorsAreOneLine) {
   const std::string surface = ", \"a\": {\"label\": 5, \"of\": \"m\"}}, \"isosurfaces\": [{\"field\": \"a\", \"level\": 0.5}]}";
-  EXPECT_NE(refused(kTable, surface).find("no voxel of \"m\" holds label 5; one of its 2 labels was expected"), std::string::npos);
+  EXPECT_NE(refused(kTable, surface).find("no voxel of \"m\" has the label 5; one of the map's 2 labels was expected"), std::string::npos);
   EXPECT_NE(refused(kTable, ", \"a\": {\"label\": \"rihgt\", \"of\": \"m\"}}, \"isosurfaces\": [{\"field\": \"a\", \"level\": 0.5}]}")
                 .find("did you mean \"right\""),
             std::string::npos);
-  EXPECT_NE(refused(kTable, ", \"a\": {\"label\": 3, \"of\": \"x\"}}}").find("\"x\" is no field from a file"), std::string::npos);
-  EXPECT_NE(refused(kTable, ", \"a\": {\"label\": 3, \"of\": \"a\"}}}").find("\"a\" is no field from a file"), std::string::npos);
-  EXPECT_NE(refused(kTable, ", \"a\": {\"label\": 1.5, \"of\": \"m\"}}}").find("a label is no whole number"), std::string::npos);
+  EXPECT_NE(refused(kTable, ", \"a\": {\"label\": 3, \"of\": \"x\"}}}").find("\"x\" is not a field from a file"), std::string::npos);
+  EXPECT_NE(refused(kTable, ", \"a\": {\"label\": 3, \"of\": \"a\"}}}").find("\"a\" is not a field from a file"), std::string::npos);
+  EXPECT_NE(refused(kTable, ", \"a\": {\"label\": 1.5, \"of\": \"m\"}}}").find("a label is not an integer"), std::string::npos);
   EXPECT_NE(refused(kTable, ", \"a\": {\"label\": [], \"of\": \"m\"}}}").find("empty list"), std::string::npos);
   EXPECT_NE(refused(", \"labels\": {\"values\": [1, 1], \"names\": [\"a\", \"b\"]}", "}}").find("holds 1 twice"), std::string::npos);
   EXPECT_NE(refused(", \"labels\": {\"values\": [1]}", "}}").find("a name for each value"), std::string::npos);
@@ -150,7 +150,7 @@ TEST_F(LabelScene, WhatCannotBeIsSaidInOneLine) {
   EXPECT_NE(refused(", \"interpolation\": \"near\"", "}}").find("nearest"), std::string::npos);
 }
 
-TEST_F(LabelScene, AFieldCanBeAPartOfItsFile) {
+TEST_F(LabelScene, AFieldCanBeCropped) {
   auto scene = read(", \"crop\": {\"min\": [3.5, 2, 2], \"max\": [9, 9, 9]}", "}, \"volumes\": [{\"field\": \"m\"}]}");
   ASSERT_TRUE(scene) << scene.error().message;
   Scene& shown = *scene;
@@ -164,7 +164,7 @@ TEST_F(LabelScene, AFieldCanBeAPartOfItsFile) {
             std::string::npos);
 }
 
-TEST_F(LabelScene, AnEditKeepsWhatWasMadeWhileTheLabelsStay) {
+TEST_F(LabelScene, AnEditKeepsLabelFieldsWithEqualLabels) {
   const std::string more =
       ", \"a\": {\"label\": 3, \"of\": \"m\"}}, \"isosurfaces\": [{\"field\": \"a\", \"level\": 0.5, \"color\": [1, 0, 0]}]}";
   auto old = read(kTable, more), fresh = read(kTable, more);
@@ -180,7 +180,7 @@ TEST_F(LabelScene, AnEditKeepsWhatWasMadeWhileTheLabelsStay) {
   EXPECT_NE(other->entities.get<FieldSource>(find_field(*other, "m")).labels, nullptr);
 }
 
-TEST_F(LabelScene, MovedElsewhereTheTableIsStillFound) {
+TEST_F(LabelScene, MovingASceneAdaptsTheTablesPath) {
   std::filesystem::create_directory(folder_ / "sub");
   const auto moved = relocate_text("{\"fields\": {\"m\": {\"file\": \"m.raw\", \"labels\": {\"file\": \"m.txt\"}}}}", folder_ / "s.json",
                                    folder_ / "sub/s.json", {});
@@ -188,7 +188,7 @@ TEST_F(LabelScene, MovedElsewhereTheTableIsStillFound) {
   EXPECT_NE(moved->find("../m.txt"), std::string::npos) << *moved;
 }
 
-/// CIE 1976 L*, a*, b* under D65.
+/// CIE 1976 L*, a*, b* for the illuminant D65.
 Vec3 cielab(const Color& c) {
   const auto linear = [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
   const auto f = [](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; };
@@ -198,25 +198,25 @@ Vec3 cielab(const Color& c) {
   return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
-double least_distance(int count) {
-  double least = 1e9;
+double min_distance(int count) {
+  double minimum = 1e9;
   for (int n = 1; n < count; ++n)
     for (int m = 0; m < n; ++m)
-      least =
-          std::min(least, norm(cielab(palette_color(static_cast<std::size_t>(n))) - cielab(palette_color(static_cast<std::size_t>(m)))));
-  return least;
+      minimum =
+          std::min(minimum, norm(cielab(palette_color(static_cast<std::size_t>(n))) - cielab(palette_color(static_cast<std::size_t>(m)))));
+  return minimum;
 }
 
-TEST(LabelColors, OfTwentyLabelsNoTwoAreNearEachOther) {
+TEST(LabelColors, PaletteColorsAreDistinct) {
   EXPECT_NEAR(cielab({1, 0, 0}).x, 53.24, 0.02);
   EXPECT_NEAR(cielab({1, 0, 0}).y, 80.09, 0.05);
   EXPECT_NEAR(cielab({1, 0, 0}).z, 67.20, 0.05);
-  EXPECT_GT(least_distance(10), 40);
-  EXPECT_GT(least_distance(20), 25);
-  EXPECT_GT(least_distance(static_cast<int>(kPaletteColors)), 8) << "none twice";
+  EXPECT_GT(min_distance(10), 40);
+  EXPECT_GT(min_distance(20), 25);
+  EXPECT_GT(min_distance(static_cast<int>(kPaletteColors)), 8) << "none twice";
 }
 
-TEST_F(LabelScene, AColourFollowsTheTableAndNotWhatElseTheMapHolds) {
+TEST_F(LabelScene, AColourDependsOnTheTableNotOnTheMapsLabels) {
   const std::string names = R"(, "labels": {"values": [1, 3, 50, 70], "names": ["a", "b", "c", "d"]})";
   auto scene = read(names, "}}"), bare = read(", \"interpolation\": \"nearest\"", "}}");
   ASSERT_TRUE(scene && bare);

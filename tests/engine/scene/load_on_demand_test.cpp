@@ -9,7 +9,7 @@
 #include "tests/support/support.h"
 
 namespace catena::scene {
-namespace use_test {
+namespace load_on_demand_test {
 
 Scene scene_of(const std::string& text, const std::string& path = "scene.json") {
   auto scene = parse_scene(text, path);
@@ -22,7 +22,7 @@ std::string message_of(const Result<T>& result) {
   return result ? std::string("no error") : result.error().message;
 }
 
-/// Two grids, a scalar ball and a swirl, in one file.
+/// Writes a scalar grid of a sphere and a vector grid of a circular flow into one file.
 void write_grids(const std::string& path) {
   const auto ball = *field::make_analytic("sphere"), swirl = *field::make_analytic("circle");
   const field::AnyField a{field::sample_on_grid(*ball.scalar, 9, -2, 2), nullptr},
@@ -31,7 +31,7 @@ void write_grids(const std::string& path) {
   ASSERT_TRUE(written) << written.error().message;
 }
 
-TEST(FieldOnDemand, LoadsOnlyWhatIsAskedForAndOnce) {
+TEST(FieldOnDemand, LoadsOnlyRequestedGridsAndOnlyOnce) {
   const test::TemporaryFolder folder;
   write_grids(folder / "a.vdb");
   Scene scene =
@@ -62,7 +62,7 @@ TEST(FieldOnDemand, ErrorsNameTheFieldsOwnLine) {
   EXPECT_NE(message_of(resolve_field(scene, "tor", {})).find("wrong, torn (did you mean \"torn\"?)"), std::string::npos);
 }
 
-TEST(FieldOnDemand, AReplacedFileMayLackTheFirstGrid) {
+TEST(FieldOnDemand, AnOverridingFileMayLackTheGrid) {
   const test::TemporaryFolder folder;
   const auto ball = *field::make_analytic("sphere");
   ASSERT_TRUE(field::write_vdb(folder / "one.vdb", {{{field::sample_on_grid(*ball.scalar, 9, -2, 2), nullptr}, "other"}}));
@@ -72,7 +72,7 @@ TEST(FieldOnDemand, AReplacedFileMayLackTheFirstGrid) {
   EXPECT_TRUE(resolve_field(*scene, "a", {}));
 }
 
-TEST(DisplayFieldOnDemand, SamplesFormulasOnceAndKeepsThemExactForTheHand) {
+TEST(DisplayFieldOnDemand, SamplesFormulasOnceForRenderingAndKeepsThemExactForHaptics) {
   Scene scene = scene_of(
       "{\"fields\": {\"ball\": {\"analytic\": \"sphere\", \"resolution\": 9, \"box\": [-1, 1]}}, \"volumes\": [{\"field\": \"ball\"}]}");
   const Entity ball = find_field(scene, "ball");
@@ -90,7 +90,7 @@ TEST(DisplayFieldOnDemand, SamplesFormulasOnceAndKeepsThemExactForTheHand) {
   });
 }
 
-TEST(CurveOnDemand, SharesOneObjectAndNamesThePlaceOfErrors) {
+TEST(CurveOnDemand, SharesTracedCurvesAndErrorsNameTheLine) {
   Scene scene = scene_of("{\"fields\": {\"swirl\": {\"analytic\": \"circle\"}}}");
   const auto any = resolve_field(scene, "swirl", {});
   ASSERT_TRUE(any);
@@ -107,7 +107,7 @@ TEST(CurveOnDemand, SharesOneObjectAndNamesThePlaceOfErrors) {
   EXPECT_NE(message_of(resolve_streamline(scene, flow, {std::nan(""), 0, 0}, where)).find("not finite"), std::string::npos);
 }
 
-TEST(CheckLevel, MustBeAttained) {
+TEST(CheckLevel, TheLevelMustBeInTheFieldsRange) {
   const auto ball = *field::make_analytic("sphere");
   const auto grid = field::sample_on_grid(*ball.scalar, 9, -2, 2);
   json::Node where;
@@ -149,7 +149,7 @@ TEST(DefaultScene, VectorsBecomeStreamlines) {
   EXPECT_TRUE(find_field(*scene, "flow"));
 }
 
-TEST(DefaultScene, Errors) {
+TEST(DefaultScene, ErrorsNameTheFile) {
   const test::TemporaryFolder folder;
   write_grids(folder / "a.vdb");
   test::write_file(folder / "torn.vdb", "not a vdb");
@@ -199,7 +199,7 @@ TEST(MeshOnDemand, BadMeshesAreRefusedWithTheirLine) {
   refused(R"({"name": "a", "file": "quad.obj", "opacity": 1.5})", "\"opacity\" is 1.5; a number from 0 to 1 was expected");
   refused(R"({"name": "a", "file": "quad.obj", "scale": 0})", "scale");
   refused(R"({"name": "a", "file": "quad.obj", "colour": [1, 0, 0]})", "colour");
-  refused(R"({"name": "a", "file": "quad.obj"}, {"name": "a", "file": "quad.obj"})", "a second mesh is called \"a\"");
+  refused(R"({"name": "a", "file": "quad.obj"}, {"name": "a", "file": "quad.obj"})", "the name \"a\" is already used for a mesh");
   auto torn = parse_scene("{\"meshes\": [\n{\"name\": \"a\", \"file\": \"torn.stl\"}]}", folder / "s.json");
   ASSERT_TRUE(torn);
   const std::string message = message_of(resolve_mesh(*torn, "a", {}));
@@ -207,7 +207,7 @@ TEST(MeshOnDemand, BadMeshesAreRefusedWithTheirLine) {
   EXPECT_NE(message.find("torn.stl:2: the file ends too early; \"normal\" was expected"), std::string::npos) << message;
 }
 
-TEST(DefaultScene, AMeshIsDrawnAsItIs) {
+TEST(DefaultScene, AMeshFileIsDrawnAsASurface) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "quad.obj", kQuad);
   auto scene = scene_for_file(folder / "quad.obj");
@@ -237,7 +237,7 @@ TEST(DefaultScene, RealScansAreTransparentInTheAir) {
   }
 }
 
-TEST(DefaultScene, RealFlowsHaveLinesInside) {
+TEST(DefaultScene, RealFlowsHaveLinesInTheirDomain) {
   for (const char* name : {"combustor_cfd.vdb", "carotid_flow.vdb"}) {
     const std::string path = test::shared_data(name);
     if (path.empty()) GTEST_SKIP() << "no shared data";
@@ -258,8 +258,8 @@ TEST(DefaultScene, RealFlowsHaveLinesInside) {
   }
 }
 
-TEST(CompleteTransfer, TheFullestValueIsTransparent) {
-  // 90 % background at 10, a block that rises to 110
+TEST(CompleteTransfer, TheMostFrequentValueIsTransparent) {
+  // 90 % of the values are a background of 10; a block rises to 110.
   std::vector<float> values(1000, 10.0f);
   for (std::size_t i = 0; i < 100; ++i) values[i] = 11.0f + static_cast<float>(i);
   const auto grid = field::make_scalar_grid("g", field::Mapping{}, {10, 10, 10}, values);
@@ -306,5 +306,5 @@ TEST(UpdateCursor, FollowsTheState) {
   EXPECT_EQ(cursor.probe, Vec3(1, 2, 3));
 }
 
-}  // namespace use_test
+}  // namespace load_on_demand_test
 }  // namespace catena::scene

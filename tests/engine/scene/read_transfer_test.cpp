@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The colours and opacities of a scene: maps by name, ranges, transfer files, ParaView's colour maps.
+/// Colors and opacities of a scene: named maps, ranges, transfer files and ParaView's color maps.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace read_transfer_test {
 
 class ReadTransfer : public testing::Test {
  protected:
-  /// A scene with one volume, keys from line 2 on; the transfer file of its folder is t.json.
+  /// A scene with one volume, whose keys begin on line 2; the transfer file in its folder is t.json.
   Result<Scene> volume(const std::string& keys) {
     return parse_scene(
         "{\"fields\": {\"ball\": {\"analytic\": \"sphere\", \"resolution\": 9}}, \"volumes\": [{\"field\": \"ball\",\n" + keys + "}]}",
@@ -27,7 +27,7 @@ class ReadTransfer : public testing::Test {
     if (scene) scene->entities.each<Volume>([&](Entity, const Volume& v) { transfer = v.transfer; });
     return transfer;
   }
-  /// The same out of a file.
+  /// The transfer function of the volume from the file t.json.
   TransferFunction file_of(const std::string& text, const std::string& more = "") {
     test::write_file(folder_ / "t.json", text);
     return transfer_of("\"transfer\": \"t.json\"" + more);
@@ -47,22 +47,22 @@ class ReadTransfer : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(ReadTransfer, MapsByName) {
+TEST_F(ReadTransfer, ReadsMapsByName) {
   TransferFunction transfer = transfer_of("\"color\": \"cividis_r\", \"range\": [-1, 2.5]");
   EXPECT_TRUE(transfer.colors.empty());
   EXPECT_EQ(transfer.named.map, "cividis_r");
   EXPECT_EQ(*transfer.named.range, (std::array<double, 2>{-1, 2.5}));
   EXPECT_FALSE(transfer_of("\"color\": \"grey\"").named.range);
-  refused("\"color\": \"virdis\"", "s.json:2", {"no colour map", "viridis, cividis", "did you mean \"viridis\"?"});
+  refused("\"color\": \"virdis\"", "s.json:2", {"not a colour map", "viridis, cividis", "did you mean \"viridis\"?"});
   refused("\"color\": 3", "s.json:2", {"expected"});
   refused("\"color\": \"grey\",\n\"range\": [1, 1]", "s.json:3", {"two rising numbers [lo, hi] were expected"});
   refused("\"color\": \"grey\", \"range\": [1, 2, 3]", "s.json:2", {"two rising numbers [lo, hi] were expected"});
-  refused("\"color\": \"grey\", \"range\": [1, 1e39]", "s.json:2", {"0 or a number from 1e-30 to 1e30 in size was expected"});
+  refused("\"color\": \"grey\", \"range\": [1, 1e39]", "s.json:2", {"0 or a number of magnitude 1e-30 to 1e30 was expected"});
   refused("\"color\": \"grey\", \"range\": [0, null]", "s.json:2", {"finite number was expected"});
   refused("\"color\": [[0, 0, 0, 0]],\n\"range\": [0, 1]", "s.json:3", {"beside a table", "expected"});
 }
 
-TEST_F(ReadTransfer, MappingsAreReadAndWrittenAndALogarithmNeedsValuesAboveZero) {
+TEST_F(ReadTransfer, MappingsReadBackAndALogarithmNeedsPositiveValues) {
   const TransferFunction log = transfer_of("\"color\": \"grey\", \"range\": [0.01, 10], \"mapping\": \"log\"");
   EXPECT_EQ(log.named.mapping.kind, ValueMapping::Kind::log);
   const TransferFunction symlog = transfer_of("\"mapping\": \"symlog\", \"linear_below\": 0.5");
@@ -73,7 +73,7 @@ TEST_F(ReadTransfer, MappingsAreReadAndWrittenAndALogarithmNeedsValuesAboveZero)
   for (const char* what : {"\"color\": \"grey\", \"range\": [0, 1]", "\"extinction\": [[0, 1], [2, 3]]", "\"opacity\": [[-2, 0], [1, 0.5]]",
                            "\"color\": [[-1, 0, 0, 0], [1, 1, 1, 1]]"})
     refused(std::string(what) + ",\n\"mapping\": \"log\"", "s.json:3", {"\"log\"", "begins at", "values above 0", "symlog"});
-  // of a file: its own, the scene's instead, and a range that lays its points anew on the scale
+  // The mapping of the file, the scene's override, and a range that places the points anew on the scale.
   const std::string file = R"({"mapping": "log", "extinction": [[0.1, 0], [1, 1], [100, 2]]})";
   EXPECT_EQ(file_of(file).named.mapping.kind, ValueMapping::Kind::log);
   EXPECT_EQ(file_of(file, ", \"mapping\": \"linear\"").named.mapping.kind, ValueMapping::Kind::linear);
@@ -83,7 +83,7 @@ TEST_F(ReadTransfer, MappingsAreReadAndWrittenAndALogarithmNeedsValuesAboveZero)
       1e-9);
 }
 
-/// The automatic opacity lies on the scale; data that reach to 0 and below are refused once they are known.
+/// The automatic opacity follows the mapping; data with values of 0 and below are refused once they are loaded.
 TEST_F(ReadTransfer, AutomaticOpacityFollowsTheMapping) {
   auto scene = volume("\"color\": \"grey\", \"range\": [0.1, 10], \"mapping\": \"log\"");
   ASSERT_TRUE(scene);
@@ -101,7 +101,7 @@ TEST_F(ReadTransfer, AutomaticOpacityFollowsTheMapping) {
   EXPECT_NE(refused.error().message.find("begins at"), std::string::npos) << refused.error().message;
 }
 
-TEST_F(ReadTransfer, GradientOpacity) {
+TEST_F(ReadTransfer, ReadsGradientOpacity) {
   const TransferFunction transfer = transfer_of("\"gradient_opacity\": [[0, 0], [2, 0.5], [4, 1]]");
   ASSERT_EQ(transfer.gradient_factors.size(), 3u);
   EXPECT_EQ(transfer.gradient_factors[1].gradient, 2);
@@ -112,7 +112,7 @@ TEST_F(ReadTransfer, GradientOpacity) {
   refused("\"gradient_opacity\": []", "s.json:2", {"empty", "expected"});
 }
 
-TEST_F(ReadTransfer, AFileHoldsTheKeysOfAVolume) {
+TEST_F(ReadTransfer, ATransferFileHasTheKeysOfAVolume) {
   const TransferFunction transfer = file_of(
       R"({"color": [[0, 1, 0, 0], [2, 0, 0, 1]], "opacity": [[0, 0], [1, 0.5]], "opacity_unit": 0.25, "gradient_opacity": [[0, 0.5]]})");
   ASSERT_EQ(transfer.colors.size(), 2u);
@@ -121,14 +121,14 @@ TEST_F(ReadTransfer, AFileHoldsTheKeysOfAVolume) {
   EXPECT_EQ(transfer.opacity_unit, 0.25);
   EXPECT_EQ(transfer.gradient_factors.size(), 1u);
   EXPECT_EQ(transfer.file, folder_ / "t.json");
-  // what stands beside the file comes first
+  // Keys in the scene override those of the file.
   const TransferFunction beside = transfer_of("\"transfer\": \"t.json\", \"opacity_unit\": 3, \"gradient_opacity\": [[0, 0], [1, 1]]");
   EXPECT_EQ(beside.opacity_unit, 3);
   EXPECT_EQ(beside.gradient_factors.size(), 2u);
   EXPECT_EQ(file_of(R"({"color": "inferno", "extinction": [[0, 3]]})").named.map, "inferno");
 }
 
-TEST_F(ReadTransfer, ARangeLaysTheTablesOfAFileAnew) {
+TEST_F(ReadTransfer, ARangeRescalesTheTablesOfAFile) {
   const std::string tables = R"({"color": [[0, 1, 0, 0], [1, 0, 1, 0], [4, 0, 0, 1]], "extinction": [[2, 0], [3, 7]]})";
   const TransferFunction transfer = file_of(tables, ", \"range\": [10, 12]");
   EXPECT_EQ(transfer.colors[0].value, 10);
@@ -159,7 +159,7 @@ TEST_F(ReadTransfer, ErrorsNameTheTransferFilesLine) {
   refused("\"transfer\": \"t.json\",\n\"opacity_unit\": 2", "s.json:3", {"no \"opacity\"", "expected"});
 }
 
-TEST_F(ReadTransfer, ParaViewsColourMaps) {
+TEST_F(ReadTransfer, ReadsParaViewsColourMaps) {
   const TransferFunction transfer = file_of(R"([{"Name": "bone", "ColorSpace": "RGB", "NanColor": [1, 0, 0], "Creator": "someone",
     "RGBPoints": [-100, 0, 0, 0, 300, 1, 0.5, 0.25], "Points": [-100, 0, 0.5, 0, 300, 1, 0.5, 0]}])");
   ASSERT_EQ(transfer.colors.size(), 2u);
@@ -171,7 +171,7 @@ TEST_F(ReadTransfer, ParaViewsColourMaps) {
   EXPECT_EQ(transfer.opacity_unit, 0) << "one voxel";
 }
 
-/// ParaView's "Cool to Warm": two saturated ends about a grey, of which Moreland's table is the result.
+/// ParaView's "Cool to Warm": two saturated ends and grey between, which gives Moreland's table.
 TEST_F(ReadTransfer, ParaViewsSpacesBecomeLinearPieces) {
   const auto map = [](const std::string& space, const std::string& points) {
     return "[{\"ColorSpace\": \"" + space + "\", \"RGBPoints\": [" + points + "]}]";
@@ -195,8 +195,8 @@ TEST_F(ReadTransfer, ParaViewsSpacesBecomeLinearPieces) {
   EXPECT_NEAR(lab[16].color.g, 0.4663, 2e-3) << "half the lightness";
 }
 
-/// The colours of vtkColorTransferFunction (9.1) between two points: out of the screen's range, and round the hues either way.
-TEST_F(ReadTransfer, ParaViewsSpacesAreVtks) {
+/// The colors of vtkColorTransferFunction (9.1) between two points: out-of-range colors, and hues in both directions.
+TEST_F(ReadTransfer, ParaViewsSpacesEqualVtks) {
   const auto expect_colors = [&](const std::string& keys, const std::array<Vec3, 3>& quarters) {
     const auto colors = file_of("[{" + keys + "}]").colors;
     ASSERT_EQ(colors.size(), 33u);
@@ -217,7 +217,7 @@ TEST_F(ReadTransfer, ParaViewsSpacesAreVtks) {
   file_refused("[{\"RGBPoints\": [0, 0, 0, 0],\n\"ColorSpace\": \"HSV\",\n\"HSVWrap\": 2}]", 3, {"HSVWrap", "was expected"});
 }
 
-TEST_F(ReadTransfer, ParaViewsErrors) {
+TEST_F(ReadTransfer, ErrorsInParaViewsMapsNameTheLine) {
   file_refused("[]", 1, {"0 colour maps", "array of one was expected"});
   file_refused("[{}, {}]", 1, {"2 colour maps"});
   file_refused("[{\"Name\": \"a\"}]", 1, {"RGBPoints", "expected"});
@@ -229,7 +229,7 @@ TEST_F(ReadTransfer, ParaViewsErrors) {
   file_refused("[{\"RGBPoints\": [0, 0, 0, 0],\n\"Points\": [0, 0, 0.3, 0, 1, 1, 0.5, 0]}]", 2, {"bent", "was expected"});
 }
 
-TEST_F(ReadTransfer, LinesTakeTheSameKeys) {
+TEST_F(ReadTransfer, ColorByOfStreamlinesHasTheSameKeys) {
   const auto lines = [&](const std::string& keys) {
     return parse_scene(
         "{\"fields\": {\"v\": {\"analytic\": \"circle\"}}, \"streamlines\": [{\"field\": \"v\", \"seeds\": [[1, 0, 0]],\n" + keys + "}]}",
@@ -259,8 +259,8 @@ TEST_F(ReadTransfer, LinesTakeTheSameKeys) {
   EXPECT_NE(scene.error().message.find("no colours"), std::string::npos) << scene.error().message;
 }
 
-/// |x| on a cube of side 4: its values reach from 0 to 2 sqrt(3).
-TEST_F(ReadTransfer, AMapLiesOverTheValuesOrTheRange) {
+/// |x| on a cube of side 4 has values from 0 to 2 sqrt(3).
+TEST_F(ReadTransfer, AMapCoversTheValuesOrTheRange) {
   const auto drawn = [&](const std::string& keys) {
     auto scene = volume(keys);
     EXPECT_TRUE(scene) << scene.error().message;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// "widgets" of the scene file, and the keys by which others follow them.
+/// "widgets" of the scene file, and the keys of items that follow widgets.
 #include <gtest/gtest.h>
 
 #include "engine/scene/widgets.h"
@@ -11,7 +11,7 @@ using widget::Kind;
 
 const std::string kFields = R"({"fields": {"s": {"analytic": "sphere"}, "v": {"analytic": "circle"}},)";
 
-/// The text is on line 2.
+/// Parses a scene whose `rest` is on line 2.
 Result<Scene> parse(const std::string& rest) { return parse_scene(kFields + "\n" + rest + "}", "s.json"); }
 
 Result<Scene> parse_widget(const std::string& item) { return parse("\"widgets\": [" + item + "]"); }
@@ -22,7 +22,7 @@ Widget only_widget(const Scene& scene) {
   return found;
 }
 
-TEST(ReadWidgets, ACuttingPlaneWithAllItsKeys) {
+TEST(ReadWidgets, ReadsACuttingPlaneWithAllKeys) {
   const auto scene = parse_widget(R"({"name": "cut", "type": "cutting_plane", "center": [1, 2, 3], "normal": [0, 0, -7], "radius": 0.5,
     "snap": 0.1, "release": 0.2, "grab_distance": 0.3, "step": 0.4, "rotation": "axis", "rotate_on_contact": true, "button": 32, "color": [0, 0.5, 1]})");
   ASSERT_TRUE(scene) << scene.error().message;
@@ -45,7 +45,7 @@ TEST(ReadWidgets, ACuttingPlaneWithAllItsKeys) {
   EXPECT_FALSE(find_field(*scene, "cut")) << "widgets have names of their own";
 }
 
-TEST(ReadWidgets, AnOrientationThatIsUnitKeepsItsBits) {
+TEST(ReadWidgets, AUnitOrientationIsKeptBitExactly) {
   const auto exact = parse_widget(R"({"name": "c", "type": "cutting_plane", "center": [0, 0, 0], "orientation": [0.6, 0, 0.8, 0]})");
   ASSERT_TRUE(exact) << exact.error().message;
   EXPECT_EQ(only_widget(*exact).spec.pose.orientation, Quat(0.6, 0, 0.8, 0));
@@ -59,7 +59,7 @@ TEST(ReadWidgets, AnOrientationThatIsUnitKeepsItsBits) {
   EXPECT_EQ(only_widget(*flat).spec.pose.orientation, kIdentityRotation);
 }
 
-TEST(ReadWidgets, TheOtherKinds) {
+TEST(ReadWidgets, ReadsTheOtherTypes) {
   const auto scene = parse(R"("chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [1, 0, 0]}],
     "widgets": [{"name": "s", "type": "seed", "position": [1, 2, 3]}, {"name": "r", "type": "rake", "from": [0, 0, 0], "to": [1, 0, 0]},
       {"name": "l", "type": "isolevel", "field": "s", "position": [0.5, 0, 0]}, {"name": "b", "type": "box", "min": [0, 0, 0], "max": [1, 2, 3]},
@@ -73,7 +73,7 @@ TEST(ReadWidgets, TheOtherKinds) {
   EXPECT_EQ(get("u").along_links, std::vector<std::string>{"curve"});
 }
 
-TEST(ReadWidgets, FollowersTakeTheStatedPoseAtOnce) {
+TEST(ReadWidgets, FollowersHaveTheStatedPose) {
   const auto scene = parse(R"("widgets": [{"name": "cut", "type": "cutting_plane", "center": [1, 0, 0], "normal": [2, 0, 0]},
       {"name": "b", "type": "box", "min": [0, 0, 0], "max": [1, 2, 3]}, {"name": "r", "type": "rake", "from": [0, 0, 0], "to": [1, 0, 0]}],
     "slices": [{"field": "s", "widget": "cut"}], "clip": [{"widget": "cut", "side": "behind"}, {"widget": "b"}],
@@ -85,7 +85,7 @@ TEST(ReadWidgets, FollowersTakeTheStatedPoseAtOnce) {
   });
   ASSERT_EQ(scene->clip_planes.size(), 7u);
   EXPECT_LT(norm(scene->clip_planes[0].normal - Vec3(-1, 0, 0)), 1e-15);
-  // the box keeps its inside: the planes are those of a fixed one
+  // The box keeps its inside, like a box without a widget.
   for (std::size_t i = 1; i < 7; ++i) {
     EXPECT_GT(dot(scene->clip_planes[i].normal, Vec3(0.5, 1, 1.5) - scene->clip_planes[i].point), 0);
     EXPECT_LT(dot(scene->clip_planes[i].normal, (i % 2 == 1 ? Vec3(-1, -1, -1) : Vec3(2, 3, 4)) - scene->clip_planes[i].point), 0);
@@ -105,7 +105,7 @@ void refused(const std::string& text, const std::string& expected) {
   EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }
 
-TEST(ReadWidgets, WrongOnesNameTheirLine) {
+TEST(ReadWidgets, ErrorsNameTheLine) {
   const std::string cut = R"("name": "c", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1])";
   for (const auto& [item, expected] : std::initializer_list<std::pair<std::string, std::string>>{
            {R"({"type": "seed", "position": [0, 0, 0]})", "name"},
@@ -118,7 +118,7 @@ TEST(ReadWidgets, WrongOnesNameTheirLine) {
            {R"({"name": "a", "type": "seed", "position": [0, 0, 0], "snap": 1})", "snap"},
            {R"({"name": "a", "type": "seed", "position": [0, 0, 0]}, {"name": "a", "type": "seed", "position": [0, 0, 0]})",
             "second widget"},
-           {"{" + cut + R"(, "snap": 0.2, "release": 0.2})", "a longer distance than snap's was expected"},
+           {"{" + cut + R"(, "snap": 0.2, "release": 0.2})", "a distance greater than \"snap\" was expected"},
            {"{" + cut + R"(, "radius": 0})", "radius"},
            {"{" + cut + R"(, "step": -1})", "step"},
            {"{" + cut + R"(, "grab_distance": 1e200})", "1e-30 to 1e30"},
@@ -137,7 +137,7 @@ TEST(ReadWidgets, WrongOnesNameTheirLine) {
            {R"({"name": "b", "type": "box", "min": [0, 0, 0], "max": [1, 0, 1]})", "a box was expected"},
            {R"({"name": "u", "type": "ruler", "from": [0, 0, 0], "to": [1, 0, 0], "along": "curve"})", "names of links"},
            {R"({"name": "u", "type": "ruler", "from": [0, 0, 0], "to": [1, 0, 0], "along": []})", "names of links"},
-           {R"({"name": "u", "type": "ruler", "from": [0, 0, 0], "to": [1, 0, 0], "along": ["curve"]})", "no link of the chain"}})
+           {R"({"name": "u", "type": "ruler", "from": [0, 0, 0], "to": [1, 0, 0], "along": ["curve"]})", "not a link of the chain"}})
     refused("\"widgets\": [" + item + "]", expected);
   refused("\"widgets\": {}", "an array of objects was expected");
   refused("\"widgets\": [1]", "widgets[0]");
@@ -147,11 +147,11 @@ TEST(ReadWidgets, WrongOnesNameTheirLine) {
   refused("\"widgets\": [" + nine + "]", "more than 8 widgets");
 }
 
-TEST(ReadWidgets, WrongFollowersNameTheirLine) {
+TEST(ReadWidgets, ErrorsOfFollowersNameTheLine) {
   const std::string widgets = R"("widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1]},
  {"name": "p", "type": "seed", "position": [0, 0, 0]}, {"name": "r", "type": "rake", "from": [0, 0, 0], "to": [0, 0, 1]},
  {"name": "b", "type": "box", "min": [0, 0, 0], "max": [1, 1, 1]}], )";
-  // followers come first in the text: the order in the file does not matter
+  // Followers may precede the widgets in the file.
   for (const auto& [text, expected] : std::initializer_list<std::pair<std::string, std::string>>{
            {R"("slices": [{"field": "s", "widget": "cat"}])", "did you mean \"cut\""},
            {R"("slices": [{"field": "s", "widget": "b"}])", "a cutting plane was expected"},
@@ -159,13 +159,13 @@ TEST(ReadWidgets, WrongFollowersNameTheirLine) {
            {R"("slices": [{"field": "s", "widget": 3}])", "widget"},
            {R"("clip": [{"widget": "p"}])", "a cutting plane or a box was expected"},
            {R"("clip": [{"widget": "cut", "side": "left"}])", "behind"},
-           {R"("clip": [{"widget": "b", "side": "front"}])", "keeps its inside"},
+           {R"("clip": [{"widget": "b", "side": "front"}])", "is given with a box widget"},
            {R"("clip": [{"widget": "cut", "box": {"min": [0, 0, 0], "max": [1, 1, 1]}}])", "one of \"plane\", \"box\" and \"widget\""},
            {R"("clip": [{"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}, "side": "front"}])", "without \"widget\""},
            {R"("clip": [{"widget": "b"}, {"widget": "b"}])", "more than 8 clip planes"},
            {R"("streamlines": [{"field": "v", "seeds": {"widget": "r"}}])", "\"count\" is missing"},
            {R"("streamlines": [{"field": "v", "seeds": {"widget": "r", "count": 0}}])", "count"},
-           {R"("streamlines": [{"field": "v", "seeds": {"widget": "p", "count": 2}}])", "belongs to a rake"},
+           {R"("streamlines": [{"field": "v", "seeds": {"widget": "p", "count": 2}}])", "a rake was expected"},
            {R"("streamlines": [{"field": "v", "seeds": {"widget": "b"}}])", "a seed or a rake was expected"},
            {R"("streamlines": [{"field": "v", "seeds": {"widget": "p", "line": {}}}])", "line"},
            {R"("isosurfaces": [{"field": "s", "level": {"widget": "p"}}])", "an isolevel was expected"},

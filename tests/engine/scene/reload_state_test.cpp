@@ -9,7 +9,7 @@
 #include "tests/support/support.h"
 
 namespace catena::scene {
-namespace carry_over_test {
+namespace reload_state_test {
 
 Scene scene_of(const std::string& text, const std::string& path = "scene.json") {
   auto scene = parse_scene(text, path);
@@ -54,7 +54,7 @@ std::vector<Entity> sets_of(const Scene& scene) {
   return sets;
 }
 
-TEST(ReloadState, FieldsAreLoadedOnce) {
+TEST(ReloadState, UnchangedFieldsAreKept) {
   Scene old = scene_of(kText);
   const std::uint64_t s = version(old, "s"), t = version(old, "t"), drawn_s = drawn_version(old, "s"), drawn_t = drawn_version(old, "t");
   std::string text = edited(kText, "/fields/t/scale", "3");
@@ -65,11 +65,11 @@ TEST(ReloadState, FieldsAreLoadedOnce) {
   EXPECT_EQ(drawn_version(fresh, "s"), drawn_s);
   EXPECT_NE(version(fresh, "t"), t);
   EXPECT_NE(drawn_version(fresh, "t"), drawn_t);
-  EXPECT_EQ(version(fresh, "again"), s);  // one formula is one field, drawn on two grids
+  EXPECT_EQ(version(fresh, "again"), s);  // equal formulas are one field, sampled on two grids
   EXPECT_NE(drawn_version(fresh, "again"), drawn_s);
 }
 
-TEST(ReloadState, FilesAreReadOnceAndFollowTheirGridAndMask) {
+TEST(ReloadState, FilesAreReadOnceUnlessTheirGridOrMaskChanges) {
   const test::TemporaryFolder folder;
   const auto ball = *field::make_analytic("sphere"), swirl = *field::make_analytic("circle");
   ASSERT_TRUE(field::write_vdb(folder / "a.vdb", {{{field::sample_on_grid(*ball.scalar, 9, -2, 2), nullptr}, "ball"},
@@ -97,18 +97,18 @@ TEST(ReloadState, FilesAreReadOnceAndFollowTheirGridAndMask) {
   EXPECT_EQ(field::load_counters().grids, loads + 1);
 }
 
-TEST(ReloadState, LinesAreTheSameObjects) {
+TEST(ReloadState, UnchangedLinesAreKept) {
   Scene old = scene_of(kText);
   std::vector<std::vector<flow::CurvePtr>> lines;
   for (const Entity set : sets_of(old)) lines.push_back(*resolve_lines(old, set));
-  // their looks change, not what they follow
+  // Colors and radii change; seeds and fields do not.
   std::string text = edited(kText, "/streamlines/0/color", "[1, 1, 0]");
   text = edited(text, "/streamlines/1/radius", "0.03");
   Scene fresh = scene_of(text);
   transfer_state(old, fresh);
   std::vector<Entity> sets = sets_of(fresh);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(*resolve_lines(fresh, sets[i]), lines[i]) << i;
-  // other seeds: what stays of them stays
+  // Other seeds: lines of unchanged seeds are kept.
   text = edited(text, "/streamlines/0/seeds/1", "[0.25, 0, 0]");
   text = edited(text, "/streamlines/1/seeds/line/count", "2");
   Scene third = scene_of(text);
@@ -119,13 +119,13 @@ TEST(ReloadState, LinesAreTheSameObjects) {
   EXPECT_EQ((*points)[0], lines[0][0]);
   EXPECT_NE((*points)[1], lines[0][1]);
   EXPECT_EQ(pattern->size(), 2u);
-  // another field: none
+  // Another field: no line is kept.
   Scene fourth = scene_of(edited(text, "/fields/v/scale", "2"));
   transfer_state(third, fourth);
   EXPECT_NE((*resolve_lines(fourth, sets_of(fourth)[0]))[0], lines[0][0]);
 }
 
-TEST(ReloadState, CurvesThatNothingUsesAreGivenUp) {
+TEST(ReloadState, UnusedCurvesAreReleased) {
   Scene scene = scene_of(kText);
   for (int i = 0; i < 20; ++i) {
     ASSERT_TRUE(resolve_lines(scene, sets_of(scene)[0]));
@@ -136,7 +136,7 @@ TEST(ReloadState, CurvesThatNothingUsesAreGivenUp) {
   EXPECT_LE(scene.traced_curves.size(), 4u);
 }
 
-TEST(ReloadState, AutomaticColoursAreMadeOnce) {
+TEST(ReloadState, AutomaticColoursAreKept) {
   Scene old = scene_of(kText);
   drawn_version(old, "s");
   const TransferFunction made = old.entities.get<Volume>(only<Volume>(old)).transfer;
@@ -163,21 +163,22 @@ TEST(ReloadState, AutomaticColoursAreMadeOnce) {
   EXPECT_EQ(to_json(named.extinctions), to_json(made.extinctions));
 }
 
-/// What another room keeps beside an entity.
-struct Beside {
+/// A cached component of another module.
+struct CachedComponent {
   int value = 0;
 };
 
-TEST(ReloadState, WhatOthersKeepGoesWithAnEqualDescription) {
+TEST(ReloadState, CachedComponentsMoveToEqualDescriptions) {
   const auto carried = [](const std::string& text) {
     Scene old = scene_of(kText);
     const std::vector<Entity> sets = sets_of(old);
-    old.cache.emplace<Beside>(sets[0], {1});
-    old.cache.emplace<Beside>(sets[1], {2});
+    old.cache.emplace<CachedComponent>(sets[0], {1});
+    old.cache.emplace<CachedComponent>(sets[1], {2});
     Scene fresh = scene_of(text);
     transfer_state(old, fresh);
     std::string values;
-    for (const Entity e : sets_of(fresh)) values += fresh.cache.has<Beside>(e) ? std::to_string(fresh.cache.get<Beside>(e).value) : "-";
+    for (const Entity e : sets_of(fresh))
+      values += fresh.cache.has<CachedComponent>(e) ? std::to_string(fresh.cache.get<CachedComponent>(e).value) : "-";
     return values;
   };
   EXPECT_EQ(carried(kText), "12");
@@ -185,11 +186,11 @@ TEST(ReloadState, WhatOthersKeepGoesWithAnEqualDescription) {
   EXPECT_EQ(carried(edited(kText, "/streamlines/0/radius", "0.1")), "-2");
   EXPECT_EQ(carried(*json::remove_value(kText, "", "/streamlines/0")), "2");
   EXPECT_EQ(carried(*json::insert_item(kText, "", "/streamlines/0", R"({"field": "v", "seeds": [[1, 1, 0]]})")), "-12");
-  // any field may be what it means
+  // A change of any field invalidates the cache.
   EXPECT_EQ(carried(edited(kText, "/fields/t/scale", "3")), "--");
 }
 
-TEST(ReloadState, TheHandStaysWhereItIs) {
+TEST(ReloadState, TheCursorKeepsItsState) {
   Scene old = scene_of("{}"), fresh = scene_of(R"({"cursor": {"size": 0.25, "show_occluded": false, "drop_line": true}})");
   Cursor& cursor = old.entities.get<Cursor>(old.cursor);
   cursor.probe = {1, 2, 3};
@@ -229,7 +230,7 @@ widget::Pose at(const Vec3& p) {
   return pose;
 }
 
-TEST(ReloadState, AWidgetStaysWhereTheHandHasPutIt) {
+TEST(ReloadState, AWidgetKeepsItsPoseUnlessTheTextChangesIt) {
   const auto carried = [](const std::string& name, const std::string& item, const widget::Pose& pose) {
     Scene old = scene_with_widget("w", R"({"position": [0, 0, 0], "radius": 1})", at({0, 0, 0}));
     Widget& before = old.entities.get<Widget>(only<Widget>(old));
@@ -240,23 +241,23 @@ TEST(ReloadState, AWidgetStaysWhereTheHandHasPutIt) {
     transfer_state(old, fresh);
     return fresh.entities.get<Widget>(only<Widget>(fresh));
   };
-  // its place in the text is the same, whatever else changed
-  const Widget kept = carried("w", R"({"position": [0, 0, 0], "radius": 2})", at({0, 0, 0}));
-  EXPECT_EQ(kept.report.pose, at({5, 6, 7}));
-  EXPECT_EQ(kept.report.mode, widget::Mode::drag);
-  EXPECT_EQ(kept.spec.revision, 4u);
-  // the text was set to where the hand has it
+  // The widget's stated pose is unchanged.
+  const Widget unchanged = carried("w", R"({"position": [0, 0, 0], "radius": 2})", at({0, 0, 0}));
+  EXPECT_EQ(unchanged.report.pose, at({5, 6, 7}));
+  EXPECT_EQ(unchanged.report.mode, widget::Mode::drag);
+  EXPECT_EQ(unchanged.spec.revision, 4u);
+  // The stated pose was set to the current pose.
   const Widget written = carried("w", R"({"position": [5, 6, 7]})", at({5, 6, 7}));
   EXPECT_EQ(written.report.mode, widget::Mode::drag);
   EXPECT_EQ(written.spec.revision, 4u);
   EXPECT_EQ(written.spec.pose, at({5, 6, 7}));
-  // and elsewhere: the text's
+  // The stated pose was set to another pose, which applies.
   const Widget moved = carried("w", R"({"position": [1, 1, 1]})", at({1, 1, 1}));
   EXPECT_EQ(moved.report.pose, at({1, 1, 1}));
   EXPECT_EQ(moved.report.mode, widget::Mode::idle);
   EXPECT_EQ(moved.spec.revision, 5u);
   EXPECT_EQ(moved.report.revision, 5u);
-  // another widget
+  // Another widget.
   const Widget other = carried("x", R"({"position": [0, 0, 0], "radius": 1})", at({0, 0, 0}));
   EXPECT_EQ(other.report.pose, at({0, 0, 0}));
   EXPECT_EQ(other.spec.revision, 0u);
@@ -264,7 +265,7 @@ TEST(ReloadState, AWidgetStaysWhereTheHandHasPutIt) {
 
 // ---- values ----
 
-TEST(WriteValues, AreReadBack) {
+TEST(WriteValues, WrittenValuesReadBack) {
   Camera camera;
   camera.position = {0.1, 1.0 / 3, -1e-7};
   camera.target = {5, 6, 7e14};
@@ -292,7 +293,7 @@ TEST(WriteValues, AreReadBack) {
   EXPECT_EQ(to_json(Background{{}, true}), "\"transparent\"");
 }
 
-TEST(WriteValues, APoseHasTheKeysOfItsKind) {
+TEST(WriteValues, APoseHasTheKeysOfItsType) {
   widget::Pose pose;
   pose.points = {Vec3(1, 2, 3), Vec3(4, 5, 6)};
   pose.orientation = Quat(0.5, 0.5, -0.5, 0.5);
@@ -309,5 +310,5 @@ TEST(WriteValues, APoseHasTheKeysOfItsKind) {
   EXPECT_EQ(keys(widget::Kind::box), "min=[1, 2, 3] max=[4, 5, 6] ");
 }
 
-}  // namespace carry_over_test
+}  // namespace reload_state_test
 }  // namespace catena::scene

@@ -14,7 +14,7 @@ namespace ruler_test {
 using How = RulerMeasure::PathKind;
 constexpr double kPi = std::numbers::pi;
 
-/// A scene of one ruler along the links that `chain` holds.
+/// A scene with a ruler along the named links of `chain`.
 Scene scene_with(const std::string& chain, const std::string& along) {
   auto scene = parse_scene(R"({"fields": {"s": {"analytic": "sphere"}, "v": {"analytic": "circle"}, "u": {"analytic": "uniform"}},
     "chain": [)" + chain + R"(], "widgets": [{"name": "u", "type": "ruler", "from": [0, 0, 0], "to": [1, 0, 0])" +
@@ -37,7 +37,7 @@ RulerMeasure measured(Scene& scene, const Vec3& from, const Vec3& to) {
 const std::string kCurve = R"({"name": "curve", "type": "streamline", "field": "v", "seed": [1, 0, 0]})";
 const std::string kSkin = R"({"name": "skin", "type": "isosurface", "field": "s", "level": 1})";
 
-TEST(Ruler, AloneItIsStraight) {
+TEST(Ruler, WithoutALinkTheLineIsStraight) {
   Scene scene = scene_with("", "");
   const RulerMeasure measure = measured(scene, {1, 2, 3}, {1, 5, 7});
   EXPECT_EQ(measure.path_kind, How::straight);
@@ -46,7 +46,7 @@ TEST(Ruler, AloneItIsStraight) {
   EXPECT_TRUE(measure.note.empty());
 }
 
-TEST(Ruler, AlongAClosedLineTheShorterWay) {
+TEST(Ruler, AlongAClosedStreamlineItTakesTheShorterWay) {
   Scene scene = scene_with(kCurve, "\"curve\"");
   const auto at = [](double degrees, double radius = 1) {
     return radius * Vec3(std::cos(degrees * kPi / 180), std::sin(degrees * kPi / 180), 0);
@@ -74,7 +74,7 @@ TEST(Ruler, AlongAClosedLineTheShorterWay) {
   expect(1, 359, 2);
 }
 
-TEST(Ruler, AlongAnOpenLineAndAMovingSeed) {
+TEST(Ruler, FollowsAnOpenStreamlineAndAMovingSeed) {
   Scene scene = scene_with(R"({"name": "curve", "type": "streamline", "field": "u", "seed": [0, 0, 0]})", "\"curve\"");
   const Vec3 t = direction(
       (*resolve_streamline(scene, {resolve_field(scene, find_field(scene, "u"), {})->vector.get()}, {0, 0, 0}, {}))->knots()[0].t);
@@ -86,15 +86,15 @@ TEST(Ruler, AlongAnOpenLineAndAMovingSeed) {
   EXPECT_NEAR(measured(moving, {1, 0, 0}, {0, 1, 0}).length, 0.5 * kPi, 1e-8);
   ASSERT_TRUE(set_widget_pose(moving, find_widget(moving, "p"), {{Vec3(0.5, 0, 0), Vec3(0)}, kIdentityRotation}));
   EXPECT_NEAR(resolve_ruler(moving, find_widget(moving, "u"))->length, 0.25 * kPi, 1e-8);
-  // a seed that starts nothing: said, and straight
+  // A seed where no line starts: a note, and a straight line.
   ASSERT_TRUE(set_widget_pose(moving, find_widget(moving, "p"), {{Vec3(0), Vec3(0)}, kIdentityRotation}));
   const auto none = resolve_ruler(moving, find_widget(moving, "u"));
   ASSERT_TRUE(none);
   EXPECT_EQ(none->path_kind, How::straight);
-  EXPECT_NE(none->note.find("zero there"), std::string::npos) << none->note;
+  EXPECT_NE(none->note.find("zero at the seed"), std::string::npos) << none->note;
 }
 
-TEST(Ruler, AlongASphereTheGreatCircle) {
+TEST(Ruler, AlongASphereItIsTheGreatCircle) {
   Scene scene = scene_with(kSkin, "\"skin\"");
   std::mt19937 engine{4};
   std::uniform_real_distribution<double> any(-1, 1);
@@ -106,7 +106,7 @@ TEST(Ruler, AlongASphereTheGreatCircle) {
     EXPECT_NEAR(measure.length, arc, 1e-3 * arc);
     for (const Vec3& p : measure.points) EXPECT_NEAR(norm(p), 1, 1e-6);
   }
-  // opposite ends: any half circle
+  // Opposite ends: any half circle.
   EXPECT_NEAR(measured(scene, {0, 0, 1}, {0, 0, -1}).length, kPi, 1e-3 * kPi);
   EXPECT_NEAR(measured(scene, {1, 0, 0}, {1, 0, 0}).length, 0, 1e-6);
 }
@@ -118,12 +118,12 @@ TEST(Ruler, TheLevelMayFollowAWidget) {
   EXPECT_NEAR(resolve_ruler(scene, find_widget(scene, "u"))->length, 0.25 * kPi, 1e-3);
 }
 
-TEST(Ruler, OfSeveralLinksTheLineCounts) {
+TEST(Ruler, OfSeveralLinksTheStreamlineCounts) {
   Scene scene = scene_with(kSkin + ", " + kCurve, "\"skin\", \"curve\"");
   EXPECT_EQ(measured(scene, {1, 0, 0}, {0, 1, 0}).path_kind, How::streamline);
 }
 
-TEST(Ruler, WhatItCannotGoAlongIsSaid) {
+TEST(Ruler, UnsupportedLinksAreMeasuredStraightWithANote) {
   Scene plane = scene_with(R"({"name": "flat", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]})", "\"flat\"");
   RulerMeasure measure = measured(plane, {0, 0, 0}, {3, 4, 0});
   EXPECT_EQ(measure.path_kind, How::straight);
@@ -133,14 +133,14 @@ TEST(Ruler, WhatItCannotGoAlongIsSaid) {
   measure = measured(probe, {0, 0, 0}, {3, 4, 0});
   EXPECT_EQ(measure.path_kind, How::straight);
   EXPECT_NE(measure.note.find("has a seed, a level or a mesh"), std::string::npos) << measure.note;
-  // an end in the middle of the ball, where no direction leads to the surface
+  // An end at the center of the sphere, where no direction leads to the surface.
   Scene ball = scene_with(kSkin, "\"skin\"");
   measure = measured(ball, {0, 0, 0}, {1, 0, 0});
   EXPECT_EQ(measure.path_kind, How::straight);
   EXPECT_FALSE(measure.note.empty());
 }
 
-TEST(Ruler, MeasuredOnceUntilAnEndMoves) {
+TEST(Ruler, TheMeasureIsCachedUntilAnEndMoves) {
   Scene scene = scene_with(kSkin, "\"skin\"");
   const RulerMeasure first = measured(scene, {1, 0, 0}, {0, 1, 0});
   EXPECT_EQ(resolve_ruler(scene, find_widget(scene, "u"))->points, first.points);

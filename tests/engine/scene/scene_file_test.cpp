@@ -12,7 +12,7 @@ std::string error_of(const std::string& text, const std::vector<FieldOverride>& 
   return result ? std::string("no error") : result.error().message;
 }
 
-/// One line that starts with the file and line and holds all parts.
+/// Expects an error of one line that starts with the file and line and contains all parts.
 void expect_error(const std::string& text, int line, std::initializer_list<const char*> parts) {
   const std::string message = error_of(text);
   EXPECT_TRUE(message.starts_with("scene.json:" + std::to_string(line) + ": ")) << message << "\nfor " << text;
@@ -20,12 +20,12 @@ void expect_error(const std::string& text, int line, std::initializer_list<const
   for (const char* part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks " << part;
 }
 
-/// A scene with fields circle and sphere on line 1 and `part` from line 2 on.
+/// A scene with the fields circle and sphere on line 1, and `part` from line 2 on.
 std::string with(const std::string& part) {
   return "{\"fields\": {\"swirl\": {\"analytic\": \"circle\"}, \"ball\": {\"analytic\": \"sphere\"}},\n" + part + "}";
 }
 
-TEST(SceneFile, EmptyScenesAreLegal) {
+TEST(SceneFile, EmptyScenesAreValid) {
   for (const char* text : {"{}", "{\"fields\": {}, \"chain\": []}", "// nothing\n{}"}) EXPECT_EQ(error_of(text), "no error") << text;
 }
 
@@ -78,7 +78,7 @@ TEST(SceneFile, ReadsTheWholeExample) {
   EXPECT_EQ(scene->background.color.b, 1.0f);
 }
 
-TEST(SceneFile, UnknownAndDuplicateKeys) {
+TEST(SceneFile, UnknownAndDuplicateKeysAreRefused) {
   expect_error("{\n\"volume\": []}", 2, {"unknown key \"volume\"", "did you mean \"volumes\"?"});
   expect_error(with("\"coupling\": {\n\"stifness\": 3}"), 3, {"unknown key \"stifness\" in \"coupling\"", "damping, max_force"});
   expect_error(with("\"volumes\": [{\"field\": \"ball\",\n\"colour\": []}]"), 3, {"unknown key \"colour\" in \"volumes[0]\"", "\"color\""});
@@ -87,7 +87,7 @@ TEST(SceneFile, UnknownAndDuplicateKeys) {
   expect_error("[]", 1, {"object", "expected"});
 }
 
-TEST(SceneFile, FieldSources) {
+TEST(SceneFile, ChecksFieldSources) {
   const auto field = [](const std::string& body) { return "{\"fields\": {\n\"a\": " + body + "}}"; };
   expect_error(field("{}"), 2, {"none of", "exactly one", "expected"});
   expect_error(field("{\"file\": \"x.vdb\", \"analytic\": \"circle\"}"), 2, {"several of", "exactly one", "expected"});
@@ -108,7 +108,7 @@ TEST(SceneFile, FieldSources) {
   expect_error("{\"fields\": []}", 1, {"an object {...} was expected"});
 }
 
-TEST(SceneFile, FilesResolveBesideTheScene) {
+TEST(SceneFile, FilesAreRelativeToTheScene) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "a.vdb", "x");
   test::write_file(folder / "b.raw", "x");
@@ -142,11 +142,11 @@ TEST(SceneFile, FilesResolveBesideTheScene) {
   EXPECT_NE(message("{\"file\": \"b.raw\", \"shape\": [4, 5, 6], \"type\": \"f32\"}").find("float64"), std::string::npos);
   EXPECT_NE(message("{\"file\": \"a.vdb\", \"shape\": [4, 5, 6]}").find("unknown key \"shape\""), std::string::npos);
   EXPECT_NE(message("{\"file\": \"a.vdb\", \"valid\": 3}").find("name of a BoolGrid"), std::string::npos);
-  EXPECT_NE(message("{\"file\": \"a.vdb\", \"axes\": \"xyz\"}").find("belongs to arrays of NumPy"), std::string::npos);
+  EXPECT_NE(message("{\"file\": \"a.vdb\", \"axes\": \"xyz\"}").find("is given for a file that is not a NumPy array"), std::string::npos);
   EXPECT_NE(message("{\"file\": \"a.npy\", \"axes\": \"xzy\"}").find("\"zyx\" or \"xyz\""), std::string::npos);
 }
 
-TEST(SceneFile, ScenesThatCannotBeRead) {
+TEST(SceneFile, UnreadableScenesAreRefused) {
   const test::TemporaryFolder folder;
   for (const std::string& path : {folder / "none.json", folder.path()}) {
     const auto scene = read_scene(path);
@@ -156,7 +156,7 @@ TEST(SceneFile, ScenesThatCannotBeRead) {
   }
 }
 
-TEST(SceneFile, Overrides) {
+TEST(SceneFile, ReadsOverrides) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "new.vdb", "x");
   const std::string text = "{\"fields\": {\"a\": {\"file\": \"missing.vdb\", \"grid\": \"density\"}}}";
@@ -173,7 +173,7 @@ TEST(SceneFile, Overrides) {
   EXPECT_NE(error_of("{}", {{"A", "gone.vdb", ""}}).find("[a-z][a-z0-9_]*"), std::string::npos);
 }
 
-TEST(SceneFile, Chains) {
+TEST(SceneFile, ChecksChains) {
   const auto link = [](const std::string& body) { return with("\"chain\": [\n{" + body + "}]"); };
   expect_error(link("\"type\": \"point\""), 3, {"\"name\" is missing", "expected"});
   expect_error(link("\"name\": \"a\""), 3, {"\"type\" is missing", "expected"});
@@ -192,7 +192,7 @@ TEST(SceneFile, Chains) {
   expect_error(with("\"chain\": [3]"), 2, {"object"});
 }
 
-TEST(SceneFile, Coupling) {
+TEST(SceneFile, ReadsCoupling) {
   for (const char* key : {"stiffness", "damping", "max_force", "ramp_s"}) {
     expect_error(with("\"coupling\": {\n\"" + std::string(key) + "\": -1}"), 3, {key, "is -1", ">= 0 was expected"});
     expect_error(with("\"coupling\": {\n\"" + std::string(key) + "\": 1e999}"), 3, {"finite number was expected"});
@@ -201,7 +201,7 @@ TEST(SceneFile, Coupling) {
   }
 }
 
-TEST(SceneFile, Workspaces) {
+TEST(SceneFile, ReadsWorkspaces) {
   expect_error(with("\"workspace\": {\"metres_per_unit\": 0}"), 2, {"metres_per_unit", "> 0 was expected"});
   expect_error(with("\"workspace\": {\"rotation\": [[1, 0, 0], [0, 2, 0], [0, 0, 1]]}"), 2, {"no rotation", "expected"});
   expect_error(with("\"workspace\": {\"rotation\": [[1, 0, 0], [0, 1, 0], [0, 0, -1]]}"), 2, {"no rotation", "expected"});
@@ -213,7 +213,7 @@ TEST(SceneFile, Workspaces) {
   EXPECT_FALSE(scene->workspace.is_explicit);
 }
 
-TEST(SceneFile, TransferFunctions) {
+TEST(SceneFile, ChecksTransferFunctions) {
   const auto volume = [](const std::string& body) { return with("\"volumes\": [{\"field\": \"ball\",\n" + body + "}]"); };
   expect_error(volume("\"color\": [[0, 0, 0, 0],\n[0, 1, 1, 1]]"), 4, {"\"color\"", "strictly rising values were expected"});
   expect_error(volume("\"color\": [[0, 0, 0, 1.5]]"), 3, {"1.5", "from 0 to 1 were expected"});
@@ -236,7 +236,7 @@ TEST(SceneFile, TransferFunctions) {
   expect_error(with("\"volumes\": {}"), 2, {"array of objects was expected"});
 }
 
-TEST(SceneFile, IsosurfacesAndStreamlines) {
+TEST(SceneFile, ChecksIsosurfacesAndStreamlines) {
   expect_error(with("\"isosurfaces\": [{\"field\": \"ball\"}]"), 2, {"\"level\" is missing", "expected"});
   expect_error(with("\"isosurfaces\": [{\"field\": \"ball\", \"level\": 1e999}]"), 2, {"finite number was expected"});
   expect_error(with("\"isosurfaces\": [{\"field\": \"ball\", \"level\": 1, \"opacity\": 1.5}]"), 2, {"from 0 to 1 was expected"});
@@ -253,7 +253,7 @@ TEST(SceneFile, IsosurfacesAndStreamlines) {
   expect_error(lines("\"seeds\": [[1, 0, 0]], \"kind\": \"lines\""), 3, {"vector, line"});
 }
 
-TEST(SceneFile, CamerasAndBackgrounds) {
+TEST(SceneFile, ReadsCamerasAndBackgrounds) {
   const auto camera = [](const std::string& body) { return with("\"camera\": {\"position\": [0, 0, 5],\n" + body + "}"); };
   expect_error(with("\"camera\": {\"fovy_deg\": 30}"), 2, {"\"position\" is missing"});
   expect_error(camera("\"target\": [0, 0, 5]"), 3, {"\"target\"", "two different points were expected"});
@@ -291,7 +291,7 @@ TEST(SceneFile, CamerasThatSeeNothingAreRefused) {
                  {"height"});
 }
 
-TEST(SceneFile, NumbersOfAbsurdSizeAreRefusedWhereverTheyStand) {
+TEST(SceneFile, NumbersOutOfRangeAreRefused) {
   expect_error(with("\"coupling\": {\"stiffness\": 1e308}"), 2, {"1e+308 is too large", "1e-30 to 1e30"});
   expect_error(with("\"stereo\": {\"mode\": \"side-by-side\", \"separation\": 1e308}"), 2, {"too large"});
   expect_error(with("\"isosurfaces\": [{\"field\": \"ball\",\n \"level\": -1e31}]"), 3, {"-1e+31 is too large"});

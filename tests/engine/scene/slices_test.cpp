@@ -35,7 +35,7 @@ TEST(SceneSlices, EveryKeyIsRead) {
   EXPECT_EQ(slices[1].normal, Vec3(0, 1, 0));
   EXPECT_EQ(slices[1].color_by.colors.size(), 2u);
   EXPECT_EQ(slices[1].contours->count, 7);
-  // what is not said: opaque, unlit, clipped, lines of one pixel
+  // The defaults: opaque, unlit, clipped, contours of one pixel.
   EXPECT_EQ(slices[2].opacity, 1);
   EXPECT_FALSE(slices[2].lit);
   EXPECT_TRUE(slices[2].clipped);
@@ -43,7 +43,7 @@ TEST(SceneSlices, EveryKeyIsRead) {
   EXPECT_EQ(slices[2].contours->width, 1);
 }
 
-TEST(SceneSlices, WrongSlicesNameTheirLine) {
+TEST(SceneSlices, ErrorsNameTheLine) {
   for (const auto& [text, expected] :
        {std::pair{R"({})", "an array of objects was expected"},
         {R"([{"field": "t", "axis": "x", "at": 0}])", "unknown field"},
@@ -56,8 +56,8 @@ TEST(SceneSlices, WrongSlicesNameTheirLine) {
         {R"([{"field": "s", "point": [0, 0, 0], "normal": [0, 0, 0]}])", "a vector other than [0, 0, 0]"},
         {R"([{"field": "s", "axis": "x", "at": 1, "opacity": 1.5}])", "a number from 0 to 1"},
         {R"([{"field": "s", "axis": "x", "at": 1, "color": "virids"}])", "viridis"},
-        {R"([{"field": "s", "axis": "x", "at": 1, "contours": {}}])", "one of \"levels\", \"count\" and \"spacing\""},
-        {R"([{"field": "s", "axis": "x", "at": 1, "contours": {"count": 3, "spacing": 1}}])", "one of \"levels\""},
+        {R"([{"field": "s", "axis": "x", "at": 1, "contours": {}}])", "none or several of \"levels\", \"count\" and \"spacing\""},
+        {R"([{"field": "s", "axis": "x", "at": 1, "contours": {"count": 3, "spacing": 1}}])", "none or several of \"levels\""},
         {R"([{"field": "s", "axis": "x", "at": 1, "contours": {"count": 0}}])", "count"},
         {R"([{"field": "s", "axis": "x", "at": 1, "contours": {"spacing": 0}}])", "spacing"},
         {R"([{"field": "s", "axis": "x", "at": 1, "contours": {"levels": [1, 1]}}])", "rising numbers were expected"},
@@ -71,7 +71,7 @@ TEST(SceneSlices, WrongSlicesNameTheirLine) {
   }
 }
 
-TEST(SceneMeshes, LooksAreReadAndChecked) {
+TEST(SceneMeshes, AppearanceIsReadAndChecked) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "quad.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n");
   const auto mesh = [&](const std::string& keys) {

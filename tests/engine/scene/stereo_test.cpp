@@ -13,7 +13,7 @@ std::string error_of(const std::string& text) {
   return scene ? std::string("no error") : scene.error().message;
 }
 
-TEST(Stereo, EveryWordIsRead) {
+TEST(Stereo, EveryModeIsRead) {
   for (int i = 0; i < kStereoModeCount; ++i) {
     const auto mode = static_cast<StereoMode>(i);
     EXPECT_EQ(parse_stereo_mode(to_string(mode)), mode);
@@ -25,7 +25,7 @@ TEST(Stereo, EveryWordIsRead) {
   EXPECT_FALSE(parse_stereo_mode("both"));
 }
 
-TEST(Stereo, KeysAndDefaults) {
+TEST(Stereo, ReadsKeysAndDefaults) {
   const auto plain = parse_scene("{}", "scene.json");
   ASSERT_TRUE(plain);
   EXPECT_EQ(plain->stereo.mode, StereoMode::mono);
@@ -39,7 +39,7 @@ TEST(Stereo, KeysAndDefaults) {
   EXPECT_TRUE(scene->stereo.swap_eyes);
 }
 
-TEST(Stereo, WrongKeysAreErrorsWithTheirLine) {
+TEST(Stereo, ErrorsNameTheLine) {
   const auto expect = [](const std::string& stereo, const char* part) {
     const std::string message = error_of("{\n\"stereo\": " + stereo + "}");
     EXPECT_TRUE(message.starts_with("scene.json:2: ")) << message;

@@ -8,9 +8,9 @@
 #include "tests/support/support.h"
 
 namespace catena::scene {
-namespace lines_test {
+namespace streamlines_test {
 
-/// A scene of a sampled swirl (by formula: traced exactly) and a ball, with one set of streamlines.
+/// A scene of a circular flow by formula and a sphere, with one set of streamlines.
 std::string scene_text(const std::string& set) {
   return "{\"fields\": {\"swirl\": {\"analytic\": \"circle\"}, \"ball\": {\"analytic\": \"sphere\"}},\n\"streamlines\": [{\"field\": "
          "\"swirl\",\n" +
@@ -53,7 +53,7 @@ void no_lines(const std::string& set, int line, const std::vector<std::string>& 
   for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << message;
 }
 
-/// Of `analytic` (without an end of its own), in the box -1..1.
+/// The lines of an unbounded formula in the box -1..1.
 std::vector<flow::CurvePtr> lines_of_formula(const std::string& analytic, const std::string& set) {
   auto scene = parse_scene(
       "{\"fields\": {\"v\": {\"analytic\": \"" + analytic + "\", \"box\": [-1, 1]}}, \"streamlines\": [{\"field\": \"v\", " + set + "}]}",
@@ -72,31 +72,31 @@ TEST(SeedPatterns, LinesOfAFormulaEndAtItsBox) {
     EXPECT_GE(lines.size(), 2u) << seeds;
     for (const flow::CurvePtr& line : lines)
       for (const auto& [end, knot] : {std::pair{line->first_end(), line->knots().front()}, {line->last_end(), line->knots().back()}}) {
-        // an evenly spaced line may end earlier, at another one
+        // An evenly spaced line may end earlier, at another line.
         EXPECT_LE(max_abs(knot.p), 1 + 1e-8) << seeds;
         if (end == flow::Termination::boundary) {
           EXPECT_NEAR(max_abs(knot.p), 1, 1e-8) << seeds;
         }
       }
   }
-  // one seed outside does not let the others out
+  // A seed outside the box does not let the other lines leave the box.
   const auto mixed = lines_of_formula("abc", R"("seeds": [[0.3, 0.2, 0.1], [0, 1.5, 0]])");
   ASSERT_EQ(mixed.size(), 2u);
   EXPECT_LE(max_abs(mixed[0]->knots().back().p), 1 + 1e-8);
   EXPECT_GT(max_abs(mixed[1]->knots().back().p), 2);
-  // to the end of a large box, not to ten lengths of the usual one
+  // Lines reach the end of a large box, beyond ten default lengths.
   auto large = parse_scene(
       R"({"fields": {"v": {"analytic": "helix", "box": [-30, 30]}}, "streamlines": [{"field": "v", "seeds": [[1, 0, 0]]}]})", "s.json");
   ASSERT_TRUE(large);
   const auto far = resolve_lines(*large, set_of(*large));
   ASSERT_TRUE(far);
   EXPECT_NEAR(far->front()->knots().back().p.z, 30, 1e-6);
-  // a stated length, or a seed elsewhere, is what was asked for
+  // A stated length, or a seed outside the box, applies without the box.
   EXPECT_NEAR(lines_of_formula("uniform", R"("seeds": [[0, 0, 0]], "length": 7)")[0]->knots().back().s, 7, 1e-12);
   EXPECT_NEAR(lines_of_formula("uniform", R"("seeds": [[0, 3, 0]])")[0]->knots().back().s, 40, 1e-9);
 }
 
-TEST(SeedPatterns, EvenlySpacedLinesOfAHollowDomainBeginInItsWall) {
+TEST(SeedPatterns, EvenlySpacedLinesOfAHollowDomainStartInItsWall) {
   auto scene = parse_scene(R"({"fields": {"f": {"analytic": "left-ventricle", "part": "fibre", "box": [-3, 3]}},
                                "streamlines": [{"field": "f", "kind": "line", "seeds": {"evenly_spaced": {"distance": 0.3}}}]})",
                            "s.json");
@@ -117,19 +117,19 @@ TEST(SeedPatterns, EveryPatternGivesLines) {
   EXPECT_LE(even.size(), 9u);
 }
 
-TEST(SeedPatterns, TheirTracingSaysHowFarItIs) {
-  std::vector<std::pair<std::size_t, std::size_t>> told;
+TEST(SeedPatterns, TracingReportsProgress) {
+  std::vector<std::pair<std::size_t, std::size_t>> reports;
   set_trace_progress([&](const std::string& field, std::size_t seeds, std::size_t of) {
     EXPECT_EQ(field, "swirl");
-    told.push_back({seeds, of});
+    reports.push_back({seeds, of});
   });
   lines_of(R"("seeds": {"sphere": {"center": [0.5, 0, 0], "radius": 0.3, "count": 200}})");
   set_trace_progress({});
-  ASSERT_GE(told.size(), 3u);
-  EXPECT_EQ(told.back(), std::pair(std::size_t{0}, std::size_t{0})) << "the end";
-  told.pop_back();
-  EXPECT_TRUE(std::ranges::is_sorted(told));
-  EXPECT_EQ(told.back(), std::pair(std::size_t{200}, std::size_t{200}));
+  ASSERT_GE(reports.size(), 3u);
+  EXPECT_EQ(reports.back(), std::pair(std::size_t{0}, std::size_t{0})) << "the end";
+  reports.pop_back();
+  EXPECT_TRUE(std::ranges::is_sorted(reports));
+  EXPECT_EQ(reports.back(), std::pair(std::size_t{200}, std::size_t{200}));
 }
 
 TEST(SeedPatterns, SeedsOfAnIsosurfaceLieOnIt) {
@@ -137,30 +137,30 @@ TEST(SeedPatterns, SeedsOfAnIsosurfaceLieOnIt) {
     for (const flow::Knot& knot : line->knots()) EXPECT_NEAR(norm(knot.p), 0.8, 1e-8);  // circles stay on the sphere
 }
 
-TEST(SeedPatterns, PlacesThatStartNothingAreLeftOut) {
-  // the axis is at rest
+TEST(SeedPatterns, SeedsWithoutALineAreLeftOut) {
+  // The flow is zero on the axis.
   EXPECT_EQ(lines_of(R"("seeds": {"line": {"from": [-1, 0, 0], "to": [1, 0, 0], "count": 3}})").size(), 2u);
   no_lines(R"("seeds": {"line": {"from": [0, 0, -1], "to": [0, 0, 1], "count": 3}})", 3, {"none of the 3 seeds starts a line", "zero"});
-  no_lines(R"("seeds": {"evenly_spaced": {"distance": 0.5, "start": [[0, 0, 0]]}})", 3, {"within the flow was expected"});
+  no_lines(R"("seeds": {"evenly_spaced": {"distance": 0.5, "start": [[0, 0, 0]]}})", 3, {"inside the flow was expected"});
   no_lines(R"("seeds": {"isosurface": {"field": "swirl", "level": 0.8, "count": 10}})", 3, {"vector field", "expected"});
   no_lines(R"("seeds": {"isosurface": {"field": "ball", "level": -3, "count": 10}})", 3, {"level -3", "expected"});
   no_lines("\"seeds\": {\"evenly_spaced\": {\n\"distance\": 1e-6}}", 4, {"\"distance\" is 1e-06", "0.004"});
-  no_lines("\"seeds\": [[1, 0, 0],\n[0, 0, 0]]", 4, {"zero there"});
+  no_lines("\"seeds\": [[1, 0, 0],\n[0, 0, 0]]", 4, {"zero at the seed"});
 }
 
-TEST(SeedPatterns, PointsShareTheObjectWithTheHand) {
+TEST(SeedPatterns, LinesShareTheCurvesOfHapticLinks) {
   auto scene = parse_scene(scene_text("\"seeds\": [[1, 0, 0], [0.5, 0, 0]]"), "s.json");
   ASSERT_TRUE(scene);
   const auto lines = resolve_lines(*scene, set_of(*scene));
   ASSERT_TRUE(lines);
   const auto any = resolve_field(*scene, "swirl", {});
-  const auto felt = resolve_streamline(*scene, {any->vector.get()}, {0.5, 0, 0}, {});
-  ASSERT_TRUE(felt);
-  EXPECT_EQ((*lines)[1].get(), felt->get());
+  const auto link_curve = resolve_streamline(*scene, {any->vector.get()}, {0.5, 0, 0}, {});
+  ASSERT_TRUE(link_curve);
+  EXPECT_EQ((*lines)[1].get(), link_curve->get());
   EXPECT_EQ(resolve_lines(*scene, set_of(*scene))->at(0).get(), (*lines)[0].get());
 }
 
-TEST(SeedPatterns, MistakesAreNamedWithTheirLine) {
+TEST(SeedPatterns, ErrorsNameTheLine) {
   refused("\"seeds\": {\"ring\": {}}", 3, {"ring", "evenly_spaced"});
   refused("\"seeds\": {}", 3, {"0 patterns", "line, plane, sphere, isosurface, evenly_spaced"});
   refused("\"seeds\": {\"line\": {\"from\": [0, 0, 0], \"to\": [1, 0, 0], \"count\": 2},\n\"sphere\": {}}", 3, {"2 patterns"});
@@ -197,7 +197,7 @@ TEST(ColoredLines, TheKeysAreChecked) {
   });
 }
 
-TEST(ColoredLines, TheIndicatorNamesAField) {
+TEST(ColoredLines, TheIndicatorIsChecked) {
   const auto text = [](const std::string& body) {
     return "{\"fields\": {\"swirl\": {\"analytic\": \"circle\"}},\n\"indicator\": {" + body + "}}";
   };
@@ -207,7 +207,7 @@ TEST(ColoredLines, TheIndicatorNamesAField) {
   expect_error(parse_scene(text("\"feld\": \"swirl\""), "s.json"), 2, {"feld", "field"});
 }
 
-TEST(Lines, VisitedOnesAreTheLinesAndAreKeptOnlyWhileTheyAreFew) {
+TEST(Lines, VisitedLinesEqualResolvedLinesAndAreCachedIfFew) {
   const std::string seeds = R"("seeds": {"line": {"from": [0.5, 0, 0], "to": [1, 0, 0], "count": 300}})";
   auto all = parse_scene(scene_text(seeds), "s.json"), scene = parse_scene(scene_text(seeds), "s.json");
   ASSERT_TRUE(all && scene);
@@ -215,7 +215,7 @@ TEST(Lines, VisitedOnesAreTheLinesAndAreKeptOnlyWhileTheyAreFew) {
   ASSERT_TRUE(lines) << lines.error().message;
   const Entity set = set_of(*scene);
   EXPECT_EQ(lines_version(*scene, set), 0u) << "not made";
-  for (const std::size_t most : {std::size_t(1000), kMaxCachedKnots}) {
+  for (const std::size_t knot_limit : {std::size_t(1000), kMaxCachedKnots}) {
     std::size_t visited = 0, blocks = 0;
     std::weak_ptr<const flow::Curve> one;
     ASSERT_TRUE(visit_lines(
@@ -233,10 +233,10 @@ TEST(Lines, VisitedOnesAreTheLinesAndAreKeptOnlyWhileTheyAreFew) {
           ++blocks;
           return Done{};
         },
-        most));
+        knot_limit));
     EXPECT_EQ(visited, 300u);
     EXPECT_GT(blocks, 1u);
-    EXPECT_EQ(one.expired(), most < kMaxCachedKnots) << "nobody else holds them";
+    EXPECT_EQ(one.expired(), knot_limit < kMaxCachedKnots) << "nobody else holds them";
     EXPECT_NE(lines_version(*scene, set), 0u);
     EXPECT_EQ(lines_bounds(*scene, set).hi, lines_bounds(*all, set_of(*all)).hi);
   }
@@ -245,7 +245,7 @@ TEST(Lines, VisitedOnesAreTheLinesAndAreKeptOnlyWhileTheyAreFew) {
   EXPECT_EQ(lines_version(*scene, set), version) << "they were kept";
 }
 
-TEST(Lines, MoreKnotsThanAllowedAreSaidAndEveryBlockIsTold) {
+TEST(Lines, TooManyKnotsAreAnErrorAndProgressIsReported) {
   auto scene = parse_scene(scene_text(R"("seeds": [[1, 0, 0]])"), "s.json");
   ASSERT_TRUE(scene) << scene.error().message;
   const auto node = json::parse(R"({"line": {"from": [0.5, 0, 0], "to": [1, 0, 0], "count": 300}})", "seeds.json");
@@ -268,8 +268,8 @@ TEST(Lines, MoreKnotsThanAllowedAreSaidAndEveryBlockIsTold) {
   request.max_knots = 1000;
   const auto some = trace_lines(*scene, *seeds, request, *node);
   ASSERT_FALSE(some);
-  EXPECT_NE(some.error().message.find("of the 300 seeds have more than 1000 knots together"), std::string::npos) << some.error().message;
+  EXPECT_NE(some.error().message.find("of the 300 seeds have more than 1000 knots in total"), std::string::npos) << some.error().message;
 }
 
-}  // namespace lines_test
+}  // namespace streamlines_test
 }  // namespace catena::scene

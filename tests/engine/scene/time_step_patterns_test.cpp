@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Patterns of files, and steps that are added while a scene shows them.
+/// Patterns of file names, and time steps that are added while a scene is open.
 #include "engine/scene/follow_files.h"
 
 #include <fcntl.h>
@@ -13,9 +13,9 @@
 #include "tests/support/support.h"
 
 namespace catena::scene {
-namespace follow_test {
+namespace time_step_patterns_test {
 
-TEST(SeriesPattern, FilesOfOneSeriesInAnyOrder) {
+TEST(SeriesPattern, FilesOfASeriesInAnyOrderMakeAPattern) {
   const test::TemporaryFolder folder;
   for (const char* name :
        {"w_1.vti", "w_2.vti", "w_10.vti", "w_mean.vti", "t0.001.vtu", "t0.0015.vtu", "t0.01.vtu", "3.nii.gz", "20.nii.gz"})
@@ -24,7 +24,7 @@ TEST(SeriesPattern, FilesOfOneSeriesInAnyOrder) {
   test::write_file(folder / "other/w_1.vti", "");
   const struct {
     std::vector<const char*> files;
-    const char* pattern;  // or what the error says
+    const char* pattern;  // or a part of the error message
     std::vector<const char*> order;
   } kCases[] = {
       {{"w_10.vti", "w_2.vti", "w_1.vti"}, "w_{1,2,10}.vti", {"w_1.vti", "w_2.vti", "w_10.vti"}},
@@ -32,13 +32,13 @@ TEST(SeriesPattern, FilesOfOneSeriesInAnyOrder) {
       {{"t0.01.vtu", "t0.001.vtu", "t0.0015.vtu"}, "t*.vtu", {"t0.001.vtu", "t0.0015.vtu", "t0.01.vtu"}},
       {{"20.nii.gz", "3.nii.gz"}, "*.nii.gz", {"3.nii.gz", "20.nii.gz"}},
       {{"w_mean.vti"}, "w_mean.vti", {}},
-      {{"w_mean.vti", "w_1.vti"}, "are no series", {}},
-      {{"w_1.vti", "t0.01.vtu"}, "are no series", {}},
+      {{"w_mean.vti", "w_1.vti"}, "are not a series", {}},
+      {{"w_1.vti", "t0.01.vtu"}, "are not a series", {}},
       {{"w_1.vti", "other/w_1.vti"}, "different folders", {}},
       {{"w_1.vti", "w_3.vti"}, "there is no such file", {}},
       {{"w_1.vti", "other/../w_2.vti"}, "w_{1,2}.vti", {"w_1.vti", "w_2.vti"}},
-      {{"w_?.vti"}, "there is no such file; a name with a *", {}},
-      {{"w_{1..3}.vti"}, "there is no such file; a name with a *", {}},
+      {{"w_?.vti"}, "there is no such file; a pattern for several files has a *", {}},
+      {{"w_{1..3}.vti"}, "there is no such file; a pattern for several files has a *", {}},
   };
   for (const auto& one : kCases) {
     std::vector<std::string> files, order;
@@ -56,7 +56,7 @@ TEST(SeriesPattern, FilesOfOneSeriesInAnyOrder) {
   }
   EXPECT_EQ(expand_pattern(folder / "w_{1,1,2}.vti").size(), 2u);
   EXPECT_FALSE(find_followable_path(folder / "missing_1.vti"));
-  // a file that is really called so
+  // A file whose name has the pattern's characters.
   test::write_file(folder / "x_*.vti", "");
   EXPECT_FALSE(is_pattern(folder / "x_*.vti"));
 }
@@ -83,7 +83,7 @@ class GrowingSeries : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(GrowingSeries, AStepCountsOnceItIsWholeAndAtRest) {
+TEST_F(GrowingSeries, AStepIsAddedOnceCompleteAndUnchanged) {
   for (const int step : {8, 9}) write(step), settle(file(step));
   auto scene = parse_scene(R"({"fields": {"r": {"file": "f_*.vdb"}}})", folder_ / "s.json");
   ASSERT_TRUE(scene) << scene.error().message;
@@ -98,7 +98,7 @@ TEST_F(GrowingSeries, AStepCountsOnceItIsWholeAndAtRest) {
   };
   EXPECT_TRUE(look());
   EXPECT_EQ(step_count(*scene), 2);
-  // half written, whether at rest or not; of another series
+  // A partial file, whether old or new; and a file of another series.
   write(10, /*half=*/true);
   EXPECT_FALSE(look());
   settle(file(10));
@@ -106,7 +106,7 @@ TEST_F(GrowingSeries, AStepCountsOnceItIsWholeAndAtRest) {
   std::filesystem::copy_file(file(9), folder_ / "f_mean.vdb");
   settle(folder_ / "f_mean.vdb");
   EXPECT_FALSE(look());
-  // whole, but it has just been changed
+  // A complete file that was changed just now.
   write(10);
   EXPECT_FALSE(look());
   settle(file(10));
@@ -119,7 +119,7 @@ TEST_F(GrowingSeries, AStepCountsOnceItIsWholeAndAtRest) {
   EXPECT_EQ(newest->scalar->min_value(), 10);
 }
 
-TEST_F(GrowingSeries, WhatIsFollowedOfAName) {
+TEST_F(GrowingSeries, FindsTheFollowedPatternOfAName) {
   for (const int step : {1, 2}) write(step);
   EXPECT_EQ(*find_followable_path(file(1)), folder_ / "f_*.vdb");
   EXPECT_EQ(*find_followable_path(folder_ / "f_{1,2}.vdb"), folder_ / "f_*.vdb");
@@ -128,5 +128,5 @@ TEST_F(GrowingSeries, WhatIsFollowedOfAName) {
   EXPECT_FALSE(find_followable_path(folder_ / "whole.vdb"));
 }
 
-}  // namespace follow_test
+}  // namespace time_step_patterns_test
 }  // namespace catena::scene

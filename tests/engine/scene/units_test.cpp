@@ -6,7 +6,7 @@
 namespace catena::scene {
 namespace units_test {
 
-TEST(SceneUnits, FieldsAndLengthsHaveTheWordsThatTheSceneStates) {
+TEST(SceneUnits, FieldsAndLengthsHaveTheStatedUnits) {
   const auto scene = parse_scene(R"({"unit_length": "mm",
     "fields": {"v": {"analytic": "circle", "unit": "m/s"}, "d": {"analytic": "sphere"}}})",
                                  "s.json");
@@ -18,13 +18,13 @@ TEST(SceneUnits, FieldsAndLengthsHaveTheWordsThatTheSceneStates) {
   EXPECT_EQ(unit_suffix(""), "");
 }
 
-TEST(SceneUnits, WhatIsNoWordIsSaidWithItsLine) {
+TEST(SceneUnits, ErrorsNameTheLine) {
   for (const char* text : {"{\"fields\": {\n\"v\": {\"analytic\": \"circle\", \"unit\": 3}}}", "{\n\"unit_length\": \"\"}",
                            "{\n\"unit_length\": \"much too long for a unit of length\"}"}) {
     const auto scene = parse_scene(text, "s.json");
     ASSERT_FALSE(scene) << text;
     EXPECT_EQ(scene.error().message.find("s.json:2: "), 0u) << scene.error().message;
-    EXPECT_NE(scene.error().message.find("is no unit"), std::string::npos) << scene.error().message;
+    EXPECT_NE(scene.error().message.find("is not a unit"), std::string::npos) << scene.error().message;
   }
 }
 

@@ -6,7 +6,7 @@
 #include "engine/scene/document.h"
 
 namespace catena::scene {
-namespace traced_cores_test {
+namespace vortex_core_curves_test {
 
 Result<Scene> scene_with(const std::string& curves, const std::string& more = "") {
   return parse_scene(R"({"fields": {"ring": {"analytic": "hill"}, "abc": {"analytic": "abc"}, "still": {"analytic": "uniform"},
@@ -18,7 +18,7 @@ Result<Scene> scene_with(const std::string& curves, const std::string& more = ""
 
 Result<curves::CurveSetPtr> traced(Scene& scene) { return resolve_curves(scene, find_named<CurvesSource>(scene, "core")); }
 
-TEST(TracedCores, AreTheLinesThatALinkFeels) {
+TEST(TracedCores, EqualTheCurvesOfLinks) {
   auto scene = scene_with(R"("vortex_cores": {"field": "ring"})");
   ASSERT_TRUE(scene) << scene.error().message;
   const auto set = traced(*scene);
@@ -26,7 +26,7 @@ TEST(TracedCores, AreTheLinesThatALinkFeels) {
   ASSERT_EQ((*set)->line_count(), 1u);
   EXPECT_EQ((*set)->points.front(), (*set)->points.back()) << "closed";
   EXPECT_NE((*set)->find_values("swirl"), nullptr);
-  // chords included: 1e-6 L and the rounding of single precision
+  // The tolerance covers chords, 1e-6 L, and the rounding of single precision.
   for (std::size_t k = 0; k + 1 < (*set)->points.size(); ++k) {
     const Vec3 p = 0.5 * (Vec3((*set)->points[k]) + Vec3((*set)->points[k + 1]));
     ASSERT_LE(norm(p - direction(Vec3(p.x, p.y, 0)) * std::sqrt(0.5)), 4e-6 + 2e-7) << k;
@@ -36,7 +36,7 @@ TEST(TracedCores, AreTheLinesThatALinkFeels) {
   EXPECT_EQ(scene->entities.get<CurvesSource>(find_named<CurvesSource>(*scene, "core")).vortex_cores->cores, *cores) << "one object";
 }
 
-TEST(TracedCores, StayWhereAnEditLeavesThemAlone) {
+TEST(TracedCores, AreKeptByUnrelatedEdits) {
   auto old = scene_with(R"("vortex_cores": {"field": "ring"})");
   const auto set = traced(*old);
   for (const auto& [curves, same] : {std::pair(R"("vortex_cores": {"field": "ring"}, "color": [1, 0, 0])", true),
@@ -50,7 +50,7 @@ TEST(TracedCores, StayWhereAnEditLeavesThemAlone) {
   }
 }
 
-TEST(TracedCores, SayWhereThereIsNone) {
+TEST(TracedCores, ErrorsNameTheLine) {
   const auto message = [](const std::string& curves) {
     auto scene = scene_with(curves);
     if (!scene) return scene.error().message;
@@ -69,5 +69,5 @@ TEST(TracedCores, SayWhereThereIsNone) {
   says(R"("radius": 1)", "neither");
 }
 
-}  // namespace traced_cores_test
+}  // namespace vortex_core_curves_test
 }  // namespace catena::scene

@@ -23,7 +23,7 @@ Scene parsed(const std::string& rest) {
 
 Widget& get(Scene& scene, const char* name) { return scene.entities.get<Widget>(find_widget(scene, name)); }
 
-/// The state in which every widget is where it is now.
+/// A haptic state with the current report of every widget.
 HapticState state_of(Scene& scene) {
   HapticState state;
   scene.entities.each<Widget>([&](Entity, Widget& w) { state.widgets[static_cast<std::size_t>(state.widget_count++)] = w.report; });
@@ -53,7 +53,7 @@ Entity only_entity(Scene& scene) {
 const std::string kCut = R"({"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1])";
 const std::string kSeed = R"({"name": "p", "type": "seed", "position": [1, 0, 0]})";
 
-TEST(Widgets, SizesFollowWhatIsDrawn) {
+TEST(Widgets, SizesFollowTheScenesExtent) {
   const auto spec_of = [](const std::string& rest, const char* name) {
     Scene scene = parsed(rest);
     const auto spec = resolve_widget(scene, find_widget(scene, name));
@@ -71,7 +71,7 @@ TEST(Widgets, SizesFollowWhatIsDrawn) {
   EXPECT_DOUBLE_EQ(handle.radius, 0.048);
   EXPECT_DOUBLE_EQ(handle.grab_distance, 0.12);
   EXPECT_DOUBLE_EQ(handle.step, 0.08);
-  // a file's domain: ten times as long
+  // The domain of a file is ten times as long.
   Scene scene = parsed("\"widgets\": [" + kCut + R"(, "grab_distance": 0.5}], "volumes": [{"field": "s"}])");
   const Entity s = find_field(scene, "s");
   const auto grid = field::try_sample_on_grid(*resolve_field(scene, s, {}), 5, -20, 20);
@@ -84,7 +84,7 @@ TEST(Widgets, SizesFollowWhatIsDrawn) {
   EXPECT_EQ(large->grab_distance, 0.5) << "stated";
 }
 
-TEST(Widgets, ReleaseStaysBeyondSnapWhereOneIsStated) {
+TEST(Widgets, TheDefaultOfSnapOrReleaseFitsAStatedOne) {
   Scene scene =
       parsed("\"widgets\": [" + kCut + R"(, "snap": 3}, {"name": "b", "type": "cutting_plane", "center": [0, 0, 0], "normal": [1, 0, 0],
     "release": 0.01}])");
@@ -110,7 +110,7 @@ TEST(Widgets, AnIsolevelHasTheFieldsValue) {
   }
 }
 
-TEST(Widgets, AnIsolevelStandsWithinItsField) {
+TEST(Widgets, AnIsolevelOutsideItsFieldIsRefused) {
   Scene scene = parsed(
       "\n"
       R"("widgets": [{"name": "l", "type": "isolevel", "field": "s", "position": [5, 0, 0]}])");
@@ -122,7 +122,7 @@ TEST(Widgets, AnIsolevelStandsWithinItsField) {
   EXPECT_EQ(spec.error().message.find("s.json:2: "), 0u) << spec.error().message;
 }
 
-TEST(Widgets, ReportsAreTakenOver) {
+TEST(Widgets, ReportsAreApplied) {
   Scene scene = parsed("\"widgets\": [" + kCut + "}, " + kSeed + "]");
   HapticState state = state_of(scene);
   EXPECT_FALSE(update_widgets(scene, state)) << "nothing new";
@@ -134,13 +134,13 @@ TEST(Widgets, ReportsAreTakenOver) {
   EXPECT_EQ(get(scene, "p").report.mode, widget::Mode::drag);
   EXPECT_EQ(get(scene, "p").report.active_planes, 6);
   EXPECT_EQ(get(scene, "p").spec.pose.points[0], Vec3(1, 0, 0)) << "as stated";
-  // a mode alone is taken over, too
+  // A change of the mode alone is applied.
   state.widgets[1].mode = widget::Mode::idle;
   EXPECT_FALSE(update_widgets(scene, state));
   EXPECT_EQ(get(scene, "p").report.mode, widget::Mode::idle);
 }
 
-TEST(Widgets, ReportsThatCannotBeMeantAreIgnored) {
+TEST(Widgets, InvalidReportsAreIgnored) {
   Scene scene = parsed("\"widgets\": [" + kSeed + "]");
   const widget::Report before = get(scene, "p").report;
   const auto ignored = [&](auto&& change) {
@@ -159,7 +159,7 @@ TEST(Widgets, ReportsThatCannotBeMeantAreIgnored) {
   EXPECT_FALSE(ignored([](auto&) {}));
 }
 
-TEST(Widgets, APoseThatIsSetOutlivesOlderReports) {
+TEST(Widgets, ASetPoseIsNotOverwrittenByOlderReports) {
   Scene scene = parsed("\"widgets\": [" + kSeed + R"(, {"name": "b", "type": "box", "min": [0, 0, 0], "max": [1, 1, 1]}])");
   HapticState old = state_of(scene);
   old.widgets[0].pose.points[0] = {9, 9, 9};
@@ -173,7 +173,7 @@ TEST(Widgets, APoseThatIsSetOutlivesOlderReports) {
   fresh.widgets[0].revision = 1;
   EXPECT_TRUE(update_widgets(scene, fresh));
   EXPECT_EQ(get(scene, "p").report.pose.points[0], Vec3(9, 9, 9));
-  // refused, and nothing changes
+  // An invalid pose is refused and changes nothing.
   EXPECT_FALSE(set_widget_pose(scene, p, {{Vec3(kNaN), Vec3(0)}, kIdentityRotation}));
   EXPECT_EQ(get(scene, "p").spec.revision, 1u);
   EXPECT_FALSE(set_widget_pose(scene, find_widget(scene, "b"), {{Vec3(0), Vec3(1, 0, 1)}, kIdentityRotation}));
@@ -205,7 +205,7 @@ TEST(Widgets, SlicesAndClipsFollow) {
   EXPECT_EQ(scene.clip_planes[2].normal, Vec3(-1, 0, 0));
 }
 
-TEST(Widgets, LevelsFollowWithinTheFieldsValues) {
+TEST(Widgets, LevelsFollowWithinTheFieldsRange) {
   Scene scene = parsed(R"("widgets": [{"name": "l", "type": "isolevel", "field": "s", "position": [0.5, 0, 0]}],
     "isosurfaces": [{"field": "s", "level": {"widget": "l"}}])");
   EXPECT_TRUE(driven(scene).levels);
@@ -216,7 +216,7 @@ TEST(Widgets, LevelsFollowWithinTheFieldsValues) {
   ASSERT_TRUE(update_widgets(scene, state));
   EXPECT_TRUE(driven(scene).levels);
   EXPECT_EQ(only<Isosurface>(scene).level, 0.75);
-  // beyond what the drawn grid attains
+  // A value out of the range of the rendered grid.
   state.widgets[0].value = 99;
   ASSERT_TRUE(update_widgets(scene, state));
   driven(scene);
@@ -224,13 +224,13 @@ TEST(Widgets, LevelsFollowWithinTheFieldsValues) {
   ASSERT_TRUE(grid);
   EXPECT_EQ(only<Isosurface>(scene).level, grid->scalar->max_value());
   EXPECT_TRUE(check_level(*grid->scalar, only<Isosurface>(scene).level, {}));
-  // set from a panel, the value follows the place
+  // If the widget is moved from a panel, the value follows its position.
   ASSERT_TRUE(set_widget_pose(scene, find_widget(scene, "l"), {{Vec3(0, 0.25, 0), Vec3(0)}, kIdentityRotation}));
   EXPECT_TRUE(driven(scene).levels);
   EXPECT_EQ(only<Isosurface>(scene).level, 0.25);
 }
 
-TEST(Widgets, LinksThatNameOneAreToldOf) {
+TEST(Widgets, ChangesOfWidgetsWithLinksAreReported) {
   Scene scene = parsed("\"widgets\": [" + kCut + "}, " + kSeed + R"(],
     "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": {"widget": "p"}}])");
   EXPECT_TRUE(has_haptic_link(scene, find_widget(scene, "p")));
@@ -261,13 +261,13 @@ TEST(Widgets, LinesFollowTheirSeeds) {
   ASSERT_EQ(moved->size(), 1u);
   EXPECT_NE(moved->front(), first->front());
   EXPECT_NEAR(moved->front()->period(), 3.14159265358979, 1e-6) << "the circle through the seed";
-  // what is felt is what is seen
+  // The link's curve is the rendered curve.
   const field::AnyField v = *resolve_field(scene, find_field(scene, "v"), {});
   EXPECT_EQ(*resolve_streamline(scene, {v.vector.get()}, {0.5, 0, 0}, {}), moved->front());
 }
 
-TEST(Widgets, SeedsThatStartNothingAreLeftOut) {
-  // the middle seed is where the flow stands still
+TEST(Widgets, SeedsWithoutALineAreLeftOut) {
+  // The middle seed is at a point of zero velocity.
   Scene scene = parsed(R"("widgets": [{"name": "r", "type": "rake", "from": [-1, 0, 0], "to": [1, 0, 0]},)" + kSeed + R"(],
     "streamlines": [{"field": "v", "seeds": {"widget": "r", "count": 3}}])");
   driven(scene);
@@ -275,7 +275,7 @@ TEST(Widgets, SeedsThatStartNothingAreLeftOut) {
   ASSERT_TRUE(rake) << rake.error().message;
   EXPECT_EQ(rake->size(), 2u);
 
-  // out of the domain of a grid, by both tracers
+  // A seed outside the domain of a grid, with both tracers.
   for (const char* tolerance : {"1e-10", "1e-5"}) {
     Scene grid = parsed("\"widgets\": [" + kSeed + R"(], "streamlines": [{"field": "v", "seeds": {"widget": "p"}, "tolerance": )" +
                         tolerance + "}]");
@@ -295,7 +295,7 @@ TEST(Widgets, SeedsThatStartNothingAreLeftOut) {
   }
 }
 
-TEST(Widgets, CurvesOfMovingSeedsAreLetGo) {
+TEST(Widgets, CurvesOfMovingSeedsAreReleased) {
   Scene scene = parsed("\"widgets\": [" + kSeed + R"(], "streamlines": [{"field": "v", "seeds": {"widget": "p"}},
     {"field": "v", "seeds": [[0.3, 0, 0], [0.4, 0, 0]]}])");
   std::vector<Entity> sets;
@@ -313,7 +313,7 @@ TEST(Widgets, CurvesOfMovingSeedsAreLetGo) {
   }
   EXPECT_EQ(*resolve_lines(scene, sets[1]), *fixed);
   EXPECT_EQ(*resolve_streamline(scene, {v.vector.get()}, {0.7, 0, 0}, {}), felt) << "what a link holds stays";
-  // a link whose seed moves, with nothing drawn
+  // A link with a moving seed, without rendered lines.
   for (int i = 0; i < 500; ++i) {
     ASSERT_TRUE(resolve_streamline(scene, {v.vector.get()}, {0.1 + 0.001 * i, 0.2, 0}, {}));
     ASSERT_LE(scene.traced_curves.size(), 64u);

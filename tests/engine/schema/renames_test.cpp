@@ -65,7 +65,7 @@ TEST(Renames, RefusesAnOldNameInOneLineWithTheNewOne) {
   EXPECT_EQ(names.error().message,
             "fog.json:1: \"start\" is now \"near\"; the new name was expected: `catena upgrade fog.json` replaces the old names");
   EXPECT_EQ(upgraded("{\"meshes\": [{\"drawn\": true,\n\"visible\": true}]}"),
-            "old.json:1: \"drawn\" is now \"visible\", which is there too; one of them was expected");
+            "old.json:1: \"drawn\" is now \"visible\", which is also present; one of them was expected");
   EXPECT_TRUE(check_names(*json::parse(R"({"labels": [{"at": 1}], "fields": {"on": {"file": "indicate"}}})", "a"), FileKind::scene));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The model of a subject and the trial that it does.
+// The model of a human subject, and its simulated trials.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -8,7 +8,7 @@
 #include "engine/study/simulated_trial.h"
 #include "tests/engine/study/study_fixture.h"
 
-namespace operator_test {
+namespace human_model_test {
 
 using namespace catena;
 
@@ -17,7 +17,7 @@ bool same(const study::TrialResult& a, const study::TrialResult& b) {
          a.peak_force_n == b.peak_force_n && a.end_mm == b.end_mm;
 }
 
-TEST(HumanModel, ATrialIsTheSameWhateverWasDoneBefore) {
+TEST(HumanModel, ATrialDoesNotDependOnEarlierTrials) {
   const study::Study study = study_rig::small();
   const std::vector<study::Trial> session = study::make_session(study, 3);
   study::TrialSimulator all(study);
@@ -29,7 +29,7 @@ TEST(HumanModel, ATrialIsTheSameWhateverWasDoneBefore) {
   }
 }
 
-TEST(HumanModel, IsAHandWithoutNoiseThatGoesAlongThePath) {
+TEST(HumanModel, FollowsThePathWithoutNoise) {
   study::Study study = study_rig::small();
   study::HumanModelParameters& m = study.human_model;
   m.speed_spread_subject = m.speed_spread_trial = m.motor_noise = m.lateral_noise_mm = m.tremor_mm = 0;
@@ -39,16 +39,16 @@ TEST(HumanModel, IsAHandWithoutNoiseThatGoesAlongThePath) {
     const study::TrialResult measured = simulator.run(trial).value();
     EXPECT_TRUE(measured.reached_target);
     EXPECT_LT(measured.error_mm, 6);
-    // 92 mm at 55 mm/s, slower towards the end
+    // 92 mm at 55 mm/s, slower towards the end.
     EXPECT_GT(measured.time_s, 92 / 55.0 - 0.1);
     EXPECT_LT(measured.time_s, 4);
-    // cut corners make it shorter
+    // Cut corners make the traveled path shorter.
     EXPECT_GT(measured.traveled_mm, 75);
     EXPECT_LT(measured.traveled_mm, 115);
   }
 }
 
-TEST(HumanModel, EachPartOfTheModelDoesWhatItSays) {
+TEST(HumanModel, EachParameterHasItsEffect) {
   study::Study study = study_rig::small();
   study.tasks[0].rules.path_mm = 60;
   const auto error_with = [&](auto&& change) {
@@ -70,7 +70,7 @@ TEST(HumanModel, EachPartOfTheModelDoesWhatItSays) {
   EXPECT_EQ(error_with([](study::HumanModelParameters& m) { m.depth_noise_mm = m.depth_bias_mm = 50; }), none) << "of 3D tasks only";
 }
 
-TEST(HumanModel, SubjectsAreDrawnWithTheStatedSpread) {
+TEST(HumanModel, SubjectsHaveTheStatedSpread) {
   const study::Study& study = study_rig::paper_study();
   double bias2 = 0, logarithm2 = 0, logarithm = 0;
   constexpr int n = 2000;
@@ -80,13 +80,13 @@ TEST(HumanModel, SubjectsAreDrawnWithTheStatedSpread) {
     logarithm += std::log(model.speed) / n;
     logarithm2 += std::log(model.speed) * std::log(model.speed) / n;
   }
-  // four standard errors
+  // Tolerances of four standard errors.
   EXPECT_NEAR(std::sqrt(bias2), 5, 5 * 4 / std::sqrt(2.0 * n));
   EXPECT_NEAR(std::sqrt(logarithm2), 0.36, 0.36 * 4 / std::sqrt(2.0 * n));
   EXPECT_NEAR(logarithm, 0, 0.36 * 4 / std::sqrt(1.0 * n));
 }
 
-TEST(HumanModel, GuidanceIsFeltAndTheJudgeSeesTheDeviceNotTheProxy) {
+TEST(HumanModel, GuidanceHasAForceAndErrorsAreThoseOfTheDevice) {
   const study::Study study = study_rig::small();
   study::TrialSimulator simulator(study);
   for (const study::Trial& trial : study::make_session(study, 2)) {
@@ -97,21 +97,21 @@ TEST(HumanModel, GuidanceIsFeltAndTheJudgeSeesTheDeviceNotTheProxy) {
   }
 }
 
-TEST(SimulatedDevice, IsLedFromTickToTick) {
+TEST(SimulatedDevice, FollowsTargetsSetAtEachTick) {
   haptics::SimulatedDeviceParameters p;
   p.mass_kg = 0.02;
   haptics::SimulatedDevice led({{.position_m = Vec3(0.01, 0, 0)}}, p);
-  // the same wishes as a path
+  // The same targets as a recorded path.
   std::vector<haptics::SimulatedDevice::Waypoint> path{{.position_m = Vec3(0.01, 0, 0)}};
-  const auto wish = [](int k) { return Vec3(0.01 + 1e-4 * k, 2e-5 * (k % 7), 0); };
-  for (int k = 1; k <= 300; ++k) path.push_back({1e-3 * k, wish(k), 0});
+  const auto target = [](int k) { return Vec3(0.01 + 1e-4 * k, 2e-5 * (k % 7), 0); };
+  for (int k = 1; k <= 300; ++k) path.push_back({1e-3 * k, target(k), 0});
   haptics::SimulatedDevice along(path, p);
   for (int k = 0; k < 300; ++k) {
     const Vec3 a = led.read().position_m, b = along.read().position_m;
     ASSERT_LT(norm(a - b), 1e-12) << k;
-    led.set_target(wish(k + 1));
+    led.set_target(target(k + 1));
   }
   EXPECT_GT(led.position_m().x, 0.03);
 }
 
-}  // namespace operator_test
+}  // namespace human_model_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The study file: what it says, and what is said of mistakes in it, with the line of the mistake.
+// The study file: its values, and errors with their line.
 #include <gtest/gtest.h>
 
 #include "engine/scene/scene.h"
@@ -12,7 +12,7 @@ namespace read_study_test {
 using namespace catena;
 using study_rig::small_study_text;
 
-TEST(ReadStudy, ThePapersDesign) {
+TEST(ReadStudy, ReadsThePapersDesign) {
   const study::Study& study = study_rig::paper_study();
   ASSERT_EQ(study.tasks.size(), 4u);
   ASSERT_EQ(study.conditions.size(), 2u);
@@ -31,7 +31,7 @@ TEST(ReadStudy, ThePapersDesign) {
   EXPECT_EQ(study.tasks[0].target, study::Target::circle);
   EXPECT_EQ(study.tasks[2].target, study::Target::plane);
   EXPECT_EQ(study.tasks[0].view_direction, Vec3(0, 0, -1));
-  // the speed's spread as it was measured, split over subjects and trials
+  // The measured spread of speed, split over subjects and trials.
   EXPECT_NEAR(std::hypot(study.human_model.speed_spread_subject, study.human_model.speed_spread_trial), 0.45, 1e-12);
 }
 
@@ -39,7 +39,7 @@ struct Mistake {
   const char *from, *to, *says;
 };
 
-TEST(ReadStudy, MistakesAreOneLineWithTheirPlace) {
+TEST(ReadStudy, ErrorsAreOneLineWithTheirPosition) {
   const Mistake mistakes[] = {
       {R"("trials": 3)", R"("trials": 0)", "small.json:2:"},
       {R"("training": 1)", R"("trainings": 1)", "did you mean \"training\""},
@@ -50,7 +50,7 @@ TEST(ReadStudy, MistakesAreOneLineWithTheirPlace) {
       {R"("kind": "tracing")", R"("kind": "tracing", "target": "circle")", "path's end was expected"},
       {R"("kind": "tracing")", R"("kind": "advection", "target": "end")", "was expected"},
       {R"("field": "flow",)", R"("field": "flows",)", "small.json:4:"},
-      {R"("$seed")", R"("$sead")", "small.json:6: \"$sead\" stands for nothing"},
+      {R"("$seed")", R"("$sead")", "small.json:6: \"$sead\" is not a known placeholder"},
       {R"("target": [0, 0, 0])", R"("target": [0, 0, 8])", "small.json:7:"},
       {R"("metres_per_unit": 0.05)", R"("metres_per_unit": -1)", "small.json:8:"},
       {R"("workspace": {"metres_per_unit": 0.05})", R"("jitter": true)", "no \"workspace\""},
@@ -64,16 +64,16 @@ TEST(ReadStudy, MistakesAreOneLineWithTheirPlace) {
   for (const Mistake& mistake : mistakes) {
     const auto read = study::parse_study(small_study_text(mistake.from, mistake.to), "small.json");
     ASSERT_FALSE(read) << mistake.to;
-    const std::string& said = read.error().message;
-    EXPECT_NE(said.find(mistake.says), std::string::npos) << mistake.to << "\n" << said;
-    EXPECT_TRUE(said.starts_with("small.json:")) << said;
-    EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+    const std::string& error_of = read.error().message;
+    EXPECT_NE(error_of.find(mistake.says), std::string::npos) << mistake.to << "\n" << error_of;
+    EXPECT_TRUE(error_of.starts_with("small.json:")) << error_of;
+    EXPECT_EQ(error_of.find('\n'), std::string::npos) << error_of;
   }
 }
 
-/// A mistake in a template or a chain shows when a trial is made: it is told with the line of the study file.
-TEST(ReadStudy, MistakesOfScenesAndChainsHaveTheLineOfTheStudyFile) {
-  const auto said = [](const char* from, const char* to, int condition) -> std::string {
+/// An error in a template or a chain is found when a trial is made; it is reported with the line of the study file.
+TEST(ReadStudy, ErrorsInScenesAndChainsNameTheLineOfTheStudyFile) {
+  const auto error_of = [](const char* from, const char* to, int condition) -> std::string {
     const study::Study study = study::parse_study(small_study_text(from, to), "small.json").value();
     study::Trial trial;
     trial.condition = condition;
@@ -84,28 +84,28 @@ TEST(ReadStudy, MistakesOfScenesAndChainsHaveTheLineOfTheStudyFile) {
     const auto program = haptics::build_program(*scene);
     return program ? "" : program.error().message;
   };
-  EXPECT_EQ(said(R"("training": 1)", R"("training": 1)", 1), "");
-  EXPECT_TRUE(said(R"("analytic": "vortices")", R"("analytic": "vortexes")", 0).starts_with("small.json:6:"));
-  EXPECT_TRUE(said(R"("up": [0, 1, 0])", R"("up": [0, 1])", 0).starts_with("small.json:7:"));
-  EXPECT_TRUE(said(R"("type": "streamline")", R"("type": "streamlime")", 1).starts_with("small.json:13:"));
-  EXPECT_TRUE(said(R"("seed": "$start")", R"("seed": "$radius")", 1).starts_with("small.json:13:"));
+  EXPECT_EQ(error_of(R"("training": 1)", R"("training": 1)", 1), "");
+  EXPECT_TRUE(error_of(R"("analytic": "vortices")", R"("analytic": "vortexes")", 0).starts_with("small.json:6:"));
+  EXPECT_TRUE(error_of(R"("up": [0, 1, 0])", R"("up": [0, 1])", 0).starts_with("small.json:7:"));
+  EXPECT_TRUE(error_of(R"("type": "streamline")", R"("type": "streamlime")", 1).starts_with("small.json:13:"));
+  EXPECT_TRUE(error_of(R"("seed": "$start")", R"("seed": "$radius")", 1).starts_with("small.json:13:"));
 }
 
-TEST(ReadStudy, WhatBelongsToVorticesIsRefusedOfOtherFormulas) {
-  const auto said = [](const std::string& keys) {
+TEST(ReadStudy, KeysOfVorticesAreRefusedForOtherFormulas) {
+  const auto error_of = [](const std::string& keys) {
     const auto scene = scene::parse_scene("{\"fields\": {\n\"f\": {\"analytic\": " + keys + "}}}", "s.json");
     return scene ? std::string() : scene.error().message;
   };
-  EXPECT_EQ(said(R"("vortices", "seed": 5, "dimensions": 2, "center": [1, 2, 3])"), "");
-  EXPECT_EQ(said(R"("circle", "center": [1, 2, 3])"), "");
-  EXPECT_TRUE(said(R"("circle", "seed": 5)").starts_with("s.json:2: \"seed\" does not belong to \"circle\""));
-  EXPECT_TRUE(said(R"("hill", "dimensions": 2)").starts_with("s.json:2: \"dimensions\""));
-  EXPECT_TRUE(said(R"("vortices", "dimensions": 4)").starts_with("s.json:2:"));
-  EXPECT_TRUE(said(R"("vortices", "seed": -1)").starts_with("s.json:2:"));
-  EXPECT_TRUE(said(R"("circle", "center": [1, 2])").starts_with("s.json:2:"));
+  EXPECT_EQ(error_of(R"("vortices", "seed": 5, "dimensions": 2, "center": [1, 2, 3])"), "");
+  EXPECT_EQ(error_of(R"("circle", "center": [1, 2, 3])"), "");
+  EXPECT_TRUE(error_of(R"("circle", "seed": 5)").starts_with("s.json:2: \"seed\" does not belong to \"circle\""));
+  EXPECT_TRUE(error_of(R"("hill", "dimensions": 2)").starts_with("s.json:2: \"dimensions\""));
+  EXPECT_TRUE(error_of(R"("vortices", "dimensions": 4)").starts_with("s.json:2:"));
+  EXPECT_TRUE(error_of(R"("vortices", "seed": -1)").starts_with("s.json:2:"));
+  EXPECT_TRUE(error_of(R"("circle", "center": [1, 2])").starts_with("s.json:2:"));
 }
 
-TEST(ReadStudy, AChainMayStandBeforeTheTasksAndCommentsAnywhere) {
+TEST(ReadStudy, AChainMayPrecedeTheTasksAndCommentsAreAllowed) {
   const study::Study study = study::parse_study(R"({ "name": "turned",
   "conditions": [{"name": "a", "chain": [  // links
       {"name": "hold", "type": "point", "position": "$end"}]}],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The design over 24 subjects: the Latin square, the interleaving of conditions, and seeds that follow from the subject's number.
+// The design over 24 subjects: the Latin square, interleaved conditions, and seeds that follow from the subject's number.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -19,7 +19,7 @@ std::vector<int> order_of(const std::vector<study::Trial>& session) {
   return order;
 }
 
-TEST(Session, TasksAreALatinSquareBalancedForWhatComesBefore) {
+TEST(Session, TasksAreALatinSquareBalancedForOrder) {
   for (const int count : {1, 2, 3, 4, 5, 6}) {
     const int rows = count % 2 == 0 ? count : 2 * count;
     std::map<std::pair<int, int>, int> at_place, follows;
@@ -38,7 +38,7 @@ TEST(Session, TasksAreALatinSquareBalancedForWhatComesBefore) {
   }
 }
 
-TEST(Session, TwentyFourSubjectsDoEveryTaskAtEveryPlaceEquallyOften) {
+TEST(Session, TwentyFourSubjectsDoEachTaskInEachPositionEquallyOften) {
   std::map<std::pair<std::size_t, int>, int> at_place;
   for (int subject = 1; subject <= 24; ++subject) {
     const std::vector<int> order = order_of(study::make_session(study_rig::paper_study(), subject));
@@ -49,7 +49,7 @@ TEST(Session, TwentyFourSubjectsDoEveryTaskAtEveryPlaceEquallyOften) {
   for (const auto& [where, times] : at_place) EXPECT_EQ(times, 6);
 }
 
-TEST(Session, ConditionsAreInterleavedOnTheSameStimuli) {
+TEST(Session, ConditionsAreInterleavedWithEqualStimuli) {
   const study::Study& study = study_rig::paper_study();
   std::set<int> seeds;
   int changes = 0, neighbours = 0, first_of_pair[2] = {0, 0};
@@ -85,20 +85,21 @@ TEST(Session, ConditionsAreInterleavedOnTheSameStimuli) {
     }
   }
   EXPECT_EQ(seeds.size(), 24u * 4u * 12u) << "stimuli of subjects and tasks are different ones";
-  // by chance 10/19 of the neighbours differ, and either condition is first half of the time: within five standard deviations
+  // By chance, 10/19 of neighboring trials differ in condition, and each condition is first in half of the pairs: within five standard
+  // deviations.
   const double expected = neighbours * 10.0 / 19, spread = std::sqrt(neighbours * 0.25);
   EXPECT_NEAR(changes, expected, 5 * spread);
   EXPECT_NEAR(first_of_pair[0], 480, 5 * std::sqrt(960 * 0.25));
 }
 
-TEST(Session, FollowsFromTheSubjectsNumberAndTheStudysSeed) {
+TEST(Session, DependsOnTheSubjectAndTheStudysSeedOnly) {
   const study::Study& study = study_rig::paper_study();
   EXPECT_EQ(study::make_session(study, 7), study::make_session(study, 7));
   EXPECT_NE(study::make_session(study, 7), study::make_session(study, 11));
   study::Study other = study;
   other.seed += 1;
   EXPECT_NE(study::make_session(study, 7)[0].seed, study::make_session(other, 7)[0].seed);
-  // written down: another machine draws the same
+  // A fixed value: every machine draws the same seed.
   EXPECT_EQ(study::make_session(study, 1)[0].seed, 936779463);
 }
 

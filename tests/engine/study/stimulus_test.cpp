@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The paper's rules for stimuli over 200 seeds a task, looked at another way than they are made: with Runge and Kutta's method at small
-// fixed steps here, from the field of the trial's own scene.
+// The paper's rules for stimuli, over 200 seeds for each task, checked independently of the generator: with a Runge-Kutta method of small
+// fixed steps, in the field of the trial's scene.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -15,14 +15,14 @@ namespace stimulus_test {
 using namespace catena;
 
 constexpr int kSeeds = 200;
-constexpr std::size_t kFine = 1500;  ///< steps, three times as fine as the path that is made
+constexpr std::size_t kFine = 1500;  // number of steps, three times as fine as the generated path
 
 field::AnyField field_of(const study::Task& task, int seed) {
   auto scene = scene::parse_scene(study::make_field_scene(study_rig::paper_study(), task, seed), "field.json");
   return scene::resolve_field(*scene, task.field, task.where).value();
 }
 
-/// By arc length, at a fixed step; `way` 1 downstream, -1 upstream.
+/// Positions along a streamline in arc length with a fixed step; `way` is 1 downstream and -1 upstream.
 std::vector<Vec3> walk(const field::VectorField& field, Vec3 p, double length, int steps, double way = 1) {
   field::Cursor cursor;
   const auto rate = [&](const Vec3& at) { return way * direction(field.sample(at, cursor).value); };
@@ -46,7 +46,7 @@ double distance_to(const std::vector<Vec3>& line, const Vec3& p) {
   return least;
 }
 
-/// Of one task: stimuli of 200 seeds, made once.
+/// The stimuli of 200 seeds for a task, generated once.
 const std::vector<study::Stimulus>& stimuli(std::size_t task) {
   static std::array<std::vector<study::Stimulus>, 4> made;
   if (made[task].empty()) {
@@ -61,7 +61,7 @@ class StimulusGeneration : public testing::TestWithParam<std::size_t> {
   const study::Task& task() const { return study_rig::paper_study().tasks[GetParam()]; }
 };
 
-TEST_P(StimulusGeneration, EveryPathIsAStreamlineOfTheSameLength) {
+TEST_P(StimulusGeneration, EveryPathIsAStreamlineOfTheStatedLength) {
   const double length = task().world_from_mm(100);
   for (const study::Stimulus& s : stimuli(GetParam())) {
     const field::AnyField field = field_of(task(), s.seed);
@@ -73,7 +73,7 @@ TEST_P(StimulusGeneration, EveryPathIsAStreamlineOfTheSameLength) {
     EXPECT_LT(norm(s.middle - path[256]), 1e-5);
     for (const Vec3& p : s.path) ASSERT_LE(max_abs(p), 2);
     for (std::size_t i = 4; i + 4 < path.size(); i += 4) {
-      // the circle through three places
+      // The circle through three points.
       const Vec3 a = path[i - 4] - path[i], b = path[i + 4] - path[i];
       const double bend = 2 * norm(cross(a, b)) / (norm(a) * norm(b) * norm(b - a));
       ASSERT_LT(bend * task().world_from_mm(task().rules.min_curvature_radius_mm), 1.02) << s.seed << " at " << i;
@@ -82,7 +82,7 @@ TEST_P(StimulusGeneration, EveryPathIsAStreamlineOfTheSameLength) {
   }
 }
 
-TEST_P(StimulusGeneration, TheStartIsNotOnAGlobalStreamline) {
+TEST_P(StimulusGeneration, TheStartIsNotOnAContextStreamline) {
   for (std::size_t k = 0; k < kSeeds; k += 4) {
     const study::Stimulus& s = stimuli(GetParam())[k];
     const field::AnyField field = field_of(task(), s.seed);
@@ -97,7 +97,7 @@ TEST_P(StimulusGeneration, TheStartIsNotOnAGlobalStreamline) {
 
 class AdvectionRules : public StimulusGeneration {};
 
-TEST_P(AdvectionRules, ATargetIsMetAtThePathsEndFirstAndNotTooFlat) {
+TEST_P(AdvectionRules, TheTargetIsFirstCrossedAtThePathsEndAndSteeply) {
   const double crossing = std::sin(task().rules.crossing_deg * std::numbers::pi / 180);
   for (const study::Stimulus& s : stimuli(GetParam())) {
     const field::AnyField field = field_of(task(), s.seed);
@@ -115,7 +115,7 @@ TEST_P(AdvectionRules, ATargetIsMetAtThePathsEndFirstAndNotTooFlat) {
   }
 }
 
-TEST_P(StimulusGeneration, PathsLieInThePicturePlaneOrMostlyAlongIt) {
+TEST_P(StimulusGeneration, PathsAreNearlyParallelToTheImagePlane) {
   for (const study::Stimulus& s : stimuli(GetParam())) {
     double seen = 0;
     for (std::size_t i = 1; i < s.path.size(); ++i) {
@@ -132,7 +132,7 @@ std::string name_of(const testing::TestParamInfo<std::size_t>& of) { return stud
 INSTANTIATE_TEST_SUITE_P(Tasks, StimulusGeneration, testing::Values(0, 1, 2, 3), name_of);
 INSTANTIATE_TEST_SUITE_P(Tasks, AdvectionRules, testing::Values(0, 2), name_of);
 
-/// The share of the path that a line hides, by the angle between two rays from the eye.
+/// The fraction of the path that lines hide, by the angle between two rays from the camera.
 double hidden(const study::Task& task, const study::Stimulus& s, const std::vector<std::vector<Vec3>>& lines) {
   int behind = 0, all = 0;
   for (std::size_t i = 0; i < s.path.size(); i += 16, ++all) {
@@ -149,7 +149,7 @@ double hidden(const study::Task& task, const study::Stimulus& s, const std::vect
   return static_cast<double>(behind) / all;
 }
 
-TEST(Stimulus, LessIsHiddenWhereMoreStartsAreTried) {
+TEST(Stimulus, MoreCandidatesReduceTheHiddenPart) {
   study::Study study = study_rig::paper_study();
   const study::Task& task = study.tasks[3];
   study::Study hasty = study;
@@ -171,14 +171,14 @@ TEST(Stimulus, LessIsHiddenWhereMoreStartsAreTried) {
   EXPECT_LT(careful_sum, 0.5 * hasty_sum + 1e-9);
 }
 
-TEST(Stimulus, IsTheSameAgainAndFollowsTheSeed) {
+TEST(Stimulus, IsRepeatableAndDependsOnTheSeed) {
   study::StimulusGenerator maker(study_rig::paper_study()), other(study_rig::paper_study());
   const auto a = maker.generate(2, 5), b = maker.generate(2, 6), again = other.generate(2, 5);
   EXPECT_EQ(a->path, again->path);
   EXPECT_NE(a->start, b->start);
 }
 
-TEST(Stimulus, RulesThatNothingMeetsAreAnErrorWithTheirLine) {
+TEST(Stimulus, ImpossibleRulesAreAnErrorWithTheirLine) {
   const study::Study study =
       study::parse_study(
           study_rig::small_study_text(R"("analytic": "vortices", "dimensions": 2, "seed": "$seed")", R"("analytic": "node")"), "small.json")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The study of the paper, and small ones that a test changes a line of.
+/// The study of the paper, and small studies in which a test changes a line.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ inline const study::Study& paper_study() {
   return study;
 }
 
-/// One task in two conditions; text is replaced in it, the first that is found.
+/// A study with one task in two conditions; the first occurrence of `from` is replaced by `to`.
 inline std::string small_study_text(const std::string& from = {}, const std::string& to = {}) {
   std::string text = R"({
   "name": "small", "trials": 3, "training": 1,

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The judge against cases that are worked out by hand: lengths in world units, of which one is 10 mm.
+// The trial scorer against cases that are worked out by hand: lengths in world units of 10 mm.
 #include <gtest/gtest.h>
 
 #include "engine/study/trial_scorer.h"
 
-namespace judge_test {
+namespace trial_scorer_test {
 
 using namespace catena;
 using study::TrialScorer;
@@ -23,7 +23,7 @@ study::Task task_of(study::TaskKind kind, int dimensions, study::Target target) 
   return task;
 }
 
-/// From the origin 10 along x, then 10 down: a path with a corner.
+/// A path with a corner: from the origin 10 along x, then 10 down.
 study::Stimulus bent() {
   study::Stimulus s;
   s.path = {Vec3(0.0), Vec3(10, 0, 0), Vec3(10, 0, -10)};
@@ -42,55 +42,55 @@ study::Stimulus straight() {
   return s;
 }
 
-TEST(TrialScorer, TheClockStartsWhereTheCursorLeavesTheStart) {
+TEST(TrialScorer, TheClockStartsWhenTheCursorLeavesTheStart) {
   const study::Task task = task_of(study::TaskKind::tracing, 3, study::Target::end);
-  TrialScorer judge(task, straight());
-  EXPECT_EQ(judge.tick(0, Vec3(3, 0, 0), 0), Phase::waiting) << "it has not been at the start";
-  EXPECT_EQ(judge.tick(100, Vec3(0.1, 0, 0), 9), Phase::ready) << "waiting takes no time";
-  EXPECT_EQ(judge.tick(200, Vec3(0, 0.19, 0), 9), Phase::ready);
-  EXPECT_EQ(judge.tick(300, Vec3(0.21, 0, 0), 1), Phase::running);
-  EXPECT_EQ(judge.tick(301, Vec3(5, 0, 0), 2), Phase::running);
-  EXPECT_DOUBLE_EQ(judge.running_s(), 1);
-  EXPECT_EQ(judge.tick(302, Vec3(9.71, 0, 0), 1.5), Phase::ended);
-  EXPECT_TRUE(judge.result().reached_target);
-  EXPECT_DOUBLE_EQ(judge.result().time_s, 2);
-  EXPECT_NEAR(judge.result().traveled_mm, 95, 1e-9);
-  EXPECT_EQ(judge.result().peak_force_n, 2) << "of the clock's ticks alone";
-  EXPECT_EQ(judge.tick(303, Vec3(0.0), 50), Phase::ended);
-  EXPECT_EQ(judge.result().peak_force_n, 2);
+  TrialScorer scorer(task, straight());
+  EXPECT_EQ(scorer.tick(0, Vec3(3, 0, 0), 0), Phase::waiting) << "it has not been at the start";
+  EXPECT_EQ(scorer.tick(100, Vec3(0.1, 0, 0), 9), Phase::ready) << "waiting takes no time";
+  EXPECT_EQ(scorer.tick(200, Vec3(0, 0.19, 0), 9), Phase::ready);
+  EXPECT_EQ(scorer.tick(300, Vec3(0.21, 0, 0), 1), Phase::running);
+  EXPECT_EQ(scorer.tick(301, Vec3(5, 0, 0), 2), Phase::running);
+  EXPECT_DOUBLE_EQ(scorer.running_s(), 1);
+  EXPECT_EQ(scorer.tick(302, Vec3(9.71, 0, 0), 1.5), Phase::ended);
+  EXPECT_TRUE(scorer.result().reached_target);
+  EXPECT_DOUBLE_EQ(scorer.result().time_s, 2);
+  EXPECT_NEAR(scorer.result().traveled_mm, 95, 1e-9);
+  EXPECT_EQ(scorer.result().peak_force_n, 2) << "of the clock's ticks alone";
+  EXPECT_EQ(scorer.tick(303, Vec3(0.0), 50), Phase::ended);
+  EXPECT_EQ(scorer.result().peak_force_n, 2);
 }
 
-TEST(TrialScorer, TracingIsTheMeanDistanceToTheClosestPlaceOfThePath) {
+TEST(TrialScorer, TheTracingErrorIsTheMeanDistanceToThePath) {
   const study::Task task = task_of(study::TaskKind::tracing, 3, study::Target::end);
-  TrialScorer judge(task, bent());
-  judge.tick(0, Vec3(0.0), 0);
-  judge.tick(1, Vec3(1, 2, 0), 0);                            // 2 off the first piece
-  judge.tick(2, Vec3(13, 0, 4), 0);                           // 5 off the corner
-  judge.tick(3, Vec3(10.5, 0, -5), 0);                        // 0.5 off the second piece
-  const Phase phase = judge.tick(4, Vec3(10, 0.1, -9.9), 0);  // 0.1 off; within 0.3 of the end
+  TrialScorer scorer(task, bent());
+  scorer.tick(0, Vec3(0.0), 0);
+  scorer.tick(1, Vec3(1, 2, 0), 0);                            // 2 away from the first segment
+  scorer.tick(2, Vec3(13, 0, 4), 0);                           // 5 away from the corner
+  scorer.tick(3, Vec3(10.5, 0, -5), 0);                        // 0.5 away from the second segment
+  const Phase phase = scorer.tick(4, Vec3(10, 0.1, -9.9), 0);  // 0.1 away; within 0.3 of the end
   ASSERT_EQ(phase, Phase::ended);
-  EXPECT_NEAR(judge.result().error_mm, 10 * (2 + 5 + 0.5 + 0.1) / 4, 1e-9);
-  EXPECT_DOUBLE_EQ(judge.result().time_s, 3);
+  EXPECT_NEAR(scorer.result().error_mm, 10 * (2 + 5 + 0.5 + 0.1) / 4, 1e-9);
+  EXPECT_DOUBLE_EQ(scorer.result().time_s, 3);
 }
 
-TEST(TrialScorer, TwoDimensionsAreThePicturePlane) {
+TEST(TrialScorer, TwoDimensionalErrorsAreInTheImagePlane) {
   const study::Task task = task_of(study::TaskKind::tracing, 2, study::Target::end);
-  TrialScorer judge(task, straight());
-  EXPECT_EQ(judge.tick(0, Vec3(0, 0, 70), 0), Phase::ready) << "depth does not count";
-  judge.tick(1, Vec3(5, 1, -30), 0);
-  EXPECT_EQ(judge.tick(2, Vec3(10, 0.2, 12), 0), Phase::ended);
-  EXPECT_NEAR(judge.result().error_mm, 10 * (1 + 0.2) / 2, 1e-9);
-  EXPECT_NEAR(judge.result().end_mm.z, 0, 1e-12);
+  TrialScorer scorer(task, straight());
+  EXPECT_EQ(scorer.tick(0, Vec3(0, 0, 70), 0), Phase::ready) << "depth does not count";
+  scorer.tick(1, Vec3(5, 1, -30), 0);
+  EXPECT_EQ(scorer.tick(2, Vec3(10, 0.2, 12), 0), Phase::ended);
+  EXPECT_NEAR(scorer.result().error_mm, 10 * (1 + 0.2) / 2, 1e-9);
+  EXPECT_NEAR(scorer.result().end_mm.z, 0, 1e-12);
 }
 
 TEST(TrialScorer, ACircleIsCrossedBetweenTwoTicks) {
   const study::Task task = task_of(study::TaskKind::advection, 2, study::Target::circle);
-  TrialScorer judge(task, straight());
-  judge.tick(0, Vec3(0.0), 0);
-  EXPECT_EQ(judge.tick(1, Vec3(0, 6, 3), 0), Phase::running);
-  EXPECT_EQ(judge.tick(2, Vec3(8, 6, 3), 0), Phase::ended) << "(8, 6) is on the circle of radius 10";
-  EXPECT_DOUBLE_EQ(judge.result().time_s, 1);
-  EXPECT_NEAR(judge.result().error_mm, 10 * std::sqrt(4 + 36), 1e-9);
+  TrialScorer scorer(task, straight());
+  scorer.tick(0, Vec3(0.0), 0);
+  EXPECT_EQ(scorer.tick(1, Vec3(0, 6, 3), 0), Phase::running);
+  EXPECT_EQ(scorer.tick(2, Vec3(8, 6, 3), 0), Phase::ended) << "(8, 6) is on the circle of radius 10";
+  EXPECT_DOUBLE_EQ(scorer.result().time_s, 1);
+  EXPECT_NEAR(scorer.result().error_mm, 10 * std::sqrt(4 + 36), 1e-9);
 
   TrialScorer later(task, straight());
   later.tick(0, Vec3(0.0), 0);
@@ -103,26 +103,26 @@ TEST(TrialScorer, ACircleIsCrossedBetweenTwoTicks) {
 
 TEST(TrialScorer, APlaneIsCrossedFromAboveOnly) {
   const study::Task task = task_of(study::TaskKind::advection, 3, study::Target::plane);
-  TrialScorer judge(task, bent());
-  judge.tick(0, Vec3(0.0), 0);
-  EXPECT_EQ(judge.tick(1, Vec3(10, 3, -8), 0), Phase::running);
-  EXPECT_EQ(judge.tick(2, Vec3(10, 3, -12), 0), Phase::ended);
-  EXPECT_TRUE(judge.result().reached_target);
-  EXPECT_DOUBLE_EQ(judge.result().time_s, 0.5);
-  EXPECT_NEAR(judge.result().error_mm, 30, 1e-9);
-  EXPECT_NEAR(judge.result().end_mm.z, -100, 1e-9);
+  TrialScorer scorer(task, bent());
+  scorer.tick(0, Vec3(0.0), 0);
+  EXPECT_EQ(scorer.tick(1, Vec3(10, 3, -8), 0), Phase::running);
+  EXPECT_EQ(scorer.tick(2, Vec3(10, 3, -12), 0), Phase::ended);
+  EXPECT_TRUE(scorer.result().reached_target);
+  EXPECT_DOUBLE_EQ(scorer.result().time_s, 0.5);
+  EXPECT_NEAR(scorer.result().error_mm, 30, 1e-9);
+  EXPECT_NEAR(scorer.result().end_mm.z, -100, 1e-9);
 }
 
-TEST(TrialScorer, TheLimitEndsIt) {
+TEST(TrialScorer, TheTimeLimitEndsTheTrial) {
   const study::Task advection = task_of(study::TaskKind::advection, 3, study::Target::plane);
-  TrialScorer judge(advection, bent());
-  judge.tick(0, Vec3(0.0), 0);
-  judge.tick(1, Vec3(1, 0, 0), 0);
-  EXPECT_EQ(judge.tick(5.999, Vec3(10, 0, -6), 0), Phase::running);
-  EXPECT_EQ(judge.tick(6, Vec3(10, 3, -6), 0), Phase::ended);
-  EXPECT_FALSE(judge.result().reached_target);
-  EXPECT_DOUBLE_EQ(judge.result().time_s, 5);
-  EXPECT_NEAR(judge.result().error_mm, 50, 1e-9) << "from the cursor to the end";
+  TrialScorer scorer(advection, bent());
+  scorer.tick(0, Vec3(0.0), 0);
+  scorer.tick(1, Vec3(1, 0, 0), 0);
+  EXPECT_EQ(scorer.tick(5.999, Vec3(10, 0, -6), 0), Phase::running);
+  EXPECT_EQ(scorer.tick(6, Vec3(10, 3, -6), 0), Phase::ended);
+  EXPECT_FALSE(scorer.result().reached_target);
+  EXPECT_DOUBLE_EQ(scorer.result().time_s, 5);
+  EXPECT_NEAR(scorer.result().error_mm, 50, 1e-9) << "from the cursor to the end";
 
   TrialScorer never(advection, bent());
   never.tick(0, Vec3(0.0), 0);
@@ -131,14 +131,14 @@ TEST(TrialScorer, TheLimitEndsIt) {
   EXPECT_DOUBLE_EQ(never.aborted_result().time_s, 5);
 }
 
-TEST(TrialScorer, WhatIsNotANumberChangesNothing) {
+TEST(TrialScorer, NonFinitePositionsAreIgnored) {
   const study::Task task = task_of(study::TaskKind::tracing, 3, study::Target::end);
-  TrialScorer judge(task, straight());
-  judge.tick(0, Vec3(0.0), 0);
-  judge.tick(1, Vec3(1, 0, 0), 0);
-  EXPECT_EQ(judge.tick(2, Vec3(std::nan("")), 0), Phase::running);
-  judge.tick(3, Vec3(10, 0, 0), 0);
-  EXPECT_DOUBLE_EQ(judge.result().error_mm, 0);
+  TrialScorer scorer(task, straight());
+  scorer.tick(0, Vec3(0.0), 0);
+  scorer.tick(1, Vec3(1, 0, 0), 0);
+  EXPECT_EQ(scorer.tick(2, Vec3(std::nan("")), 0), Phase::running);
+  scorer.tick(3, Vec3(10, 0, 0), 0);
+  EXPECT_DOUBLE_EQ(scorer.result().error_mm, 0);
 }
 
-}  // namespace judge_test
+}  // namespace trial_scorer_test

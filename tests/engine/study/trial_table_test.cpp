@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rows of trials: they read back to the bit, and a line that a kill has torn is dropped, not the rest.
+// Rows of trials: they read back exactly, and a row that a kill has truncated is dropped, but no other row.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -27,28 +27,28 @@ study::TrialRow row(int subject, int index) {
   return r;
 }
 
-TEST(TrialTable, RowsReadBackToTheBit) {
+TEST(TrialTable, RowsReadBackExactly) {
   const std::string text = study::table_header() + study::format_row(row(1, 0)) + study::format_row(row(1, 1));
   const auto rows = study::parse_rows(text, "t.csv");
   ASSERT_TRUE(rows) << rows.error().message;
   EXPECT_EQ(*rows, (std::vector<study::TrialRow>{row(1, 0), row(1, 1)}));
 }
 
-TEST(TrialTable, FaultsAreToldWithTheirLine) {
+TEST(TrialTable, ErrorsNameTheLine) {
   const std::string header = study::table_header(), good = study::format_row(row(1, 0));
   const auto said = [](const std::string& text) {
     const auto rows = study::parse_rows(text, "t.csv");
     return rows ? std::string() : rows.error().message;
   };
   EXPECT_TRUE(said("subject\n" + good).starts_with("t.csv:1:"));
-  EXPECT_TRUE(said(header + good + "1,2,3\n").starts_with("t.csv:3: 3 cells"));
+  EXPECT_TRUE(said(header + good + "1,2,3\n").starts_with("t.csv:3: the row has 3 cells"));
   std::string bad = good;
   bad.replace(bad.find("target"), 6, "tarmac");
-  EXPECT_NE(said(header + bad).find("\"tarmac\" is no ended"), std::string::npos);
+  EXPECT_NE(said(header + bad).find("\"tarmac\" is not valid for the column ended"), std::string::npos);
   EXPECT_TRUE(said("").starts_with("t.csv:1:"));
 }
 
-TEST(TrialTable, EveryTornEndCostsTheLastLineAtMost) {
+TEST(TrialTable, ATruncationLosesAtMostTheLastRow) {
   const test::TemporaryFolder folder;
   const study::Study study = study_rig::small();
   const auto data = study::DataFolder::open(folder / "d", study, study::ParticipantKind::people);
@@ -64,7 +64,7 @@ TEST(TrialTable, EveryTornEndCostsTheLastLineAtMost) {
     ASSERT_TRUE(rows) << cut << ": " << rows.error().message;
     ASSERT_EQ(rows->size(), ends == 0 ? 0 : ends - 1) << cut;
     lines = std::max(lines, rows->size());
-    // what is appended next begins a line
+    // The next appended row begins a new line.
     if (cut % 97 != 0) continue;
     ASSERT_TRUE(data->append(row(4, 9)));
     const auto after = data->rows(4);
@@ -75,7 +75,7 @@ TEST(TrialTable, EveryTornEndCostsTheLastLineAtMost) {
   EXPECT_EQ(lines, 3u);
 }
 
-TEST(ProtocolDeviations, AreTheRowsThatTheDesignDoesNotHave) {
+TEST(ProtocolDeviations, AreRowsThatAreNotInTheDesign) {
   const study::Study study = study_rig::small();
   std::vector<study::TrialRow> rows;
   for (const int subject : {1, 2, 3})
@@ -90,13 +90,13 @@ TEST(ProtocolDeviations, AreTheRowsThatTheDesignDoesNotHave) {
   const std::vector<std::string> lines = study::find_protocol_deviations(study, rows);
   ASSERT_EQ(lines.size(), 3u);
   EXPECT_TRUE(lines[0].starts_with("subject 1, trial 0: seed is ")) << lines[0];
-  EXPECT_TRUE(lines[1].starts_with("subject 1, trial 1: condition is other, by the design ")) << lines[1];
+  EXPECT_TRUE(lines[1].starts_with("subject 1, trial 1: condition is other, but ")) << lines[1];
   EXPECT_TRUE(lines[2].starts_with("subject 3: ")) << lines[2];
   for (study::TrialRow& r : rows) r.block = 9;
-  EXPECT_TRUE(study::find_protocol_deviations(study, rows)[3].starts_with("subject 1: so ")) << "a few, the rest counted";
+  EXPECT_TRUE(study::find_protocol_deviations(study, rows)[3].ends_with(" more trials deviate")) << "a few, the rest counted";
 }
 
-TEST(TrialTable, AFolderHoldsOneStudy) {
+TEST(TrialTable, AFolderHasOneStudyAndOneWriter) {
   const test::TemporaryFolder folder;
   const study::Study study = study_rig::small();
   {
@@ -129,13 +129,13 @@ TEST(TrialTable, PeopleAndModelsNeverShareAFolder) {
   const auto model = study::DataFolder::open(folder / "p", study, ParticipantKind::model),
              people = study::DataFolder::open(folder / "m", study, ParticipantKind::people);
   ASSERT_FALSE(model);
-  EXPECT_NE(model.error().message.find("holds trials that people did"), std::string::npos);
+  EXPECT_NE(model.error().message.find("contains trials of people"), std::string::npos);
   ASSERT_FALSE(people);
-  EXPECT_NE(people.error().message.find("holds trials that a model did"), std::string::npos);
+  EXPECT_NE(people.error().message.find("contains trials of a model"), std::string::npos);
   EXPECT_FALSE(study::is_simulated(folder / "p"));
 }
 
-TEST(TrialTable, FilesThatAreNotASubjectsAreToldOrRefused) {
+TEST(TrialTable, StrayFilesHaveNotesAndWrongSubjectsAreRefused) {
   const test::TemporaryFolder folder;
   const auto data = study::DataFolder::open(folder / "d", study_rig::small(), study::ParticipantKind::people);
   ASSERT_TRUE(data && data->append(row(1, 0)) && data->append(row(2, 0)));
@@ -150,13 +150,14 @@ TEST(TrialTable, FilesThatAreNotASubjectsAreToldOrRefused) {
   std::filesystem::rename(subjects + "002.csv", subjects + "003.csv");
   const auto other = study::read_trial_table(folder / "d");
   ASSERT_FALSE(other);
-  EXPECT_TRUE(other.error().message.ends_with("003.csv:2: is a trial of subject 2; of 3 was expected")) << other.error().message;
+  EXPECT_TRUE(other.error().message.ends_with("003.csv:2: the trial belongs to subject 2; subject 3 was expected"))
+      << other.error().message;
   std::filesystem::remove(subjects + "003.csv");
   std::filesystem::create_symlink("nowhere.csv", subjects + "003.csv");
   EXPECT_FALSE(study::read_trial_table(folder / "d")) << "a link that leads nowhere";
 }
 
-TEST(TrialTable, IsReadFromAllSubjectsAndFromTheTableAlone) {
+TEST(TrialTable, IsReadFromSubjectsFilesOrFromTheTable) {
   const test::TemporaryFolder folder;
   const auto data = study::DataFolder::open(folder / "d", study_rig::small(), study::ParticipantKind::people);
   ASSERT_TRUE(data);
@@ -167,7 +168,7 @@ TEST(TrialTable, IsReadFromAllSubjectsAndFromTheTableAlone) {
   EXPECT_EQ(loose->rows.back().subject, 1000) << "by number, not by name";
   ASSERT_TRUE(data->write_table());
   EXPECT_TRUE(study::read_trial_table(folder / "d")->notes.empty());
-  // a session that came later counts before its rows are in the table, and one that is torn does not hinder
+  // Rows of a later session count before they are in the table, and a truncated row does not matter.
   ASSERT_TRUE(data->append(row(11, 1)));
   const std::string torn = test::read_file(study::subject_file(folder / "d", 1)) + "1,1,tra";
   test::write_file(study::subject_file(folder / "d", 1), torn);

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace catena::widget {
-namespace machine_test {
+namespace widget_state_machine_test {
 
 constexpr Mode kModes[] = {Mode::idle, Mode::explore, Mode::translate, Mode::rotate, Mode::turn, Mode::hover, Mode::drag};
 
@@ -61,7 +61,7 @@ TEST(WidgetMachine, EveryTransitionOfACuttingPlane) {
                                     {Mode::turn, sphere, Mode::rotate},
                                     {Mode::turn, plane, Mode::explore},
                                     {Mode::turn, nothing, Mode::idle},
-                                    // by touch
+                                    // rotation on contact
                                     {Mode::idle, with(sphere, false, false, true), Mode::turn},
                                     {Mode::explore, with(both, false, false, true), Mode::turn},
                                     {Mode::turn, with(sphere, false, false, true), Mode::turn},
@@ -85,14 +85,14 @@ TEST(WidgetMachine, EveryTransitionOfHandles) {
                        {Mode::drag, held, Mode::drag},
                        {Mode::drag, handle, Mode::hover},
                        {Mode::drag, nothing, Mode::idle},
-                       // not: without an edge, or without having hovered
+                       // no drag without a press event, or without hover before
                        {Mode::idle, press, Mode::hover},
                        {Mode::idle, down, Mode::hover},
                        {Mode::hover, down, Mode::hover}});
 }
 
-// What must not happen, over all facts there are.
-TEST(WidgetMachine, NoOtherTransitions) {
+// Forbidden transitions, over all combinations of inputs.
+TEST(WidgetMachine, ThereAreNoOtherTransitions) {
   for (unsigned bits = 0; bits < 128; ++bits) {
     const auto bit = [&](unsigned k) { return (bits >> k & 1) != 0; };
     const TransitionInput f{bit(0), bit(1), bit(2), bit(3), bit(4), bit(5), bit(6)};
@@ -103,12 +103,12 @@ TEST(WidgetMachine, NoOtherTransitions) {
       SCOPED_TRACE(word(f) + " from " + to_string(from));
       EXPECT_TRUE(plane != Mode::hover && plane != Mode::drag);
       EXPECT_TRUE(seed == Mode::idle || seed == Mode::hover || seed == Mode::drag);
-      // a grab begins in its own mode, at an edge
+      // A grab begins from its preceding mode, at a press.
       implies(plane == Mode::translate, (from == Mode::explore && f.button_pressed) || (from == Mode::translate && f.button_down));
       implies(plane == Mode::turn && !f.rotate_on_contact, (from == Mode::rotate || from == Mode::turn) && f.button_down);
       implies(plane == Mode::turn && !f.button_pressed && !f.is_gripped, f.rotate_on_contact && f.near_sphere);
       implies(seed == Mode::drag, (from == Mode::hover && f.button_pressed) || (from == Mode::drag && f.button_down));
-      // nothing is engaged by what is not near
+      // A widget that is not near is not engaged.
       implies(plane == Mode::explore, f.near_plane && !f.near_sphere);
       implies(plane == Mode::rotate, f.near_sphere && !f.rotate_on_contact);
       implies(seed == Mode::hover, f.near_handle);
@@ -152,7 +152,7 @@ struct Machine {
   }
 };
 
-TEST(WidgetMachine, ExploreTakesHoldAtSnapAndLetsGoAtRelease) {
+TEST(WidgetMachine, ExploreBeginsAtSnapAndEndsAtRelease) {
   Machine m({plane_spec()});
   EXPECT_EQ(m.step({2, 0, 0.0801}), -1);
   EXPECT_EQ(m.step({2, 0, 0.0799}), 0);
@@ -162,7 +162,7 @@ TEST(WidgetMachine, ExploreTakesHoldAtSnapAndLetsGoAtRelease) {
   EXPECT_EQ(m.step({2, 0, 0.1999}), -1);
 }
 
-TEST(WidgetMachine, OneIsEngagedAndAHandleComesBeforeASphereBeforeAPlane) {
+TEST(WidgetMachine, OnlyOneWidgetIsEngagedAndHandlesPrecedeSpheresAndPlanes) {
   Machine m({plane_spec(), seed_spec({0.5, 0, 0}), seed_spec({2, 0, 0}), seed_spec({2.1, 0, 0})});
   m.step({1, 0, 0});
   EXPECT_EQ(m.modes(), "explore away away away");
@@ -170,20 +170,20 @@ TEST(WidgetMachine, OneIsEngagedAndAHandleComesBeforeASphereBeforeAPlane) {
   EXPECT_EQ(m.modes(), "rotate away away away");
   m.step({0.5, 0, 0});
   EXPECT_EQ(m.modes(), "away hover away away");
-  // of two handles the one that has the probe keeps it
+  // Of two handles, the engaged one keeps the probe.
   m.step({2, 0, 0});
   EXPECT_EQ(m.modes(), "away away hover away");
   m.step({2.08, 0, 0});
   EXPECT_EQ(m.modes(), "away away hover away");
   m.step({2.12, 0, 0});
   EXPECT_EQ(m.modes(), "away away away hover");
-  // the nearest of those that are new
+  // Of handles that are newly in range, the nearest is engaged.
   m.step({9, 9, 9});
   m.step({2.06, 0, 0});
   EXPECT_EQ(m.modes(), "away away away hover");
 }
 
-TEST(WidgetMachine, AGrabKeepsTheProbeFromAllOthers) {
+TEST(WidgetMachine, AGrabExcludesAllOtherWidgets) {
   Machine m({plane_spec(), seed_spec({1, 0, 0})});
   m.step({2, 0, 0});
   m.step({2, 0, 0}, 1);
@@ -194,13 +194,13 @@ TEST(WidgetMachine, AGrabKeepsTheProbeFromAllOthers) {
   EXPECT_EQ(m.modes(), "away hover");
 }
 
-TEST(WidgetMachine, APressCountsAsAnEdgeInsideTheModeAndOfItsOwnButton) {
+TEST(WidgetMachine, APressCountsOnlyAsAnEventOfTheWidgetsButtonInTheMode) {
   Spec spec = plane_spec();
   spec.button = 32;
   const std::uint32_t bit = 1u << 31;
   Machine m({spec});
   m.step({2, 0, 1}, bit);
-  m.step({2, 0, 0}, bit);  // held on the way in
+  m.step({2, 0, 0}, bit);  // pressed before entering
   EXPECT_EQ(m.modes(), "explore");
   m.step({2, 0, 0}, bit);
   EXPECT_EQ(m.modes(), "explore");
@@ -214,7 +214,7 @@ TEST(WidgetMachine, APressCountsAsAnEdgeInsideTheModeAndOfItsOwnButton) {
   EXPECT_EQ(m.modes(), "explore");
 }
 
-TEST(WidgetMachine, AfterAWhileWithoutAProbeAPressDoesNotCount) {
+TEST(WidgetMachine, APressOnTheReturnOfTheProbeDoesNotCount) {
   Machine m({plane_spec()});
   m.step({2, 0, 0});
   m.step({2, 0, 0}, 1, true);
@@ -229,7 +229,7 @@ TEST(WidgetMachine, AfterAWhileWithoutAProbeAPressDoesNotCount) {
   EXPECT_EQ(m.modes(), "away");
 }
 
-TEST(WidgetMachine, BeginsWithThePoseToTheBitAndTheRevision) {
+TEST(WidgetMachine, StartsWithTheExactPoseAndRevision) {
   Spec spec = plane_spec();
   spec.revision = 7;
   spec.pose.orientation = normalized(Quat(0.3, -0.5, 0.2, 0.9));
@@ -243,5 +243,5 @@ TEST(WidgetMachine, BeginsWithThePoseToTheBitAndTheRevision) {
   EXPECT_EQ(state.pose.orientation, kIdentityRotation);
 }
 
-}  // namespace machine_test
+}  // namespace widget_state_machine_test
 }  // namespace catena::widget

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stands in for catena-read when it has been taken over: does what the "file" that it is asked for says. A file that begins with
-// HANG, SPIN, EXIT, ABORT or KEEP (ends, but leaves a process that could write) is an order; all else is the answer, copied as it is.
+// Replaces catena-read as a compromised reader, controlled by the requested "file": a file that begins with HANG, SPIN, EXIT, ABORT or
+// KEEP (ends, but leaves a process that could write) is a command; any other content is returned unchanged as the response.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>

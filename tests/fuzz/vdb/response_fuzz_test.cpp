@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the reader's process hands over is foreign, too: it may have been taken over. Its answers are forged here, whole and in parts.
+/// Responses of the reader's process are untrusted, because it may be compromised. They are forged here, as a whole and in parts.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -19,12 +19,12 @@
 #include "tests/support/support.h"
 
 namespace catena::field {
-namespace answer_fuzz_test {
+namespace response_fuzz_test {
 
 using catena::test::Random;
 using catena::test::TemporaryFolder;
 
-/// All that an honest reader wrote about the file.
+/// The response of an honest reader to a file.
 std::string honest_answer(const std::string& path, const std::string& grid) {
   ReadRequest request;
   request.load_request.path = path;
@@ -59,7 +59,7 @@ ReadResponse reply_of(const std::string& answer) {
   return reply ? *reply : ReadResponse{};
 }
 
-/// Answers come from the forger, with limits that a test can wait for.
+/// Responses come from the malicious reader, with short timeouts.
 class ResponseFuzz : public testing::Test {
  protected:
   ResponseFuzz() { reader_settings() = {helper_path("test_forger"), 5, 3}; }
@@ -85,12 +85,12 @@ class ResponseFuzz : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(ResponseFuzz, AReaderThatDoesNotAnswerIsOneSentence) {
+TEST_F(ResponseFuzz, AnUnresponsiveReaderIsAnErrorInOneLine) {
   EXPECT_NE(error_of("HANG").find("took more than"), std::string::npos);
   EXPECT_NE(error_of("SPIN").find("took more than"), std::string::npos);
-  EXPECT_NE(error_of("EXIT").find("gave up with code 7"), std::string::npos);
-  EXPECT_NE(error_of("ABORT").find("broke down"), std::string::npos);
-  // the request is still where the answer should be
+  EXPECT_NE(error_of("EXIT").find("ended with code 7"), std::string::npos);
+  EXPECT_NE(error_of("ABORT").find("crashed"), std::string::npos);
+  // the request is still in place of the response
   EXPECT_NE(error_of("KEEP").find("cannot be sealed"), std::string::npos);
   EXPECT_NE(error_of(std::string(1, 'x')).find("head"), std::string::npos);
   EXPECT_NE(error_of(std::string(5000, 'x')).find("head"), std::string::npos);
@@ -98,7 +98,7 @@ TEST_F(ResponseFuzz, AReaderThatDoesNotAnswerIsOneSentence) {
   EXPECT_NE(error_of("x").find("cannot be started"), std::string::npos);
 }
 
-TEST_F(ResponseFuzz, ForgedAnswersThroughTheWholePath) {
+TEST_F(ResponseFuzz, ForgedResponsesThroughTheWholePath) {
   const std::string answer = honest("masked", "density");
   const auto sound = load_forged(answer);
   ASSERT_TRUE(sound) << sound.error().message;
@@ -107,7 +107,7 @@ TEST_F(ResponseFuzz, ForgedAnswersThroughTheWholePath) {
   Random& random = inputs.random;
   int loaded = 0, refused = 0;
   while (inputs.next() && !HasFailure()) {
-    // the head, the reply behind the buffers, or anything
+    // the header, the reply after the buffers, or any part
     const std::size_t part = random.below(3), first = part == 1 ? head.offset : 0, last = part == 0 ? sizeof head : answer.size();
     const auto field = load_forged(catena::test::mutate_bytes(answer, random, 3, first, last));
     ++(field ? loaded : refused);
@@ -130,7 +130,7 @@ TEST_F(ResponseFuzz, ForgedAnswersThroughTheWholePath) {
   EXPECT_GT(loaded, 0);
 }
 
-/// The buffer in memory of its very size: under the address sanitizer a byte beyond it is an error.
+/// The buffer in memory of its exact size, so that the address sanitizer detects reads past the end.
 class Exact {
  public:
   explicit Exact(const std::string& bytes) : size_(bytes.size()), data_(static_cast<std::byte*>(::operator new(size_, kAlignment))) {
@@ -146,7 +146,7 @@ class Exact {
   std::byte* data_;
 };
 
-/// All that the program follows in a buffer.
+/// Reads everything in a buffer as the program does.
 template <class T>
 void walk(const nanovdb::NanoGrid<T>& grid, Random& random) {
   const ActiveBox box = compute_active_box(grid);
@@ -175,7 +175,7 @@ void fuzz_buffer(const std::string& answer, const BufferRange& piece, std::uint6
   catena::test::FuzzInputs inputs(1500, seed);
   Random& random = inputs.random;
   std::uint64_t passed = 0;
-  // where headers, nodes and tables are: the first and last parts of the buffer, or anywhere
+  // the first and last parts of the buffer, with headers, nodes and tables, or anywhere
   const std::size_t edge = std::min<std::size_t>(whole.size(), 2048);
   while (inputs.next() && !testing::Test::HasFailure()) {
     const std::size_t part = random.below(3), first = part == 1 ? whole.size() - edge : 0, last = part == 0 ? edge : whole.size();
@@ -210,5 +210,5 @@ TEST_F(ResponseFuzz, BuffersOfMasks) {
   fuzz_buffer<nanovdb::ValueMask>(answer, reply_of(answer).valid_cells, 25);
 }
 
-}  // namespace answer_fuzz_test
+}  // namespace response_fuzz_test
 }  // namespace catena::field

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Small .vdb files of every kind that OpenVDB writes: each compression, each number type, tiles, masks, shared trees, no offsets.
+/// Small .vdb files of every kind that OpenVDB writes: compressions, number types, tiles, masks, shared trees, files without offsets.
 #pragma once
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
@@ -14,7 +14,7 @@ struct VdbFile {
   std::string name, bytes;
 };
 
-/// A rough bump over a ball of `radius` voxels, off the origin.
+/// A noisy ball of `radius` voxels, off the origin.
 template <class Grid>
 typename Grid::Ptr make_bump_grid(const std::string& name, int radius) {
   using Value = typename Grid::ValueType;

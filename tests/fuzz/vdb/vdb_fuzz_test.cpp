@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Damaged .vdb files through the whole path: the reader's process, its answer, the grid, a few fetches. Longer:
+/// Damaged .vdb files through the whole path: reader process, response, grid, a few samples. Longer runs:
 ///   CATENA_FUZZ_INPUTS=100000 build/release/test_fuzz_vdb --gtest_filter='VdbFuzz.Mutations'
-/// prints how they ended. CATENA_FUZZ_KEEP=FOLDER keeps the files, so that they can be tried on another build.
+/// prints the numbers of the results. CATENA_FUZZ_KEEP=FOLDER saves the files, for runs with another build.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -28,17 +28,17 @@ std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
   return text ? std::strtoull(text, nullptr, 10) : otherwise;
 }
 
-/// How inputs ended, by the words of their sentence.
+/// Counts of the results, by their error message.
 struct Tally {
   std::map<std::string, int> ends;
-  std::string last;  ///< sentence
+  std::string last;  ///< last error message
   double longest_s = 0;
   int inputs = 0;
 
   void count(const std::string& message) {
     last = message;
-    for (const char* words : {"took more than", "broke down", "gave up", "was killed", "what its reader made of it", "of memory",
-                              "cut short", "not a .vdb", "has no", "there is no", "transform"})
+    for (const char* words : {"took more than", "crashed", "ended with code", "was killed", "invalid response", "of memory", "truncated",
+                              "not a .vdb", "has no", "there is no", "transform"})
       if (message.find(words) != std::string::npos) {
         ++ends[words];
         return;
@@ -73,7 +73,7 @@ void use(const AnyField& field, Random& random) {
   EXPECT_TRUE(std::isfinite(field.get()->domain_length()) && field.get()->domain_length() >= 0) << "0: of one voxel";
 }
 
-/// One input through `load` and `describe`, or only the first.
+/// Runs one input through `load` and `describe`, or only through `load`.
 void feed(const std::string& path, const std::string& bytes, bool describe_too, Random& random, Tally& tally) {
   catena::test::write_file(path, bytes);
   LoadRequest request;
@@ -93,7 +93,7 @@ void feed(const std::string& path, const std::string& bytes, bool describe_too, 
   ++tally.inputs;
 }
 
-/// These files are small: nothing of them may need more.
+/// Memory limit of these small files.
 class VdbFuzz : public testing::Test {
  protected:
   VdbFuzz() { set_memory_limit(std::uint64_t{512} << 20); }
@@ -102,7 +102,7 @@ class VdbFuzz : public testing::Test {
   Tally tally_;
 };
 
-TEST_F(VdbFuzz, TheCorpusIsSound) {
+TEST_F(VdbFuzz, TheCorpusIsValid) {
   Random random{1};
   for (const VdbFile& specimen : catena::test::vdb_corpus()) {
     feed(folder_ / "sound.vdb", specimen.bytes, true, random, tally_);
@@ -132,7 +132,7 @@ TEST_F(VdbFuzz, Mutations) {
   const std::vector<VdbFile> corpus = catena::test::vdb_corpus();
   while (inputs.next() && !HasFailure()) {
     const VdbFile& specimen = corpus[random.below(corpus.size())];
-    // half of the changes fall into the head and the tree's upper levels, where sizes are
+    // half of the changes are in the header and the tree's upper levels, which contain sizes
     const std::size_t end = random.below(2) == 0 ? std::min<std::size_t>(specimen.bytes.size(), 1200) : specimen.bytes.size();
     const std::string bytes = catena::test::mutate_bytes(specimen.bytes, random, 3, 0, end);
     const std::string path = keep ? fmt::format("{}/{}.vdb", keep, inputs.count()) : folder_ / "mutated.vdb";
@@ -143,8 +143,8 @@ TEST_F(VdbFuzz, Mutations) {
   EXPECT_LT(tally_.ends["loaded"], tally_.inputs);
 }
 
-/// The number of the root's tiles, wherever it is: without a bound OpenVDB reads billions of them beyond the file's end.
-TEST_F(VdbFuzz, AFalseNumberOfTilesIsOneSentence) {
+/// Sets the number of the root's tiles: without a bound OpenVDB would read billions of them past the file's end.
+TEST_F(VdbFuzz, AFalseNumberOfTilesIsAnErrorInOneLine) {
   Random random{3};
   const std::string whole = catena::test::vdb_bytes({catena::test::make_bump_grid<openvdb::FloatGrid>("density", 3)}, 0);
   // one buffer, the background (0), the number of tiles (0) and of children (4)

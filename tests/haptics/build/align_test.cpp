@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// "align" from the scene to the hand: the keys, and the tool's axis on the features of every kind of link.
+/// The link key "align" from scene to tick: its keys, and the alignment of the tool's axis with every kind of feature.
 #include <gtest/gtest.h>
 
 #include "haptics/build/build_program.h"
@@ -91,7 +91,7 @@ Vec3 around(const Vec3& p) { return direction({-p.y, p.x, 0}); }
 Vec3 up(const Vec3&) { return {0, 0, 1}; }
 Vec3 along(const Vec3&) { return direction({1, 2, 0}); }
 
-constexpr double kCurve = 5e-8;  // the derivative of the drawn curve's cubic pieces, against the circle's tangent
+constexpr double kCurve = 5e-8;  // tolerance of the drawn curve's tangent against the exact circle's
 
 const Case kCases[] = {
     {R"("type": "plane", "point": [0, 0, 0], "normal": [0, 0, 5])", up, 1e-12},
@@ -105,7 +105,7 @@ const Case kCases[] = {
     {R"("type": "streamline", "field": "v", "seed": [0.5, 0, 0], "follow": "online")", around, kCurve},
 };
 
-TEST(ExtractAlign, TheToolsAxisEndsOnTheFeaturesOfEveryKind) {
+TEST(ExtractAlign, TheToolsAxisAlignsWithEveryKindOfFeature) {
   for (const Case& c : kCases) {
     Hand hand;
     hand.program = program_of(with_link(std::string(c.keys) + R"(, "align": {"axis": [1, 0, 1], "stiffness": 0.3})"));
@@ -121,11 +121,11 @@ TEST(ExtractAlign, TheToolsAxisEndsOnTheFeaturesOfEveryKind) {
       hand.step(p, q);
       plain.step(p, q);
       const LinkReport& link = hand.out.links[0];
-      EXPECT_EQ(link.proxy, plain.out.links[0].proxy) << c.keys;  // the position does not know of it
+      EXPECT_EQ(link.proxy, plain.out.links[0].proxy) << c.keys;  // alignment does not change the position
       EXPECT_LE(link.evaluations, kMaxEvaluations);
       EXPECT_LE(link.evaluations - plain.out.links[0].evaluations, 1) << c.keys;
       const Vec3 n = c.axis(link.proxy), before = rotate(q, tool), after = rotate(link.orientation, tool);
-      // the end of the last tick, until the tool is 10 degrees past square to it
+      // the axis keeps the last tick's sign until the tool is 10 degrees past perpendicular
       Vec3 goal = dot(k > 0 ? end : before, n) < 0 ? -n : n;
       if (dot(before, goal) < -0.17) goal = -goal;
       end = goal;
@@ -147,8 +147,8 @@ TEST(ExtractAlign, OnTheFreeSideTheToolIsFree) {
   EXPECT_NEAR(hand.out.torque_nm.x, -0.5 * 0.4, 1e-12);
 }
 
-TEST(ExtractAlign, ASurfaceAndAStreamlineHoldTheWholeTool) {
-  // the tool's z on the surface's normal, its x along the curve: on a circle of the sphere both can be had
+TEST(ExtractAlign, ASurfaceAndAStreamlineFixTheOrientation) {
+  // the tool's z along the surface's normal and its x along the curve: compatible on a circle of the sphere
   Hand hand;
   hand.program = program_of(std::string("{") + kFields + R"("chain": [
     {"name": "skin", "type": "isosurface", "field": "s", "level": 0.5, "align": {"axis": [0, 0, 1], "sign": "same"}},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The ready-made mode of section 6.1 through the whole tick: on a sphere, on sampled fields, on real data.
+// The preset `anisotropic_friction` (paper, section 6.1) in the whole tick: on a sphere, on sampled fields, on real data.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -58,7 +58,7 @@ double off_level(const field::ScalarField& surface, double level, const Vec3& p)
   return std::fabs(s.value - level) / norm(s.gradient);
 }
 
-/// A hand that strolls along the surface, in and out of it, with some rests and jerks.
+/// A hand that wanders along the surface, in and out of it, with rests and jerks.
 void explore(Bench& bench, const char* name, const std::string& surface_name, double level, const Vec3& from, int ticks) {
   const auto surface = bench.field(surface_name).scalar;
   const double length = surface->domain_length();
@@ -116,14 +116,14 @@ const std::string kSphere = R"({"fields": {"ball": {"analytic": "sphere"}, "swir
   "coupling": {"stiffness": 100, "max_force": 1e9},
   "chain": [{"name": "skin", "type": "anisotropic_friction", "surface": "ball", "level": 1, "field": "swirl")";
 
-TEST(AnisotropicFriction, StaysOnASphere) {
+TEST(AnisotropicFriction, KeepsTheProxyOnASphere) {
   Bench bench(kSphere + "}]}");
   ASSERT_TRUE(bench.ok);
   ASSERT_EQ(bench.program->links.size(), 3u);
   explore(bench, "sphere", "ball", 1, {0.9, 0.3, 0.4}, 50000);
 }
 
-TEST(AnisotropicFriction, StaysOnSampledFields) {
+TEST(AnisotropicFriction, KeepsTheProxyOnSampledFields) {
   const test::TemporaryFolder folder;
   const auto torus = field::make_analytic("torus"), hill = field::make_analytic("hill");
   const field::AnyField s{field::sample_on_grid(*torus->scalar, 64, -1.2, 1.2), nullptr};
@@ -136,7 +136,7 @@ TEST(AnisotropicFriction, StaysOnSampledFields) {
   explore(bench, "torus 64^3", "s", 0.3, {0.9, 0.3, 0.2}, 30000);
 }
 
-TEST(AnisotropicFriction, StaysOnTheCombustorsDensity) {
+TEST(AnisotropicFriction, KeepsTheProxyOnTheCombustorsDensity) {
   const std::string path = test::shared_data("combustor_cfd.vdb");
   if (path.empty()) GTEST_SKIP() << "combustor_cfd.vdb is not beside the checkout";
   Bench bench(R"({"fields": {"density": {"file": ")" + path + R"(", "grid": "density"}, "velocity": {"file": ")" + path +
@@ -146,7 +146,7 @@ TEST(AnisotropicFriction, StaysOnTheCombustorsDensity) {
   explore(bench, "combustor", "density", 0.45, {8, 0, 29}, 50000);
 }
 
-TEST(AnisotropicFriction, StaysOnTheVentricle) {
+TEST(AnisotropicFriction, KeepsTheProxyOnTheVentricle) {
   const std::string path = test::shared_data("ideal_lv_fibres.vdb");
   if (path.empty()) GTEST_SKIP() << "ideal_lv_fibres.vdb is not beside the checkout";
   Bench bench(R"({"fields": {"density": {"file": ")" + path + R"(", "grid": "density"}, "fibre": {"file": ")" + path +
@@ -156,8 +156,8 @@ TEST(AnisotropicFriction, StaysOnTheVentricle) {
   explore(bench, "ventricle", "density", 0.5, {30, 0, 0}, 50000);
 }
 
-// Figure 5: easy along the field, hard across it, by what the hand feels
-TEST(AnisotropicFriction, EasyAlongHardAcross) {
+// paper, figure 5: low force along the field, high force across it
+TEST(AnisotropicFriction, LowForceAlongTheFieldHighForceAcross) {
   Bench bench(kSphere + R"(, "threshold": 0.05, "tau_min": 0.004, "tau_max": 0.1}]})");
   ASSERT_TRUE(bench.ok);
   const auto at = [](double longitude, double latitude) {
@@ -172,7 +172,7 @@ TEST(AnisotropicFriction, EasyAlongHardAcross) {
   EXPECT_NEAR(norm(bench.proxy(2) - bench.proxy(1)), 0.004, 1e-12);
 }
 
-TEST(AnisotropicFriction, AFieldAlongTheNormalIsTheHardest) {
+TEST(AnisotropicFriction, AFieldAlongTheNormalGivesTheMaximumThreshold) {
   // uniform z on the plane z = 0
   Bench bench(R"({"fields": {"floor": {"analytic": "plane"}, "up": {"analytic": "uniform", "direction": [0, 0, 1]}},
     "chain": [{"name": "skin", "type": "anisotropic_friction", "surface": "floor", "level": 0, "field": "up", "threshold": 0.01,
@@ -180,11 +180,11 @@ TEST(AnisotropicFriction, AFieldAlongTheNormalIsTheHardest) {
   ASSERT_TRUE(bench.ok);
   for (int k = 0; k <= 1000; ++k) bench.to(Vec3(1e-3 * k, 0, -0.1));
   EXPECT_NEAR(norm(bench.proxy(2) - bench.proxy(1)), 0.1, 1e-12);
-  EXPECT_NEAR(norm(bench.proxy(1) - bench.proxy(0)), 0.01, 1e-12);  // no direction: isotropic
+  EXPECT_NEAR(norm(bench.proxy(1) - bench.proxy(0)), 0.01, 1e-12);  // no tangential direction: isotropic
 }
 
-// above the surface and after it has let go, nothing drags behind
-TEST(AnisotropicFriction, PassesThroughWhereTheSurfaceDoes) {
+// on the free side and after release there is no friction
+TEST(AnisotropicFriction, PassesTheProbeThroughWhereTheSurfaceIsFreeOrReleased) {
   Bench bench(kSphere + R"(, "free": "above", "release": 0.2}]})");
   ASSERT_TRUE(bench.ok);
   const auto passes = [&](const Vec3& probe, LinkStatus surface) {
@@ -205,7 +205,7 @@ TEST(AnisotropicFriction, PassesThroughWhereTheSurfaceDoes) {
   passes({0.3, 0.2, 1.5}, LinkStatus::free);
 }
 
-TEST(AnisotropicFriction, OneNameInAMode) {
+TEST(AnisotropicFriction, AModeNamesAllItsLinksByOneName) {
   const std::string modes = R"(}, {"name": "p", "type": "point", "position": [0, 0, 0]}],
     "modes": [{"name": "all", "links": ["p", "skin"], "active_when": {"button": 1}}, {"name": "part", "links": ["skin_friction"], "active_when": {"button": 2}}]})";
   Bench bench(kSphere + modes);
@@ -230,7 +230,7 @@ TEST(AnisotropicFriction, ErrorsNameTheLine) {
   refused("},\n{\"name\": \"skin_friction\"" + point + "]}", "4", "duplicate link name");
   std::string many = "}";
   for (int i = 0; i < 6; ++i) many += ",\n{\"name\": \"p" + std::to_string(i) + "\"" + point;
-  refused(many + "]}", "9", "too long");
+  refused(many + "]}", "9", "too many links");
 }
 
 }  // namespace anisotropic_friction_test

@@ -8,7 +8,7 @@
 #include "tests/support/support.h"
 
 namespace catena::haptics {
-namespace extract_test {
+namespace build_program_test {
 
 scene::Scene scene_of(const std::string& text, const std::string& path = "scene.json") {
   auto scene = scene::parse_scene(text, path);
@@ -16,7 +16,7 @@ scene::Scene scene_of(const std::string& text, const std::string& path = "scene.
   return scene ? std::move(*scene) : scene::Scene{};
 }
 
-/// A point link on line 2 with `more` of its keys on line 3.
+/// A scene with a point link on line 2 and its additional keys `more` on line 3.
 std::string point_with(const std::string& more) {
   return "{\"chain\": [\n{\"name\": \"a\", \"type\": \"point\", \"position\": [0, 0, 0],\n" + more + "}]}";
 }
@@ -31,7 +31,7 @@ void expect_error(const std::string& text, int line, std::initializer_list<const
   for (const char* part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks " << part;
 }
 
-TEST(ExtractProgram, AnEmptyChainIsAProgram) {
+TEST(ExtractProgram, AnEmptyChainGivesAProgram) {
   scene::Scene scene = scene_of("{\"fields\": {}, \"chain\": []}");
   const auto program = build_program(scene);
   ASSERT_TRUE(program);
@@ -39,7 +39,7 @@ TEST(ExtractProgram, AnEmptyChainIsAProgram) {
   EXPECT_EQ((*program)->meters_per_unit, 1);
 }
 
-/// 12^3 voxels in a raw file: 7 below x = 5, else 0.
+/// 12^3 voxels in a raw file: label 7 for x < 5, else 0.
 std::string label_map(const test::TemporaryFolder& folder) {
   std::string bytes;
   for (int n = 0; n < 12 * 12 * 12; ++n) bytes += static_cast<char>(n % 12 < 5 ? 7 : 0);
@@ -48,7 +48,7 @@ std::string label_map(const test::TemporaryFolder& folder) {
     "a": {"label": 7, "of": "m", "smooth": 0}}, "chain": [)";
 }
 
-TEST(ExtractProgram, ALabelIsFeltOnTheGridThatIsDrawnAndByItsName) {
+TEST(ExtractProgram, ALabelLinkUsesTheDrawnGridAndTheLabelsName) {
   const test::TemporaryFolder folder;
   scene::Scene scene = scene_of(label_map(folder) + R"({"name": "l", "type": "isosurface", "field": "a", "level": 0.5, "free": "below"}]})",
                                 folder / "s.json");
@@ -66,7 +66,7 @@ TEST(ExtractProgram, ALabelIsFeltOnTheGridThatIsDrawnAndByItsName) {
   EXPECT_NEAR(report.links[0].proxy.x, 4.5, 1e-9);
 }
 
-TEST(ExtractProgram, ALabelMapItselfHasNoSurface) {
+TEST(ExtractProgram, ALabelMapAsALevelFieldIsRefused) {
   const test::TemporaryFolder folder;
   for (const char* link : {R"({"name": "l", "type": "isosurface", "field": "m", "level": 3})",
                            R"({"name": "l", "type": "drag", "surface": "m", "level": 3, "threshold": 1})"}) {
@@ -91,7 +91,7 @@ TEST(ExtractProgram, ABaselineTakesReleaseFromTheConstraint) {
     ASSERT_TRUE(program) << program.error().message;
     EXPECT_EQ((*program)->coupling.method, static_cast<CouplingMethod>(i));
     EXPECT_EQ((*program)->links[0].release, i == 0 ? 0 : 0.25);
-    EXPECT_TRUE((*program)->links[0].one_sided);  // of every method: a person reads it too
+    EXPECT_TRUE((*program)->links[0].one_sided);  // set for every method
     recipes[i] = (*program)->links[0].spec_hash;
     for (int k = 0; k < i; ++k) EXPECT_NE(recipes[i], recipes[k]);
   }
@@ -106,13 +106,13 @@ TEST(ExtractProgram, TheLinearBaselineFollowsTheFieldAtTheProxy) {
   LinkState state;
   LinkScratch scratch;
   streamline.start({1, 1, 0}, state, scratch);
-  state.proxy = {1, 0.5, 0};  // drifted off: the tangent is the field's there, (x, -y)
+  state.proxy = {1, 0.5, 0};  // off the curve: the tangent is the field there, (x, -y)
   Primitive line;
   ASSERT_TRUE(streamline.primitive(state.proxy, state, scratch, line));
   EXPECT_LE(norm(line.axis - direction(Vec3(1, -0.5, 0))), 1e-15);
 }
 
-TEST(ExtractProgram, RefusesWhatABaselineCannotDo) {
+TEST(ExtractProgram, RefusesWhatABaselineDoesNotSupport) {
   const std::string map = "\"release\": {\"field\": \"s\", \"map\": [[0, 1]]}";
   expect_error(
       "{\"fields\": {\"s\": {\"analytic\": \"sphere\"}}, \"coupling\": {\"method\": \"pipe\"}, \"chain\": [\n"
@@ -178,7 +178,7 @@ TEST(ExtractProgram, LoadsOnlyTheFieldsThatLinksName) {
   EXPECT_EQ(field::load_counters().grids, before.grids + 1);
 }
 
-TEST(ExtractProgram, ASelectedLinkHoldsTheDrawnCurve) {
+TEST(ExtractProgram, ASelectedLinkSharesTheDrawnCurve) {
   scene::Scene scene = scene_of(R"({"fields": {"swirl": {"analytic": "circle"}},
     "chain": [{"name": "s", "type": "streamline", "field": "swirl", "seed": [1, 0, 0]}]})");
   if (build_program(scene)) {
@@ -192,7 +192,7 @@ TEST(ExtractProgram, ASelectedLinkHoldsTheDrawnCurve) {
   }
 }
 
-TEST(ExtractProgram, AMeshLinkHoldsTheDrawnMesh) {
+TEST(ExtractProgram, AMeshLinkSharesTheDrawnMesh) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "quad.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n");
   scene::Scene scene = scene_of(R"({"meshes": [{"name": "floor", "file": "quad.obj", "scale": 2}],
@@ -285,7 +285,7 @@ TEST(ExtractProgram, IndicationErrorsNameTheirLine) {
   expect_error(point_with("\"release_cue\": true"), 3, {"release_cue", "object"});
 }
 
-/// Two links on lines 2 and 3, `modes` from line 4.
+/// A scene with two links on lines 2 and 3, and `modes` from line 4.
 std::string with_modes(const std::string& modes) {
   return "{\"chain\": [\n{\"name\": \"a\", \"type\": \"point\", \"position\": [0, 0, 0]},\n"
          "{\"name\": \"b\", \"type\": \"point\", \"position\": [0, 0, 1]}], \"modes\": [\n" +
@@ -309,9 +309,9 @@ TEST(ExtractProgram, ReadsModesInOrder) {
 
 TEST(ExtractProgram, ModeErrorsNameTheirLine) {
   expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\",\n\"z\"], \"active_when\": {\"button\": 1}}"), 5,
-               {"\"m\"", "\"z\"", "no link", "one of a, b was expected"});
+               {"\"m\"", "\"z\"", "not a link", "one of a, b was expected"});
   expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\",\n\"a\"], \"active_when\": {\"button\": 1}}"), 5,
-               {"\"a\" twice", "each link once was expected"});
+               {"\"a\" twice", "one mention of each link was expected"});
   expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\"],\n\"active_when\": {}}"), 5, {"neither"});
   expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\"],\n\"active_when\": {\"button\": 40}}"), 5, {"from 1 to 32"});
   std::string nine;
@@ -320,7 +320,7 @@ TEST(ExtractProgram, ModeErrorsNameTheirLine) {
   expect_error(with_modes(nine), 12, {"too many modes", "8"});
 }
 
-TEST(ExtractProgram, AModesOwnFormIsCheckedWhereTheSceneIsRead) {
+TEST(ExtractProgram, AModesKeysAreCheckedWhenTheSceneIsParsed) {
   const auto fails = [](const std::string& mode, std::initializer_list<const char*> parts) {
     const auto scene = scene::parse_scene(with_modes(mode), "scene.json");
     ASSERT_FALSE(scene) << mode;
@@ -352,7 +352,7 @@ TEST(ExtractProgram, AStiffnessFollowsAField) {
       3, {"\"stiffness\" is -1", ">= 0"});
 }
 
-TEST(ExtractProgram, TheRecipeIsTheLinksTextAndItsFields) {
+TEST(ExtractProgram, TheSpecHashDependsOnTheLinksKeys) {
   const auto recipes = [](const std::string& more) {
     scene::Scene scene = scene_of(point_with(more));
     const auto program = build_program(scene);
@@ -365,7 +365,7 @@ TEST(ExtractProgram, TheRecipeIsTheLinksTextAndItsFields) {
   EXPECT_NE(recipes("\"release\": 1"), 0u);
 }
 
-TEST(ExtractProgram, ALinkThatIsNotEnabledIsOffAndStaysTheSameLink) {
+TEST(ExtractProgram, ADisabledLinkIsOffAndKeepsItsSpecHash) {
   scene::Scene on = scene_of(point_with("\"stiffness\": 300")), off = scene_of(point_with("\"stiffness\": 300, \"enabled\": false")),
                stated = scene_of(point_with("\"stiffness\": 300, \"enabled\": true"));
   const auto a = build_program(on), b = build_program(off), c = build_program(stated);
@@ -377,7 +377,7 @@ TEST(ExtractProgram, ALinkThatIsNotEnabledIsOffAndStaysTheSameLink) {
   EXPECT_EQ((*a)->links[0].spec_hash, (*c)->links[0].spec_hash);
   expect_error(point_with("\"enabled\": 1"), 3, {"enabled", "true or false"});
 
-  // all parts of a ready-made mode
+  // all links of a preset
   scene::Scene mode = scene_of(R"({"fields": {"b": {"analytic": "sphere"}, "c": {"analytic": "circle"}}, "chain": [
     {"name": "s", "type": "anisotropic_friction", "surface": "b", "level": 1, "field": "c", "enabled": false}]})");
   const auto parts = build_program(mode);
@@ -396,5 +396,5 @@ TEST(ExtractProgram, LinkErrorsNameTheirLine) {
       3, {"level", "expected"});
 }
 
-}  // namespace extract_test
+}  // namespace build_program_test
 }  // namespace catena::haptics

@@ -8,7 +8,7 @@
 #include "tests/support/support.h"
 
 namespace catena::haptics {
-namespace widgets_test {
+namespace build_widgets_test {
 
 scene::Scene scene_of(const std::string& text) {
   auto scene = scene::parse_scene(text, "scene.json");
@@ -32,7 +32,7 @@ void expect_error(const std::string& text, int line, std::initializer_list<const
   for (const char* part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks " << part;
 }
 
-TEST(ExtractWidgets, TheirLinksStandBehindTheScenes) {
+TEST(ExtractWidgets, WidgetLinksFollowTheScenesLinks) {
   scene::Scene scene = scene_of(R"({"chain": [{"name": "a", "type": "point", "position": [0, 0, 0]}],
     "widgets": [{"name": "cut", "type": "cutting_plane", "center": [1, 2, 3], "normal": [0, 0, 2]},
                 {"name": "s", "type": "seed", "position": [4, 5, 6], "button": 3}], "coupling": {"stiffness": 123}})");
@@ -52,7 +52,7 @@ TEST(ExtractWidgets, TheirLinksStandBehindTheScenes) {
   EXPECT_EQ(program->widgets[1].button, 3);
 }
 
-TEST(ExtractWidgets, WithoutWidgetsThereAreNoLinksOfTheirs) {
+TEST(ExtractWidgets, WithoutWidgetsThereAreNoWidgetLinks) {
   scene::Scene scene = scene_of(R"({"chain": [{"name": "a", "type": "point", "position": [0, 0, 0]}]})");
   const auto program = program_of(scene);
   EXPECT_EQ(program->links.size(), 1u);
@@ -60,7 +60,7 @@ TEST(ExtractWidgets, WithoutWidgetsThereAreNoLinksOfTheirs) {
   EXPECT_EQ(program->scene_link_count(), 1u);
 }
 
-TEST(ExtractWidgets, EightLinksOfTheSceneAndFourOfTheWidgets) {
+TEST(ExtractWidgets, EightSceneLinksAndFourWidgetLinksFit) {
   std::string links;
   for (int i = 0; i < 8; ++i)
     links += std::string(i > 0 ? ",\n" : "") + R"({"name": "l)" + std::to_string(i) + R"(", "type": "point", "position": [0, 0, 0]})";
@@ -68,11 +68,11 @@ TEST(ExtractWidgets, EightLinksOfTheSceneAndFourOfTheWidgets) {
   EXPECT_EQ(program_of(scene)->links.size(), 12u);
 }
 
-TEST(ExtractWidgets, PosesAreThoseOfTheSceneNow) {
+TEST(ExtractWidgets, PosesAreTheScenesCurrentOnes) {
   scene::Scene scene = scene_of(R"({"widgets": [{"name": "s", "type": "seed", "position": [0, 0, 0]}]})");
   const scene::Entity e = scene::find_widget(scene, "s");
   EXPECT_EQ(program_of(scene)->widgets[0].revision, 0u);
-  scene.entities.get<scene::Widget>(e).report.pose.points[0] = {1, 1, 1};  // as the hand left it
+  scene.entities.get<scene::Widget>(e).report.pose.points[0] = {1, 1, 1};  // a pose set by the hand
   EXPECT_EQ(program_of(scene)->widgets[0].pose.points[0], Vec3(1, 1, 1));
   widget::Pose pose;
   pose.points[0] = {2, 2, 2};
@@ -81,7 +81,7 @@ TEST(ExtractWidgets, PosesAreThoseOfTheSceneNow) {
   EXPECT_EQ(program_of(scene)->widgets[0].revision, 1u);
 }
 
-// A streamline through a seed, a surface at an isolevel: as if the numbers stood there.
+// A seed or level that names a widget gives the same links as the numbers.
 TEST(ExtractWidgets, LinksFollowASeedAndAnIsolevel) {
   const std::string fields = R"("fields": {"v": {"analytic": "circle"}, "d": {"analytic": "sphere"}}, )";
   const auto chain = [](const std::string& seed, const std::string& level) {
@@ -102,7 +102,7 @@ TEST(ExtractWidgets, LinksFollowASeedAndAnIsolevel) {
     tick(*program, {0, probe}, *state, *scratch, *result);
   }
   for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(outs[0].links[i].proxy, outs[1].links[i].proxy);
-  // and with them the recipe changes, so that the link begins anew
+  // a moved widget changes the spec hash, so that the link restarts
   with.entities.get<scene::Widget>(scene::find_widget(with, "s")).report.pose.points[0] = {0.6, 0, 0.25};
   with.entities.get<scene::Widget>(scene::find_widget(with, "l")).report.value = 0.5;
   const auto moved = program_of(with);
@@ -123,11 +123,11 @@ TEST(ExtractWidgets, ARulerGoesAlongLinksByName) {
   EXPECT_EQ(program_of(scene)->widgets[0].along_links, (std::vector<int>{1, 0}));
 }
 
-TEST(ExtractWidgets, WhatCannotBeIsSaidInOneLine) {
+TEST(ExtractWidgets, UnsupportedUsesAreErrorsInOneLine) {
   for (const char* method : {"pipe", "balance", "closest", "linear"})
     expect_error(std::string("{\"coupling\": {\"method\": \"") + method +
                      "\"},\n\"widgets\": [{\"name\": \"s\", \"type\": \"seed\", \"position\": [0, 0, 0]}]}",
-                 2, {"widgets need the proxy chain", "\"method\": \"chain\""});
+                 2, {"widgets need a proxy chain", "\"method\": \"chain\""});
   const std::string widgets = R"("widgets": [{"name": "s", "type": "seed", "position": [0, 0, 0]}])";
   const std::string fields = R"({"fields": {"v": {"analytic": "circle"}, "d": {"analytic": "sphere"}},)";
   expect_error(
@@ -137,8 +137,8 @@ TEST(ExtractWidgets, WhatCannotBeIsSaidInOneLine) {
       fields + widgets + ",\n\"chain\": [{\"name\": \"c\", \"type\": \"isosurface\", \"field\": \"d\", \"level\": {\"widget\": \"s\"}}]}",
       2, {"is of type \"seed\"; an isolevel was expected"});
   expect_error(fields + widgets + ",\n\"chain\": [{\"name\": \"widget_x\", \"type\": \"point\", \"position\": [0, 0, 0]}]}", 1,
-               {"\"widget_x\"", "widgets' own"});
+               {"\"widget_x\"", "reserved for widgets"});
 }
 
-}  // namespace widgets_test
+}  // namespace build_widgets_test
 }  // namespace catena::haptics

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Steps in time, as the hand meets them: a series of files, of which the next one takes the place of the one that is felt.
+/// Time steps in the haptic chain: a series of files, of which the next one replaces the current one.
 #include "engine/scene/time_steps.h"
 
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@
 #include "tests/support/support.h"
 
 namespace catena::haptics {
-namespace steps_test {
+namespace time_steps_test {
 
-/// Three balls that grow: 1, 1.15, 1.3 in radius, 2 before 10 by name.
+/// Three balls of radius 1, 1.15 and 1.3; their file names sort numerically (2 before 10).
 class GrowingTimeSeries : public testing::Test {
  protected:
   GrowingTimeSeries() {
@@ -56,13 +56,13 @@ TEST_F(GrowingTimeSeries, AFieldFollowsTheScenesStep) {
   EXPECT_NEAR(radius_at(scene), 1, 1e-5);
   EXPECT_TRUE(scene::set_step(scene, 1));
   EXPECT_NEAR(radius_at(scene), 1.15, 1e-5);
-  EXPECT_TRUE(scene::set_step(scene, 7));  // beyond the last
+  EXPECT_TRUE(scene::set_step(scene, 7));  // beyond the last step
   EXPECT_NEAR(radius_at(scene), 1.3, 1e-5);
   scene::Scene third = read(R"(, "time": {"step": 2})");
   EXPECT_NEAR(radius_at(third), 1.3, 1e-5);
 }
 
-TEST_F(GrowingTimeSeries, WhatWasLoadedAheadIsNotLoadedAgain) {
+TEST_F(GrowingTimeSeries, APrefetchedStepIsNotLoadedTwice) {
   scene::Scene scene = read();
   radius_at(scene);
   field::prefetch(scene::prefetch_requests(scene, 1));
@@ -76,7 +76,7 @@ TEST_F(GrowingTimeSeries, WhatWasLoadedAheadIsNotLoadedAgain) {
   EXPECT_EQ(field::load_counters().files, before);
 }
 
-TEST_F(GrowingTimeSeries, TheHandCrossesAStepWithoutAJump) {
+TEST_F(GrowingTimeSeries, TheForceDoesNotJumpAtATimeStep) {
   scene::Scene scene = read();
   auto first = build_program(scene);
   ASSERT_TRUE(first) << first.error().message;
@@ -106,7 +106,7 @@ TEST_F(GrowingTimeSeries, TheHandCrossesAStepWithoutAJump) {
     ticks(200, [](int) { return Vec3(0.9, 0, 0); });
     EXPECT_NEAR(norm(force), 300 * 0.05 * (0.1 + 0.15 * step), 0.02) << "the new surface is felt";
   }
-  // a step adds 2.25 N; the ramp lets max_force in within 20 ticks, and the hand's own motion adds K |dx|
+  // a step adds 2.25 N; the ramp admits max_force over 20 ticks, and the hand's motion adds K |dx|
   EXPECT_LE(largest_step, 8.0 / 20 + 300 * 0.05 * 0.3 / 200 + 1e-9);
   EXPECT_GT(largest_step, 0.01);
 }
@@ -114,8 +114,8 @@ TEST_F(GrowingTimeSeries, TheHandCrossesAStepWithoutAJump) {
 TEST_F(GrowingTimeSeries, APatternWithoutFilesIsRefused) {
   const auto scene = scene::parse_scene("{\"fields\": {\n\"r\": {\"file\": \"none_*.vdb\"}}}", folder_ / "s.json");
   ASSERT_FALSE(scene);
-  EXPECT_NE(scene.error().message.find("s.json:2: field \"r\": no file is called like"), std::string::npos) << scene.error().message;
+  EXPECT_NE(scene.error().message.find("s.json:2: field \"r\": no file matches the pattern"), std::string::npos) << scene.error().message;
 }
 
-}  // namespace steps_test
+}  // namespace time_steps_test
 }  // namespace catena::haptics

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The rotational chain in closed form: constraints that hold the proxy and have a fixed, or turning, axis.
+/// The rotational chain against closed forms, on constraints with a fixed or rotating axis.
 #include "haptics/chain/alignment.h"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ std::vector<Quat> orientations() {
   return out;
 }
 
-TEST(Alignment, TheToolsAxisEndsOnTheNormalAndTheTorqueIsKappaTimesTheAngle) {
+TEST(Alignment, TheToolsAxisAlignsWithTheNormalAndTheTorqueIsKappaTimesTheAngle) {
   const Vec3 normal = direction({1, -2, 0.5}), tool = direction({0.3, 0.1, -0.8});
   for (const Align::Sign sign : {Align::Sign::either, Align::Sign::same})
     for (const Primitive::Kind kind : {Primitive::Kind::plane, Primitive::Kind::line})
@@ -55,7 +55,7 @@ TEST(Alignment, TheToolsAxisEndsOnTheNormalAndTheTorqueIsKappaTimesTheAngle) {
         const Vec3 before = rotate(q, tool), after = rotate(run.out.links[0].orientation, tool);
         const Vec3 goal = sign == Align::Sign::either && dot(before, normal) < 0 ? -normal : normal;
         expect_near(after, goal, 1e-12);
-        // about the axis square to both, by the angle between them
+        // the torque acts about the common perpendicular, by the angle between the axes
         const double angle = std::atan2(norm(cross(before, goal)), dot(before, goal));
         expect_near(run.out.torque_nm, direction(cross(before, goal)) * (0.7 * angle), 1e-12);
         expect_near(run.out.links[0].torque_nm, run.out.torque_nm, 0);
@@ -63,8 +63,8 @@ TEST(Alignment, TheToolsAxisEndsOnTheNormalAndTheTorqueIsKappaTimesTheAngle) {
       }
 }
 
-TEST(Alignment, RotationalProxiesAreAChain) {
-  // first the tool's z onto world x, then its x onto what is left: world y
+TEST(Alignment, RotationalProxiesFormAChain) {
+  // first the tool's z onto world x, then its x onto world y, about the first axis
   Hand run;
   run.program.links = {axis_link("a", {1, 0, 0}, 0.5, Align::Sign::same, {0, 0, 1}),
                        axis_link("b", {0, 1, 0}, 0.25, Align::Sign::same, {1, 0, 0}), test::hold_height("c", 0)};
@@ -73,12 +73,12 @@ TEST(Alignment, RotationalProxiesAreAChain) {
   const Quat q1 = run.out.links[0].orientation, q2 = run.out.links[1].orientation;
   expect_near(rotate(q1, {0, 0, 1}), {1, 0, 0}, 1e-12);
   expect_near(rotate(q2, {1, 0, 0}), {0, 1, 0}, 1e-12);
-  expect_near(rotate(q2, {0, 0, 1}), {1, 0, 0}, 1e-12);  // the second turns about the first's axis: both hold
-  EXPECT_EQ(run.out.links[2].orientation, q2);           // without "align" it passes on
+  expect_near(rotate(q2, {0, 0, 1}), {1, 0, 0}, 1e-12);  // the second rotates about the first's axis, so both hold
+  EXPECT_EQ(run.out.links[2].orientation, q2);           // a link without "align" passes the orientation on
   expect_near(run.out.torque_nm, 0.5 * rotation_vector(q1 * glm::conjugate(q)) + 0.25 * rotation_vector(q2 * glm::conjugate(q1)), 1e-12);
 }
 
-TEST(Alignment, ItTurnsWithTheWorld) {
+TEST(Alignment, TheTorqueIsEquivariantUnderRotationOfTheWorld) {
   const Quat r = rotation_from_vector({0.5, -1.2, 0.8});
   const Vec3 normal = direction({1, 2, 3});
   for (const Quat& q : orientations()) {
@@ -91,8 +91,8 @@ TEST(Alignment, ItTurnsWithTheWorld) {
   }
 }
 
-TEST(Alignment, TheSpringGivesBackWhatItTook) {
-  // torque = -dV/dangle of V = 1/2 kappa angle^2, so that a closed way of the tool does no work: trapezoidal sum, O(1/n^2)
+TEST(Alignment, TheSpringIsConservativeExceptWhereTheSignSwitches) {
+  // torque = -dV/dangle of V = 1/2 kappa angle^2, so that a closed path does no work: trapezoidal sum, O(1/n^2)
   const auto work_of = [](Align::Sign sign, double far) {
     Hand run;
     run.program.links = {axis_link("a", {0.2, -0.1, 1}, 0.7, sign)};
@@ -112,7 +112,7 @@ TEST(Alignment, TheSpringGivesBackWhatItTook) {
   };
   EXPECT_NEAR(work_of(Align::Sign::either, 0.9), 0, 1e-6);
   EXPECT_NEAR(work_of(Align::Sign::same, 2.5), 0, 1e-6);
-  // four times over the ridge, which takes what lies between 10 degrees past it and 10 degrees before it, and gives nothing
+  // four sign switches at 90 + 10 degrees, each of which loses the energy down to 90 - 10 degrees
   const double past = kPi / 2 + kPi / 18, before = kPi - past;
   EXPECT_NEAR(work_of(Align::Sign::either, 2.5), -4 * 0.5 * 0.7 * (past * past - before * before), 2e-3);
 }
@@ -121,24 +121,24 @@ TEST(Alignment, ThroughHalfATurnTheTorqueStaysBounded) {
   for (const Align::Sign sign : {Align::Sign::either, Align::Sign::same}) {
     Hand run;
     run.program.links = {axis_link("a", {0, 0, 1}, 1, sign)};
-    const double most = sign == Align::Sign::either ? kPi / 2 : kPi;
+    const double max_angle = sign == Align::Sign::either ? kPi / 2 : kPi;
     double largest = 0;
     for (int k = -1000; k <= 1000; ++k) {
       run.step(1e-3 * (k + 1000), rotation_from_vector({kPi + 1e-6 * k, 0, 0}));
       ASSERT_TRUE(is_finite(run.out.torque_nm));
-      ASSERT_LE(norm(run.out.torque_nm), most + 1e-12);
+      ASSERT_LE(norm(run.out.torque_nm), max_angle + 1e-12);
       largest = std::max(largest, norm(run.out.torque_nm));
     }
     if (sign == Align::Sign::same) {
       EXPECT_NEAR(largest, kPi, 1e-9);
     }
-    if (sign == Align::Sign::either) {  // the other end of the axis is near there
+    if (sign == Align::Sign::either) {  // near 180 degrees the opposite sign of the axis applies
       EXPECT_LE(largest, 1.1e-3);
     }
   }
 }
 
-TEST(Alignment, WhereTheLinkDoesNotHoldTheToolIsFree) {
+TEST(Alignment, TheToolIsFreeWhileTheLinkDoesNotHold) {
   Hand run;
   run.program.links = {axis_link("a", {1, 0, 0}, 1)};
   const Quat q = rotation_from_vector({0.2, 0.4, -0.3});
@@ -153,7 +153,7 @@ TEST(Alignment, WhereTheLinkDoesNotHoldTheToolIsFree) {
   EXPECT_GT(norm(run.out.torque_nm), 0.1);
 }
 
-TEST(Alignment, TheAxisIsCountedAndAtTheCapTheLastOneIsKept) {
+TEST(Alignment, AxisEvaluationsAreCountedAndAtTheCapTheLastAxisIsKept) {
   Hand run;
   run.program.links = {axis_link("a", {1, 0, 0}, 1, Align::Sign::same, {0, 0, 1}, Primitive::Kind::plane, 3)};
   run.step(0, kIdentityRotation);
@@ -164,7 +164,7 @@ TEST(Alignment, TheAxisIsCountedAndAtTheCapTheLastOneIsKept) {
   EXPECT_NEAR(norm(run.out.torque_nm), kPi / 2, 1e-12);
 }
 
-TEST(Alignment, WeightsRiseAndWhatASwitchTakesAwayFades) {
+TEST(Alignment, ASwitchRampsTheTorqueInAndOut) {
   Hand run;
   run.program.links = {axis_link("a", {1, 0, 0}, 1, Align::Sign::same)};
   run.program.links[0].active_when.button = 1;
@@ -190,7 +190,7 @@ TEST(Alignment, WeightsRiseAndWhatASwitchTakesAwayFades) {
   }
 }
 
-TEST(Alignment, AProgramThatNoLongerAlignsFadesToo) {
+TEST(Alignment, TheTorqueRampsOutUnderAProgramWithoutTheLink) {
   Hand run;
   run.program.links = {axis_link("a", {1, 0, 0}, 1, Align::Sign::same)};
   run.program.coupling.ramp_s = 0.01;
@@ -216,7 +216,7 @@ TEST(Alignment, TheDevicesLimitCapsTheStiffness) {
   EXPECT_NEAR(norm(run.out.torque_nm), 0.4 * kPi / 2, 1e-12);
 }
 
-TEST(Alignment, DampingActsAgainstTheTurning) {
+TEST(Alignment, DampingOpposesTheRotation) {
   Hand run;
   run.program.coupling.rotational_damping_nms_per_rad = 2e-3;
   run.step(0, kIdentityRotation);
@@ -227,7 +227,7 @@ TEST(Alignment, DampingActsAgainstTheTurning) {
   expect_near(run.out.torque_nm, Vec3(0.0), 1e-15);
 }
 
-TEST(Alignment, AnOrientationThatIsNoNumberIsABadProbe) {
+TEST(Alignment, ANonFiniteOrientationIsABadProbe) {
   Hand run;
   run.program.links = {axis_link("a", {1, 0, 0}, 1)};
   run.step(0, rotation_from_vector({0.3, 0, 0}));
@@ -235,11 +235,11 @@ TEST(Alignment, AnOrientationThatIsNoNumberIsABadProbe) {
   EXPECT_EQ(run.out.torque_nm, Vec3(0.0));
   EXPECT_EQ(run.out.links[0].torque_nm, Vec3(0.0));
   EXPECT_EQ(run.out.links[0].status, LinkStatus::bad_probe);
-  run.step(2e-3, Quat(0, 0, 0, 0));  // nothing usable is no rotation
+  run.step(2e-3, Quat(0, 0, 0, 0));  // a zero quaternion counts as no rotation
   EXPECT_TRUE(is_finite(run.out.torque_nm));
 }
 
-TEST(Alignment, ForcesAndProxiesDoNotKnowOfIt) {
+TEST(Alignment, AlignmentDoesNotChangeForcesAndProxies) {
   const auto hash_of = [](bool aligns, bool turns) {
     Hand run;
     run.program.links = {test::hold_height("a", 1), axis_link("b", {1, 0, 0}, 1)};

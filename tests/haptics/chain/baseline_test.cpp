@@ -57,7 +57,7 @@ ConstraintPtr circle(double radius, const std::string& more = "") {
 
 void expect_near(const Vec3& a, const Vec3& b, double tolerance) { EXPECT_LE(norm(a - b), tolerance) << text(a) << " " << text(b); }
 
-TEST(PrimitiveSpan, ShortestWayOntoAllAndWhatIsLeftFree) {
+TEST(PrimitiveSpan, ShortestStepOntoAllAndRemainingFreeDirections) {
   Random random(5);
   for (int i = 0; i < 1000; ++i) {
     const Primitive a{Primitive::Kind::plane, random.box(1), random.unit()}, b{Primitive::Kind::plane, random.box(1), random.unit()};
@@ -75,7 +75,7 @@ TEST(PrimitiveSpan, ShortestWayOntoAllAndWhatIsLeftFree) {
   }
 }
 
-TEST(Pipe, MeetsTwoPlanesAtTheNearestPointOfTheirLine) {
+TEST(Pipe, OnTwoPlanesFindsTheNearestPointOfTheirLine) {
   Random random(1);
   for (int i = 0; i < 300; ++i) {
     const Vec3 n = random.unit(), m = random.unit(), o = random.box(1);
@@ -92,7 +92,7 @@ TEST(Pipe, MeetsTwoPlanesAtTheNearestPointOfTheirLine) {
   }
 }
 
-TEST(Pipe, MeetsThreePlanesAndAPlaneWithALine) {
+TEST(Pipe, FindsTheIntersectionOfThreePlanesAndOfAPlaneAndALine) {
   Hand corner(CouplingMethod::pipe);
   corner.add(plane({1, 0, 0}, {1, 0, 0}));
   corner.add(plane({0, 2, 0}, {0.3, 1, 0}));
@@ -113,8 +113,8 @@ TEST(Pipe, MeetsThreePlanesAndAPlaneWithALine) {
   }
 }
 
-TEST(Pipe, MeetsCurvedConstraints) {
-  Hand hand(CouplingMethod::pipe);  // a circle in z = 0.3 and a plane across it
+TEST(Pipe, FindsTheIntersectionOfCurvedConstraints) {
+  Hand hand(CouplingMethod::pipe);  // a circle in z = 0.3 and a plane that intersects it
   Fields fields;
   fields.named["v"] = *field::make_analytic("circle");
   hand.add(build(R"({"name": "a", "type": "streamline", "field": "v", "seed": [0.8, 0, 0.3]})", fields));
@@ -145,7 +145,7 @@ TEST(Pipe, HoldsOnTheEdgeOfTwoFreeSides) {
   expect_near(hand.at({0.25, 0.5, 0.5}), {0.25, 0.5, 0.5}, 0);
 }
 
-TEST(Pipe, WithoutAnIntersectionEndsInBudget) {
+TEST(Pipe, WithoutAnIntersectionReportsBudget) {
   Hand hand(CouplingMethod::pipe);
   hand.add(plane({0, 0, 0}, {0, 0, 1}));
   hand.add(plane({0, 0, 1}, {0, 0, 1}));
@@ -154,7 +154,7 @@ TEST(Pipe, WithoutAnIntersectionEndsInBudget) {
   EXPECT_TRUE(is_finite(p));
 }
 
-TEST(Pipe, ReleasesByTheStretchOfTheOneProxyNotByTheDepth) {
+TEST(Pipe, ReleasesByTheDistanceToTheProxyNotByDepth) {
   const double a = 30 * M_PI / 180;
   Hand hand(CouplingMethod::pipe);
   hand.add(line({0.5 * std::cos(a), 0, 0.5 * std::sin(a)}, {std::cos(a), 0, std::sin(a)}));
@@ -168,11 +168,11 @@ TEST(Pipe, ReleasesByTheStretchOfTheOneProxyNotByTheDepth) {
   expect_near(hand.at(along(-0.049)), Vec3(0.0), 1e-10);
   EXPECT_EQ(hand.out.links[1].status, LinkStatus::ok);
   EXPECT_TRUE(hand.out.links[1].active);
-  expect_near(hand.at(along(-0.051)), along(-0.051), 1e-10);  // in the tick that reaches it, at half that depth
+  expect_near(hand.at(along(-0.051)), along(-0.051), 1e-10);  // released in the tick that reaches the distance; the depth is half of it
   EXPECT_EQ(hand.out.links[1].status, LinkStatus::released);
   EXPECT_FALSE(hand.out.links[1].active);
   EXPECT_TRUE(hand.out.links[0].active);
-  hand.at(along(-0.001));  // near is not enough for one side
+  hand.at(along(-0.001));  // a one-sided link re-arms only on the free side
   EXPECT_EQ(hand.out.links[1].status, LinkStatus::released);
   hand.at(along(0.01));
   EXPECT_EQ(hand.out.links[1].status, LinkStatus::free);
@@ -197,7 +197,7 @@ TEST(Balance, OfALineAPlaneAndAPointHasAClosedForm) {
   hand.add(plane({1, 0, 0}, {1, 0, 0}), 250);
   hand.add(point({0, 0, 1}), 500);
   const Vec3 x(3, 2, 4);
-  // per axis: K x + the springs that act on it
+  // per axis: weighted mean of the probe and the springs of that axis
   expect_near(hand.at(x), {(500 * 3 + 250 * 1) / 1250.0, 500 * 2 / 2000.0, (500 * 4 + 500 * 1) / 2000.0}, 1e-13);
 }
 
@@ -211,13 +211,13 @@ TEST(Balance, OfAnyPrimitivesIsTheMinimumOfTheEnergy) {
     hand.add(plane(q, m), k[1]);
     hand.add(line(o, t), k[2]);
     hand.at(x);
-    const Vec3 p = hand.at(x), e = p - o;  // the foot on the line is exact either way
+    const Vec3 p = hand.at(x), e = p - o;
     const Vec3 gradient = 500.0 * (p - x) + k[0] * dot(n, e) * n + k[1] * dot(m, p - q) * m + k[2] * (e - dot(t, e) * t);
     EXPECT_LE(norm(gradient), 1e-8) << i;
   }
 }
 
-TEST(Balance, LeavesBothConstraintsWhereTheChainLeavesNone) {
+TEST(Balance, ViolatesBothConstraints) {
   const double a = 30 * M_PI / 180;
   Hand hand(CouplingMethod::balance);
   hand.add(line({0, 0, 0}, {std::cos(a), 0, std::sin(a)}), 10);
@@ -227,7 +227,7 @@ TEST(Balance, LeavesBothConstraintsWhereTheChainLeavesNone) {
   EXPECT_LT(p.z, -0.005);
 }
 
-TEST(Closest, IsTheNearestOfTwoLines) {
+TEST(Closest, ProjectsOntoTheNearerOfTwoLines) {
   Hand hand(CouplingMethod::closest);
   hand.add(line({0, 0, 0}, {1, 0, 0}));
   hand.add(line({0, 0, 1}, {0, 1, 0}));
@@ -238,20 +238,20 @@ TEST(Closest, IsTheNearestOfTwoLines) {
   EXPECT_TRUE(bitwise_equal(hand.out.links[0].proxy, hand.out.links[1].proxy));
 }
 
-TEST(Linear, MovesAlongWhatThePrimitivesLeaveFree) {
+TEST(Linear, MovesAlongTheFreeDirections) {
   Hand hand(CouplingMethod::linear);
   hand.add(plane({0, 0, 0}, {0, 0, 1}));
   expect_near(hand.at({1, 2, 3}), {1, 2, 0}, 1e-14);
   hand.add(plane({0, 0, 0}, {0, 1, 0}));
   const Vec3 p = hand.at({4, 5, 6});
   EXPECT_NEAR(p.x, 4, 1e-14);
-  EXPECT_NEAR(p.y, 0, 1e-14);  // put on the plane that was added
+  EXPECT_NEAR(p.y, 0, 1e-14);  // projected onto the added plane
   Hand fixed(CouplingMethod::linear);
   fixed.add(point({1, 1, 1}));
   expect_near(fixed.at({4, 5, 6}), {1, 1, 1}, 0);
 }
 
-TEST(Linear, DriftsOffACircleAsTheFollowModeDoes) {
+TEST(Linear, DriftsOffACircleLikeTheLinearMethod) {
   Hand hand(CouplingMethod::linear), follow(CouplingMethod::chain);
   hand.add(circle(0.05, R"(, "follow": "online")"));
   follow.add(circle(0.05, R"(, "method": "linear")"));
@@ -274,7 +274,7 @@ TEST(Linear, DriftsOffASphere) {
   EXPECT_LT(worst, 1e-1);
 }
 
-TEST(Baseline, TwoSidedLinksTakeHoldAgainNearOrAcross) {
+TEST(Baseline, TwoSidedLinksReArmNearOrAcross) {
   for (const CouplingMethod combination : kAll) {
     Hand hand(combination);
     hand.add(plane({0, 0, 0}, {0, 0, 1}), 1e6).release = 0.25;
@@ -292,7 +292,7 @@ TEST(Baseline, TwoSidedLinksTakeHoldAgainNearOrAcross) {
   }
 }
 
-TEST(Baseline, FreeSidesAreFree) {
+TEST(Baseline, FreeSidesPassTheProbeThrough) {
   for (const CouplingMethod combination : kAll) {
     for (const ConstraintPtr& floor :
          {plane({0, 0, 0}, {0, 0, 1}, R"(, "free": "above")"), isosurface(analytic_field("plane"), 0, R"(, "free": "above")")}) {
@@ -301,7 +301,7 @@ TEST(Baseline, FreeSidesAreFree) {
       EXPECT_TRUE(bitwise_equal(hand.at({0.1, 0.2, 0.3}), Vec3(0.1, 0.2, 0.3)));
       EXPECT_EQ(hand.out.links[0].status, LinkStatus::free);
       EXPECT_EQ(hand.out.force_n, Vec3(0.0));
-      expect_near(hand.at({0.1, 0.2, -0.3}), {0.1, 0.2, 0}, 2e-4);  // within the tick that crosses
+      expect_near(hand.at({0.1, 0.2, -0.3}), {0.1, 0.2, 0}, 2e-4);  // within the tick of the crossing
       EXPECT_EQ(hand.out.links[0].status, LinkStatus::ok);
       EXPECT_TRUE(bitwise_equal(hand.at({0.1, 0.2, 1e-9}), Vec3(0.1, 0.2, 1e-9)));
     }
@@ -322,7 +322,7 @@ TEST(Baseline, SwitchedLinksJoinAndLeave) {
   }
 }
 
-TEST(Baseline, ASwitchFadesTheForceInsteadOfJumping) {
+TEST(Baseline, ASwitchRampsTheForce) {
   Hand hand(CouplingMethod::pipe);
   hand.program.coupling.ramp_s = 0.02;
   hand.add(plane({0, 0, 0}, {0, 0, 1}));
@@ -336,7 +336,7 @@ TEST(Baseline, ASwitchFadesTheForceInsteadOfJumping) {
   }
 }
 
-TEST(Baseline, ARestingProbeRests) {
+TEST(Baseline, TheProxyRestsWhileTheProbeRests) {
   for (const CouplingMethod combination : {CouplingMethod::pipe, CouplingMethod::closest}) {
     Hand hand(combination);
     hand.add(line({0.2, 0.1, 0}, {1, 0.4, 0.2}, R"(, "method": "rkf34")"));

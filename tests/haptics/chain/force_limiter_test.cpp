@@ -7,22 +7,22 @@
 #include <cstring>
 #include <limits>
 
-namespace guard_test {
+namespace force_limiter_test {
 
 using namespace catena;
 using namespace catena::haptics;
 
 constexpr double kTick = 1e-3, kNan = std::numeric_limits<double>::quiet_NaN();
-const Vec3 kAsked(3, -4, 0);
+const Vec3 kRequested(3, -4, 0);
 
-struct Guarded {
+struct LimiterRig {
   DeviceLimits limits;
   ForceLimiterState state;
-  Vec3 asked = kAsked;
+  Vec3 requested = kRequested;
   bool on = true;
   double dt = kTick;
   const ForceLimiterState& step(TickCondition condition = TickCondition::normal) {
-    limit_force(limits, {asked, asked * 0.01, condition, on, dt}, state);
+    limit_force(limits, {requested, requested * 0.01, condition, on, dt}, state);
     return state;
   }
   void run(int ticks, TickCondition condition = TickCondition::normal) {
@@ -30,19 +30,19 @@ struct Guarded {
   }
 };
 
-TEST(ForceLimiter, WithoutLimitsItIsTheIdentityToTheBit) {
-  Guarded g;
+TEST(ForceLimiter, WithoutLimitsTheForceIsUnchangedBitForBit) {
+  LimiterRig g;
   for (const Vec3& v : {Vec3(-0.0, 5e-324, 1e308), Vec3(3, -4, 0.1), Vec3(0.0)}) {
-    g.asked = v;
+    g.requested = v;
     g.step();
     EXPECT_EQ(std::memcmp(&g.state.force_n, &v, sizeof v), 0);
     EXPECT_EQ(g.state.force_state, ForceState::on);
   }
 }
 
-TEST(ForceLimiter, AFaultIsZeroInItsOwnTickWhateverTheLimits) {
+TEST(ForceLimiter, AFaultGivesZeroForceInItsTickWhateverTheLimits) {
   for (const TickCondition fault : {TickCondition::no_device, TickCondition::watchdog}) {
-    Guarded g;
+    LimiterRig g;
     g.limits.slew_n_per_s = 1;
     g.run(5000);
     ASSERT_GT(norm(g.state.force_n), 4.9);
@@ -53,16 +53,16 @@ TEST(ForceLimiter, AFaultIsZeroInItsOwnTickWhateverTheLimits) {
   }
 }
 
-TEST(ForceLimiter, AForceThatIsNotFiniteIsAFault) {
+TEST(ForceLimiter, ANonFiniteForceIsAFault) {
   for (const double bad : {kNan, std::numeric_limits<double>::infinity()}) {
-    Guarded g;
+    LimiterRig g;
     g.limits.ramp_in_s = 0.01;
     g.run(50);
-    g.asked = Vec3(0, bad, 0);
+    g.requested = Vec3(0, bad, 0);
     g.step();
     EXPECT_EQ(g.state.force_n, Vec3(0.0));
     EXPECT_EQ(g.state.force_state, ForceState::stopped);
-    g.asked = kAsked;
+    g.requested = kRequested;
     g.step();
     EXPECT_EQ(g.state.force_state, ForceState::ramping_in);
     EXPECT_NEAR(norm(g.state.force_n), 0.5, 1e-12) << "a tenth, from nothing";
@@ -70,16 +70,16 @@ TEST(ForceLimiter, AForceThatIsNotFiniteIsAFault) {
 }
 
 TEST(ForceLimiter, LateTicksHoldThenRampOutLinearlyIn20ms) {
-  Guarded g;
+  LimiterRig g;
   g.run(3);
-  g.asked = Vec3(100, 100, 100);
+  g.requested = Vec3(100, 100, 100);
   for (int i = 0; i < 5; ++i) {
     g.step(TickCondition::late);
-    EXPECT_EQ(g.state.force_n, kAsked) << i;
-    EXPECT_EQ(g.state.torque_nm, kAsked * 0.01);
+    EXPECT_EQ(g.state.force_n, kRequested) << i;
+    EXPECT_EQ(g.state.torque_nm, kRequested * 0.01);
     EXPECT_EQ(g.state.force_state, ForceState::held);
   }
-  g.dt = 2.5e-3;  // late ones are longer
+  g.dt = 2.5e-3;  // late ticks are longer
   for (int i = 1; i < 8; ++i) {
     g.step(TickCondition::late);
     EXPECT_NEAR(norm(g.state.force_n), 5 * (1 - i / 8.0), 1e-12) << i;
@@ -92,8 +92,8 @@ TEST(ForceLimiter, LateTicksHoldThenRampOutLinearlyIn20ms) {
   }
 }
 
-TEST(ForceLimiter, FiveLateTicksAreForgottenByOneInTime) {
-  Guarded g;
+TEST(ForceLimiter, OneTickOnTimeResetsTheCountOfLateTicks) {
+  LimiterRig g;
   g.limits.ramp_in_s = 0.1;
   g.run(200);
   for (int i = 0; i < 10; ++i) {
@@ -101,12 +101,12 @@ TEST(ForceLimiter, FiveLateTicksAreForgottenByOneInTime) {
     EXPECT_EQ(g.state.force_state, ForceState::held);
     g.step();
     EXPECT_EQ(g.state.force_state, ForceState::on);
-    EXPECT_EQ(g.state.force_n, kAsked);
+    EXPECT_EQ(g.state.force_n, kRequested);
   }
 }
 
-TEST(ForceLimiter, AfterARampOutTheForceRampsInFromWhereItWas) {
-  Guarded g;
+TEST(ForceLimiter, AfterARampOutTheForceRampsInFromItsCurrentValue) {
+  LimiterRig g;
   g.limits.ramp_in_s = 0.1;
   g.run(200);
   g.run(5 + 10, TickCondition::late);  // half of 20 ms
@@ -116,8 +116,8 @@ TEST(ForceLimiter, AfterARampOutTheForceRampsInFromWhereItWas) {
   EXPECT_NEAR(norm(g.state.force_n), 5 * 0.51, 1e-9);
 }
 
-TEST(ForceLimiter, ARampOutEndsThoughTheClockStandsStill) {
-  Guarded g;
+TEST(ForceLimiter, ARampOutEndsEvenIfTheClockStandsStill) {
+  LimiterRig g;
   g.run(2);
   g.dt = 0;
   g.run(5 + 1000, TickCondition::late);
@@ -125,7 +125,7 @@ TEST(ForceLimiter, ARampOutEndsThoughTheClockStandsStill) {
 }
 
 TEST(ForceLimiter, RampsInFromTheFirstTick) {
-  Guarded g;
+  LimiterRig g;
   g.limits.ramp_in_s = 0.5;
   g.dt = 0;
   EXPECT_EQ(g.step().force_n, Vec3(0.0));
@@ -138,11 +138,11 @@ TEST(ForceLimiter, RampsInFromTheFirstTick) {
   }
   g.run(2);
   EXPECT_EQ(g.state.force_state, ForceState::on);
-  EXPECT_EQ(g.state.force_n, kAsked);
+  EXPECT_EQ(g.state.force_n, kRequested);
 }
 
-TEST(ForceLimiter, SwitchedOffItRampsOutAndBackIn) {
-  Guarded g;
+TEST(ForceLimiter, SwitchingOffAndOnRampsOutAndIn) {
+  LimiterRig g;
   g.limits.ramp_in_s = 0.1;
   g.run(200);
   g.on = false;
@@ -162,8 +162,8 @@ TEST(ForceLimiter, SwitchedOffItRampsOutAndBackIn) {
 }
 
 TEST(ForceLimiter, SwitchingOffNeverRaisesTheForce) {
-  // while the slew limit holds a jump back
-  Guarded g;
+  // while the slew limit bounds a jump
+  LimiterRig g;
   g.limits.slew_n_per_s = 100;
   g.run(3);
   const double before = norm(g.state.force_n);
@@ -171,8 +171,8 @@ TEST(ForceLimiter, SwitchingOffNeverRaisesTheForce) {
   g.on = false;
   g.step();
   EXPECT_LE(norm(g.state.force_n), before);
-  // while late ticks have taken half of it
-  Guarded late;
+  // after late ticks have halved the force
+  LimiterRig late;
   late.run(10);
   late.run(5 + 10, TickCondition::late);
   ASSERT_NEAR(norm(late.state.force_n), 2.5, 1e-9);
@@ -182,14 +182,14 @@ TEST(ForceLimiter, SwitchingOffNeverRaisesTheForce) {
     ASSERT_LE(norm(late.state.force_n), last + 1e-12);
   }
   EXPECT_EQ(late.state.force_state, ForceState::off);
-  // while the hand pushes deeper, or the chain's force turns over
-  Guarded deeper;
+  // while the requested force grows and reverses
+  LimiterRig deeper;
   deeper.limits.slew_n_per_s = 1000;
   deeper.run(10);
   deeper.on = false;
   for (double k = 1; k < 25; ++k) {
     const Vec3 last = deeper.state.force_n;
-    deeper.asked = kAsked * (static_cast<int>(k) % 2 == 0 ? 1 + k : -1 - k);
+    deeper.requested = kRequested * (static_cast<int>(k) % 2 == 0 ? 1 + k : -1 - k);
     deeper.step();
     ASSERT_LE(norm(deeper.state.force_n), norm(last) + 1e-12) << k;
     ASSERT_LE(norm(deeper.state.force_n), 5 * std::fmax(0.0, 1 - k / 20) + 1e-9) << "never longer than the way to zero";
@@ -197,14 +197,14 @@ TEST(ForceLimiter, SwitchingOffNeverRaisesTheForce) {
   EXPECT_EQ(deeper.state.force_state, ForceState::off);
 }
 
-TEST(ForceLimiter, OffAndOnAgainGoesOnFromTheForceThatIsLeft) {
-  Guarded g;
+TEST(ForceLimiter, SwitchingOnDuringTheRampOutContinuesFromTheRemainingForce) {
+  LimiterRig g;
   g.limits.ramp_in_s = 0.5;
-  g.asked = kAsked * 0.1;
+  g.requested = kRequested * 0.1;
   g.run(600);
   g.on = false;
   g.run(4);
-  g.asked = kAsked;  // deeper meanwhile: not felt
+  g.requested = kRequested;  // a larger request while switched off has no effect
   g.step();
   const double left = norm(g.state.force_n);
   ASSERT_LE(left, 0.5);
@@ -214,15 +214,15 @@ TEST(ForceLimiter, OffAndOnAgainGoesOnFromTheForceThatIsLeft) {
   EXPECT_NEAR(norm(g.state.force_n), left + 5 * kTick / 0.5, 1e-9);
 }
 
-TEST(ForceLimiter, OffFromTheStartIsZeroFromTheStart) {
-  Guarded g;
+TEST(ForceLimiter, SwitchedOffAtTheStartTheForceIsZero) {
+  LimiterRig g;
   g.on = false;
   EXPECT_EQ(g.step().force_n, Vec3(0.0));
   EXPECT_EQ(g.state.force_state, ForceState::off);
 }
 
 TEST(ForceLimiter, LimitsKeepTheDirection) {
-  Guarded g;
+  LimiterRig g;
   g.limits.max_force_n = 2;
   g.limits.max_torque_nm = 0.01;
   g.step();
@@ -233,23 +233,23 @@ TEST(ForceLimiter, LimitsKeepTheDirection) {
   EXPECT_EQ(norm(g.step().force_n), 0);
 }
 
-TEST(ForceLimiter, TheSlewLimitIsASlopeAndReachesTheForce) {
-  Guarded g;
+TEST(ForceLimiter, TheSlewLimitBoundsTheSlopeAndReachesTheForce) {
+  LimiterRig g;
   g.limits.slew_n_per_s = 100;
   for (int k = 1; k <= 49; ++k) ASSERT_NEAR(norm(g.step().force_n), 0.1 * k, 1e-12);
   g.run(2);
-  EXPECT_EQ(g.state.force_n, kAsked);
-  // from one force to its opposite: along the line between them
-  g.asked = -kAsked;
+  EXPECT_EQ(g.state.force_n, kRequested);
+  // from a force to its opposite: along the line between them
+  g.requested = -kRequested;
   const Vec3 before = g.state.force_n;
   g.step();
   EXPECT_NEAR(norm(g.state.force_n - before), 0.1, 1e-12);
-  EXPECT_NEAR(norm(cross(g.state.force_n, kAsked)), 0, 1e-12);
+  EXPECT_NEAR(norm(cross(g.state.force_n, kRequested)), 0, 1e-12);
 }
 
-TEST(ForceLimiter, NeverGrowsAForceInAnyOrderOfConditions) {
-  // whatever happens: finite, at most what was asked, at most the limit, and zero at once on a fault
-  Guarded g;
+TEST(ForceLimiter, NeverExceedsItsLimitsInAnyOrderOfConditions) {
+  // in every condition: below the maximum force, below the slew limit, and zero at once on a fault
+  LimiterRig g;
   g.limits.max_force_n = 4;
   g.limits.slew_n_per_s = 2000;
   g.limits.ramp_in_s = 0.01;
@@ -263,7 +263,7 @@ TEST(ForceLimiter, NeverGrowsAForceInAnyOrderOfConditions) {
                             : r < 40 ? TickCondition::late
                                      : TickCondition::normal;
     if (next() % 50 == 0) g.on = !g.on;
-    g.asked = kAsked * (static_cast<double>(next() % 1000) * 1e-3);
+    g.requested = kRequested * (static_cast<double>(next() % 1000) * 1e-3);
     const Vec3 last = g.state.force_n;
     g.step(c);
     ASSERT_LE(norm(g.state.force_n), 4 + 1e-12);
@@ -281,4 +281,4 @@ TEST(ForceLimiter, NeverGrowsAForceInAnyOrderOfConditions) {
   EXPECT_GT(held, 1000);
 }
 
-}  // namespace guard_test
+}  // namespace force_limiter_test

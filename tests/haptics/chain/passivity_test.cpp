@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The ledger through the tick; the loop that it keeps quiet is closed in tests/haptics/servo/closed_loop_test.cpp.
+// The energy ledger in the tick. The closed loop is tested in tests/haptics/servo/closed_loop_test.cpp.
 #include "haptics/chain/passivity.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ struct Hand {
   }
 };
 
-TEST(StiffnessCap, HoldsForEveryLinkAndForABaseline) {
+TEST(StiffnessCap, AppliesToEveryLinkAndToABaseline) {
   Hand hand;
   hand.program.links = {hold_height("a", 0.01, 3000), hold_height("b", 0.02, 100)};
   hand.program.limits.max_stiffness_n_per_m = 200;
@@ -45,8 +45,8 @@ TEST(StiffnessCap, HoldsForEveryLinkAndForABaseline) {
   EXPECT_EQ(single.out.links[0].stiffness_n_per_m, 200);
 }
 
-TEST(Passivity, ASpringBooksTheHalfSquareOfEachStep) {
-  // down and up again by steps of 1 mm: held forces make up K/2 step^2 a tick
+TEST(Passivity, ASpringAccountsHalfKTimesStepSquaredPerTick) {
+  // down and up by steps of 1 mm: a held force generates K/2 step^2 per tick
   Hand hand;
   hand.program.links = {hold_height("a", 0, 500)};
   double expected = 0;
@@ -57,7 +57,7 @@ TEST(Passivity, ASpringBooksTheHalfSquareOfEachStep) {
     ASSERT_NEAR(hand.out.links[0].accounted_j, expected, 1e-15) << k;
     ASSERT_NEAR(hand.out.energy_j, hand.out.links[0].energy_j(1) - expected, 1e-15) << k;
   }
-  // a device that takes as much by itself: nothing is missing
+  // a device whose damping dissipates as much: the balance is the stored energy
   Hand damped;
   damped.program = hand.program;
   damped.program.limits.damping_ns_per_m = 0.25;
@@ -68,7 +68,7 @@ TEST(Passivity, ASpringBooksTheHalfSquareOfEachStep) {
   }
 }
 
-TEST(Passivity, WeightsThatRiseAreGrantedAsTheyRise) {
+TEST(Passivity, TheEnergyOfARisingWeightIsExempt) {
   Hand hand;
   hand.program.links = {hold_height("a", 0.01, 500)};
   hand.program.links[0].active_when.button = 1;
@@ -83,7 +83,7 @@ TEST(Passivity, WeightsThatRiseAreGrantedAsTheyRise) {
   }
 }
 
-TEST(Passivity, ALostDeviceBooksNothingAndBeginsAnew) {
+TEST(Passivity, ALostDeviceAccountsNoWorkAndRestarts) {
   Hand hand;
   hand.program.links = {hold_height("a", 0.01, 500)};
   hand.to(Vec3(0.0));
@@ -97,7 +97,7 @@ TEST(Passivity, ALostDeviceBooksNothingAndBeginsAnew) {
   EXPECT_NEAR(hand.out.energy_j, 4 * booked, 1e-14);
 }
 
-TEST(Passivity, TheLedgerOfAKeptLinkGoesOnUnderANewProgram) {
+TEST(Passivity, TheLedgerOfAKeptLinkContinuesUnderANewProgram) {
   Hand hand;
   hand.program.links = {hold_height("a", 0, 500)};
   hand.to(Vec3(0.0));
@@ -109,21 +109,21 @@ TEST(Passivity, TheLedgerOfAKeptLinkGoesOnUnderANewProgram) {
   rebind_program(hand.program, next, hand.state, hand.scratch);
   hand.program = next;
   hand.to({0, 0, -0.02});
-  // what is stored is with the new link now, which holds first; what the old one has given stays its own
+  // the stored energy moves to the new first link; the old link keeps the work that it has done
   EXPECT_NEAR(hand.out.links[1].accounted_j, booked - 0.5 * 500 * 4e-4, 1e-14);
   EXPECT_NEAR(hand.out.links[0].accounted_j, 0.5 * 500 * 4e-4, 1e-14);
 }
 
-TEST(Passivity, ASpringBeyondTheForceLimitStoresWhatItCanGiveBack) {
+TEST(Passivity, ASpringBeyondTheForceLimitStoresOnlyItsRecoverableEnergy) {
   Hand hand;
   hand.program.links = {hold_height("a", 0.02, 500)};
   hand.program.coupling.max_force_n = 8;
   hand.to(Vec3(0.0));
-  // 8 N over 4 mm, then the spring's last 16 mm
+  // 8 N over the first 4 mm, then the spring's energy of the last 16 mm
   EXPECT_NEAR(hand.out.energy_j, 8 * 0.004 + 0.5 * 500 * 0.016 * 0.016, 1e-14);
 }
 
-TEST(Passivity, PlacesTooLargeForADoubleLeaveNoNaN) {
+TEST(Passivity, HugePositionsGiveFiniteEnergies) {
   Hand hand;
   hand.program.links = {hold_height("a", 0, 500)};
   hand.program.limits.passivity_control = true;

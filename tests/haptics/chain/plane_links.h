@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Links whose order matters, and a hand for them: projections on planes that are not perpendicular to each other.
+/// Links whose order matters: projections on planes that are not perpendicular to each other, and a driver of the tick.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ inline haptics::Link hold_plane(const std::string& name, const Vec3& normal, dou
   return link;
 }
 
-/// Four planes; two of them by buttons 1 and 2, two modes by buttons 3 and 4 that order the links otherwise.
+/// Four planes; buttons 1 and 2 switch two of them, buttons 3 and 4 select modes with other orders of the links.
 inline haptics::HapticProgram make_order_program(double ramp_s) {
   haptics::HapticProgram program;
   program.links = {hold_plane("a", {1, 0.2, 0}, 0.1), hold_plane("b", {0.3, 1, 0.1}, -0.2, 150), hold_plane("c", {0.2, 0.5, 1}, 0.3, 80),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The rule of ramp.h at the chain: whatever is switched, ordered, replaced or lost, no tick changes the force by more than K |dx| +
-// max_force dt / ramp_s, and after the ramp it is that of the links.
+// The bound of ramp.h in the chain: under any switch, order, replacement or loss, no tick changes the force by more than
+// K |dx| + max_force dt / ramp_s, and after the ramp the force is that of the links.
 #include "haptics/chain/ramp.h"
 
 #include <functional>
@@ -16,22 +16,22 @@ using catena::test::ChainDriver;
 using catena::test::hold_plane;
 
 const Vec3 kProbe(0.3, 0.4, 0.5);
-constexpr double kMost = 40, kRamp = 0.02;
+constexpr double kMaxForceN = 40, kRamp = 0.02;
 
 HapticProgram ordered() {
   HapticProgram program = catena::test::make_order_program(kRamp);
-  program.coupling.max_force_n = kMost;
+  program.coupling.max_force_n = kMaxForceN;
   return program;
 }
 
-/// K of all links, and more.
+/// An upper bound of the stiffness of all links together.
 double stiffness(const HapticProgram& program) {
   double sum = 0;
   for (const Link& link : program.links) sum += link.stiffness_n_per_m.max() * program.meters_per_unit;
   return sum;
 }
 
-TEST(Ramp, KeepsItsBoundForAnySteps) {
+TEST(Ramp, BoundsTheForceChangeForAnySteps) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> part(-1, 1);
   Ramp ramp;
@@ -45,7 +45,7 @@ TEST(Ramp, KeepsItsBoundForAnySteps) {
   }
 }
 
-TEST(Ramp, ALinkAloneFollowsItsWeightUpAndTheRampDown) {
+TEST(Ramp, ASingleLinkRampsInByItsWeightAndOutByTheRamp) {
   HapticProgram program;
   program.links = {hold_plane("a", {0, 0, 1}, 0, 100)};
   program.links[0].active_when.button = 1;
@@ -58,7 +58,7 @@ TEST(Ramp, ALinkAloneFollowsItsWeightUpAndTheRampDown) {
   EXPECT_LE(norm(hand.step(kProbe, 0)), 1e-13);
 }
 
-TEST(Ramp, WithoutOneAllIsAtOnce) {
+TEST(Ramp, WithoutARampSwitchesActAtOnce) {
   ChainDriver ramped(catena::test::make_order_program(0)), fresh(catena::test::make_order_program(0));
   for (const std::uint32_t buttons : {0u, 1u, 3u, 7u, 4u, 8u, 0u, 2u, 12u}) {
     ramped.step(kProbe, buttons);
@@ -68,14 +68,14 @@ TEST(Ramp, WithoutOneAllIsAtOnce) {
   }
 }
 
-TEST(Ramp, HoweverLinksAreSwitchedOrderedMovedAndLost) {
+TEST(Ramp, BoundsTheForceChangeUnderSwitchesOrderChangesMotionAndLoss) {
   for (const double rate : {100.0, 1000.0, 8000.0}) {
     std::mt19937_64 random(11);
     ChainDriver hand(ordered());
-    const double fall = kMost / (rate * kRamp), k = stiffness(hand.program);
+    const double fall = kMaxForceN / (rate * kRamp), k = stiffness(hand.program);
     Vec3 at = kProbe;
     hand.step(at, 0, 1 / rate);
-    double least = 1e300, most = 0;
+    double minimum = 1e300, maximum = 0;
     std::uint32_t buttons = 0;
     for (int i = 0; i < 20000; ++i) {
       if (random() % (i < 10000 ? 40 : 1 + i % 4) == 0) buttons = static_cast<std::uint32_t>(random() % 16);
@@ -94,14 +94,14 @@ TEST(Ramp, HoweverLinksAreSwitchedOrderedMovedAndLost) {
       }
       hand.step(at, buttons, 1 / rate);
       ASSERT_LE(norm(hand.out.force_n - before), allowed) << i;
-      least = std::min(least, norm(hand.out.force_n));
-      most = std::max(most, norm(hand.out.force_n));
+      minimum = std::min(minimum, norm(hand.out.force_n));
+      maximum = std::max(maximum, norm(hand.out.force_n));
     }
-    EXPECT_GT(most - least, kMost / 8) << "the switches must matter";
+    EXPECT_GT(maximum - minimum, kMaxForceN / 8) << "the switches must matter";
   }
 }
 
-TEST(Ramp, AfterItTheForceIsThatOfTheNewOrder) {
+TEST(Ramp, AfterTheRampTheForceIsThatOfTheNewOrder) {
   for (const std::uint32_t from : {0u, 1u, 3u, 7u, 8u})
     for (const std::uint32_t to : {0u, 2u, 3u, 4u, 7u, 12u, 8u}) {
       ChainDriver hand(ordered()), fresh(ordered());
@@ -112,7 +112,7 @@ TEST(Ramp, AfterItTheForceIsThatOfTheNewOrder) {
     }
 }
 
-TEST(Ramp, WhenAProgramReplacesAnother) {
+TEST(Ramp, BoundsTheForceChangeWhenAProgramIsReplaced) {
   const HapticProgram first = ordered();
   std::vector<std::function<void(HapticProgram&)>> changes{
       [](HapticProgram& p) { p.links.erase(p.links.begin()), p.modes.clear(); },
@@ -140,13 +140,13 @@ TEST(Ramp, WhenAProgramReplacesAnother) {
       for (int i = 0; i < 45; ++i) {
         const Vec3 before = hand.out.force_n;
         hand.step(kProbe, buttons);
-        ASSERT_LE(norm(hand.out.force_n - before), kMost / 20 + 1e-12) << c << " " << buttons << " tick " << i;
+        ASSERT_LE(norm(hand.out.force_n - before), kMaxForceN / 20 + 1e-12) << c << " " << buttons << " tick " << i;
       }
       EXPECT_LE(norm(hand.out.force_n - fresh.out.force_n), 1e-10) << c << " " << buttons;
     }
 }
 
-TEST(Ramp, TheSameBitsAgainAndNoAllocation) {
+TEST(Ramp, IsDeterministicAndAllocatesNothing) {
   ChainDriver a(ordered()), b(ordered());
   std::mt19937_64 random(12);
   const AllocationCounter guard;
@@ -160,7 +160,7 @@ TEST(Ramp, TheSameBitsAgainAndNoAllocation) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-TEST(Ramp, ForcesBeyondDoublesLeaveNothingBehind) {
+TEST(Ramp, OverflowingForcesLeaveNoResidue) {
   ChainDriver hand(ordered());
   hand.step({1e308, -1e308, 1e308}, 3);
   hand.step({1e308, -1e308, 1e308}, 4);

@@ -6,7 +6,7 @@
 #include "tests/haptics/chain/plane_links.h"
 
 namespace catena::haptics {
-namespace indication_test {
+namespace release_cue_test {
 
 using Cue = ReleaseCue::Type;
 
@@ -29,7 +29,7 @@ struct Pull {
   }
 };
 
-TEST(ReleaseCue, LeavingIsTheGapByTheDistance) {
+TEST(ReleaseCue, TheReleaseRatioIsTheGapOverTheDistance) {
   Pull pull(Cue::none);
   for (const double gap : {0.0, 0.02, 0.05, 0.099}) {
     EXPECT_EQ(pull.to(gap), Vec3(0.0));
@@ -42,7 +42,7 @@ TEST(ReleaseCue, LeavingIsTheGapByTheDistance) {
   EXPECT_DOUBLE_EQ(pull.report.release_ratio, 3);
 }
 
-TEST(ReleaseCue, TheLinksOwnLimitIsTheDefaultAndNoneMeansNever) {
+TEST(ReleaseCue, TheDefaultDistanceIsTheLinksLimitAndWithoutOneThereIsNoCue) {
   Pull pull(Cue::none, 0);
   pull.link.limit = 0.2;
   pull.to(0.1);
@@ -60,7 +60,7 @@ TEST(ReleaseCue, TheLinksOwnLimitIsTheDefaultAndNoneMeansNever) {
   EXPECT_FALSE(pull.report.released);
 }
 
-TEST(ReleaseCue, ADetentOnTheWayOutAndOnTheWayBack) {
+TEST(ReleaseCue, ADetentAtTheReleaseAndAtTheReturn) {
   Pull pull(Cue::detent);
   pull.indication.amplitude_n = 0.5;
   pull.indication.duration_s = 0.01;
@@ -75,7 +75,7 @@ TEST(ReleaseCue, ADetentOnTheWayOutAndOnTheWayBack) {
   EXPECT_EQ(pull.to(0.05), Vec3(0.0));
 }
 
-TEST(ReleaseCue, ADetentWhenTheLinkLetsGoPointsToWhereItWas) {
+TEST(ReleaseCue, TheDetentOfAReleasePointsToTheLastProxy) {
   Pull pull(Cue::detent, 0);
   pull.link.limit = 0.1;
   pull.to(0.09);
@@ -83,8 +83,8 @@ TEST(ReleaseCue, ADetentWhenTheLinkLetsGoPointsToWhereItWas) {
   EXPECT_NEAR(pull.to(0).z, -0.5, 1e-12);
 }
 
-TEST(ReleaseCue, NoDetentsWhereAProxySlipsAtItsLimit) {
-  // a dragged proxy: the gap is its limit but for round-off
+TEST(ReleaseCue, OneDetentWhileAProxySlipsAtItsLimit) {
+  // a dragged proxy: the gap equals its limit up to round-off
   Pull pull(Cue::detent, 0);
   pull.link.limit = 0.1;
   pull.to(0.05);
@@ -98,21 +98,21 @@ TEST(ReleaseCue, NoDetentsWhereAProxySlipsAtItsLimit) {
   EXPECT_EQ(pulses, 1);
 }
 
-TEST(ReleaseCue, AVibrationNearLeaving) {
+TEST(ReleaseCue, AVibrationNearTheRelease) {
   Pull pull(Cue::vibration);
   pull.indication.amplitude_n = 0.4;
   pull.indication.frequency_hz = 50;
   pull.indication.onset = 0.8;
   for (int i = 0; i < 30; ++i) EXPECT_EQ(pull.to(0.0799), Vec3(0.0));
-  double least = 0, most = 0, sum = 0;
+  double minimum = 0, maximum = 0, sum = 0;
   for (int i = 0; i < 200; ++i) {
     const double z = pull.to(0.09).z;
-    least = std::min(least, z);
-    most = std::max(most, z);
+    minimum = std::min(minimum, z);
+    maximum = std::max(maximum, z);
     sum += z;
   }
-  EXPECT_NEAR(least, -0.4, 1e-9);
-  EXPECT_NEAR(most, 0.4, 1e-9);
+  EXPECT_NEAR(minimum, -0.4, 1e-9);
+  EXPECT_NEAR(maximum, 0.4, 1e-9);
   EXPECT_NEAR(sum, 0, 1e-9);  // ten whole periods
   pull.link.released = true;
   EXPECT_EQ(pull.to(0), Vec3(0.0));
@@ -131,7 +131,7 @@ TEST(ReleaseCue, ExtremesStayFinite) {
       }
 }
 
-TEST(ReleaseCue, InTheChainCuesRampInWithTheirLinkAndEndWithIt) {
+TEST(ReleaseCue, InTheChainCuesRampInAndEndWithTheirLink) {
   HapticProgram program;
   program.links = {test::hold_plane("a", {0, 0, 1}, 0, 0)};  // no stiffness: the cue alone
   program.links[0].active_when.button = 1;
@@ -144,7 +144,7 @@ TEST(ReleaseCue, InTheChainCuesRampInWithTheirLinkAndEndWithIt) {
   for (int i = 0; i < 600; ++i) {
     const double before = hand.out.force_n.z;
     hand.step(probe, i < 200 ? 1 : i < 300 ? 0 : static_cast<std::uint32_t>(i / 20 % 2));
-    // the wave's own slope is 4 x 10 Hz x 1 ms, the ramp's 0.01
+    // per tick the wave changes by at most 4 x 10 Hz x 1 ms, the ramp by 0.01
     const bool on = i < 200 || (i >= 300 && i / 20 % 2 == 1);
     if (on)
       EXPECT_LE(std::fabs(hand.out.force_n.z - before), 0.04 + 0.01 + 1e-9) << i;
@@ -169,5 +169,5 @@ TEST(ReleaseCue, ABadProbeReportsNoGap) {
   EXPECT_EQ(hand.out.force_n, Vec3(0.0));
 }
 
-}  // namespace indication_test
+}  // namespace release_cue_test
 }  // namespace catena::haptics

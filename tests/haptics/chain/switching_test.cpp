@@ -33,7 +33,7 @@ TEST(Switching, WithoutSwitchesAllLinksRunAsListed) {
   EXPECT_EQ(word(step_switches(program, 0, 0, state)), "");
 }
 
-TEST(Switching, AButtonHoldsAndEveryOneOfThem32Works) {
+TEST(Switching, EachOf32ButtonsSwitchesWhileHeld) {
   for (int button = 1; button <= 32; ++button) {
     const HapticProgram program = with({.button = button});
     SwitchState state;
@@ -45,7 +45,7 @@ TEST(Switching, AButtonHoldsAndEveryOneOfThem32Works) {
   }
 }
 
-TEST(Switching, AToggleTurnsOverOnEachPressAlone) {
+TEST(Switching, AToggleFlipsOnEachPress) {
   const HapticProgram program = with({.button = 2, .toggle = true});
   SwitchState state;
   const std::pair<std::uint32_t, int> steps[] = {{0, 0}, {2, 1}, {2, 1}, {3, 1}, {1, 1}, {0, 1},
@@ -64,7 +64,7 @@ TEST(Switching, AForceSwitchesWithHysteresis) {
   EXPECT_EQ(step_switches(same, 0, 3, other).count, 0);
 }
 
-TEST(Switching, ModesOrderTheLinksAndTheFirstOneWins) {
+TEST(Switching, ModesOrderTheLinksAndTheFirstActiveModeWins) {
   const HapticProgram program = test::make_order_program(0);
   SwitchState state;
   EXPECT_EQ(word(step_switches(program, 0, 0, state)), "ac");
@@ -109,7 +109,7 @@ TEST(Switching, TheChainRunsInTheModesOrder) {
   const Vec3 probe(0.3, 0.4, 0.5);
   hand.step(probe, 3 + 4);
   EXPECT_EQ(hand.out.mode, 0);
-  // each proxy lies on its own plane, projected from the one before it in the mode's order
+  // each proxy is on its own plane, projected from the one before it in the mode's order
   Vec3 before = probe;
   for (const int i : {3, 2, 1, 0}) {
     LinkState alone;
@@ -118,14 +118,14 @@ TEST(Switching, TheChainRunsInTheModesOrder) {
     EXPECT_EQ(hand.out.links[static_cast<std::size_t>(i)].proxy, alone.proxy) << i;
     before = alone.proxy;
   }
-  // links outside the mode are off and pass the probe through
+  // links that are not in the mode are off and pass the probe through
   hand.step(probe, 3 + 8);
   EXPECT_FALSE(hand.out.links[1].active);
   EXPECT_EQ(hand.out.links[1].proxy, probe);
   EXPECT_EQ(hand.out.links[1].weight, 0);
 }
 
-TEST(Switching, RebindKeepsTogglesAndModesOfTheSameName) {
+TEST(Switching, RebindKeepsTogglesOfLinksAndModesByName) {
   HapticProgram program = test::make_order_program(0);
   program.links[1].active_when = {.button = 1, .toggle = true};
   program.modes[1].active_when = {.button = 4, .toggle = true};

@@ -55,7 +55,7 @@ TEST(Tick, DampingUsesTheTimeBetweenSamplesAndIsZeroAtTickZero) {
   EXPECT_DOUBLE_EQ(run.out.force_n.x, -2 * 0.1 * 3 / 0.5);
 }
 
-TEST(Tick, AClockThatGoesBackStandsStill) {
+TEST(Tick, ADecreasingClockAdvancesNoWeight) {
   Hand run;
   run.program.links = {hold_height("a", 1)};
   run.program.links[0].active_when.button = 1;
@@ -72,12 +72,12 @@ TEST(Tick, AClockThatGoesBackStandsStill) {
   EXPECT_NEAR(run.out.links[0].weight, 0.75, 1e-12);
 }
 
-TEST(Tick, WhatItTellsOfALinkIsFiniteForEveryProbe) {
+TEST(Tick, TheReportOfALinkIsFiniteForEveryProbe) {
   Hand run;
   run.program.links = {hold_height("a", 1), hold_height("b", -1.7e308)};
   run.program.links[1].active_when.button = 1;
   run.program.coupling.ramp_s = 0.02;
-  const double most = std::numeric_limits<double>::max();
+  const double largest = std::numeric_limits<double>::max();
   int k = 0;
   for (const double z : {1.7e308, -1.7e308, 1e300, 1e154, 0.0})
     for (const std::uint32_t buttons : {0u, 1u, 1u}) {
@@ -88,8 +88,8 @@ TEST(Tick, WhatItTellsOfALinkIsFiniteForEveryProbe) {
         EXPECT_TRUE(std::isfinite(link.gap) && std::isfinite(link.energy_j(1))) << z;
       }
       if (std::fabs(z) > 1e307) {
-        EXPECT_EQ(run.out.links[0].force_n.z, z > 0 ? -most : most);
-        EXPECT_EQ(run.out.links[0].energy_j(1), most);
+        EXPECT_EQ(run.out.links[0].force_n.z, z > 0 ? -largest : largest);
+        EXPECT_EQ(run.out.links[0].energy_j(1), largest);
       }
       EXPECT_TRUE(is_finite(run.out.force_n)) << z;
     }
@@ -108,7 +108,7 @@ TEST(Tick, ForceIsLimitedAndKeepsItsDirection) {
   EXPECT_NEAR(run.out.force_n.z, 8 / std::sqrt(2.0), 1e-14);
 }
 
-TEST(Tick, AForceBeyondDoublesIsStillLimitedInItsDirection) {
+TEST(Tick, AnOverflowingForceIsLimitedInItsDirection) {
   Hand run;
   run.program.links = {hold_height("a", 1)};
   run.step(0, {0, 0, -1.7e308});
@@ -119,7 +119,7 @@ TEST(Tick, AForceBeyondDoublesIsStillLimitedInItsDirection) {
   EXPECT_LT(run.out.force_n.x, 0);
 }
 
-TEST(Tick, BadProbeHoldsProxiesAndGivesNoForce) {
+TEST(Tick, ABadProbeHoldsTheProxiesAndGivesNoForce) {
   Hand run;
   run.program.links = {hold_height("a", 1)};
   run.step(0, {0.5, 0, 0});
@@ -146,7 +146,7 @@ TEST(Tick, ASwitchedOffLinkPassesItsProbeThroughBitForBit) {
   EXPECT_FALSE(run.out.links[0].active);
   EXPECT_EQ(std::memcmp(&run.out.links[0].proxy, &probe, sizeof probe), 0);
   EXPECT_EQ(run.out.force_n, Vec3(0.0));
-  // switched on: the weight climbs over the ramp
+  // switched on: the weight rises over the ramp
   double last = 0;
   for (int k = 1; k <= 4; ++k) {
     run.step(0.001 * k, probe, 2);
@@ -157,7 +157,7 @@ TEST(Tick, ASwitchedOffLinkPassesItsProbeThroughBitForBit) {
   }
 }
 
-TEST(Tick, TimeThatRunsBackCountsAsNone) {
+TEST(Tick, ADecreasingClockGivesNoDamping) {
   Hand run;
   run.program.links = {hold_height("a", 1)};
   run.program.links[0].active_when.button = 1;
@@ -173,7 +173,7 @@ TEST(Tick, TimeThatRunsBackCountsAsNone) {
   EXPECT_DOUBLE_EQ(run.out.force_n.z, 250);
 }
 
-TEST(Tick, ALinkCanWaitForAForce) {
+TEST(Tick, AForceSwitchActivatesALinkOneTickLater) {
   Hand run;
   run.program.links = {hold_height("a", 1, 5), hold_height("b", 2, 5)};
   run.program.links[1].active_when.force_above_n = 3;
@@ -197,7 +197,7 @@ TEST(Tick, AllocatesNothing) {
   EXPECT_EQ(control.count(), 1u) << "the counter itself must work";
 }
 
-TEST(Tick, StateHashSeesEveryBit) {
+TEST(Tick, StateHashDistinguishesSignedZeros) {
   HapticState a;
   a.link_count = 1;
   HapticState b = a;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// No switch, reorder or change of shape makes a force jump; what a tick costs in memory; that it repeats; hostile input.
+// Widgets in the tick: no force jumps at switches, reorders or changes of shape; hostile input; determinism; no allocation.
 #include <random>
 
 #include "engine/base/memory_limit.h"
@@ -22,7 +22,7 @@ struct Step {
   std::uint32_t buttons;
 };
 
-// Through every transition of a cutting plane: pressing and letting go where the springs are stretched.
+// Every transition of a cutting plane: buttons are pressed and released where the springs are stretched.
 std::vector<Step> plane_script() {
   const double a = 0.48 * 0.6, b = 0.48 * 0.8;
   return {{{1, 0, 0.5}, 0},         {{1, 0, 0.07}, 0},        {{1, 0, 0.19}, 0},      {{1, 0, 0.3}, 0},        // explore, away
@@ -40,12 +40,12 @@ std::vector<Step> handles_script() {
 }
 
 struct Jumps {
-  double most = 0;
-  double over = 0;  // the most that a tick was above what it may
+  double maximum = 0;
+  double over = 0;  // maximum excess of a tick over allowed()
   int changes = 0;
 };
 
-// What a tick may change: the rule of ramp.h, K from above.
+// Allowed force change of a tick by ramp.h, with an upper bound of K.
 double allowed(const WidgetProbe& hand, double ramp_step, double move) {
   return ramp_step * hand.program.coupling.max_force_n + 8 * 500 * move;
 }
@@ -57,10 +57,10 @@ void drive(WidgetProbe& hand, const std::vector<Step>& script, double speed, dou
   for (const Step& step : script) {
     const Vec3 from = hand.position;
     const int n = std::max(1, static_cast<int>(std::ceil(norm(step.to - from) / move)));
-    for (int i = 1; i <= n + 60; ++i) {  // and rests a while
+    for (int i = 1; i <= n + 60; ++i) {  // then rests for 60 ticks
       hand.step(i >= n ? step.to : from + (step.to - from) * (static_cast<double>(i) / n), step.buttons, dt);
       const double jump = norm(hand.out.force_n - before);
-      out.most = std::max(out.most, jump);
+      out.maximum = std::max(out.maximum, jump);
       out.over = std::max(out.over, jump - allowed(hand, dt / ramp_s, i <= n ? move : 0));
       before = hand.out.force_n;
       out.changes += order == hand.state.order ? 0 : 1;
@@ -75,7 +75,7 @@ TEST(WidgetForce, NoTransitionOfACuttingPlaneMakesTheForceJump) {
   for (const RotationMode turning : {RotationMode::any, RotationMode::free, RotationMode::axis})
     for (const bool touch : {false, true})
       for (const bool with_links : {false, true}) {
-        std::vector<double> most;
+        std::vector<double> maximum;
         for (const double dt : {1e-3, 2.5e-4, 6.25e-5}) {
           Spec spec = make_widget_spec(Kind::cutting_plane);
           spec.rotation = turning;
@@ -86,27 +86,27 @@ TEST(WidgetForce, NoTransitionOfACuttingPlaneMakesTheForceJump) {
           drive(hand, plane_script(), 2, dt, 0.05, jumps);
           EXPECT_GT(jumps.changes, 12);
           EXPECT_LE(jumps.over, 1e-9) << dt;
-          most.push_back(jumps.most);
+          maximum.push_back(jumps.maximum);
         }
-        // the largest step goes with the tick: nothing in it is a jump
-        EXPECT_LT(most[1], 0.6 * most[0]);
-        EXPECT_LT(most[2], 0.6 * most[1]);
+        // the largest force step scales with the tick, so none is a jump
+        EXPECT_LT(maximum[1], 0.6 * maximum[0]);
+        EXPECT_LT(maximum[2], 0.6 * maximum[1]);
       }
 }
 
-TEST(WidgetForce, WithoutTheRampItJumps) {
+TEST(WidgetForce, WithoutTheRampTheForceJumps) {
   WidgetProbe hand(make_widget_program({make_widget_spec(Kind::cutting_plane)}, scene_links(), 0));
   hand.step({1, 0, 0.5});
   Jumps jumps;
   drive(hand, plane_script(), 2, 1e-3, 0.05, jumps);
-  EXPECT_GT(jumps.most, 50);
+  EXPECT_GT(jumps.maximum, 50);
   EXPECT_GT(jumps.over, 20) << "what the other tests hold forces to is no idle bound";
 }
 
 TEST(WidgetForce, NoTransitionOfHandlesMakesTheForceJump) {
   std::vector<Spec> specs{make_widget_spec(Kind::seed, {1, 0, 0}), make_widget_spec(Kind::rake, {0, 1, 0}, {0, 1, 1}),
                           make_widget_spec(Kind::box, {-1, -0.5, -0.4}, {-0.5, 0.5, 0.6})};
-  std::vector<double> most;
+  std::vector<double> maximum;
   for (const double dt : {1e-3, 2.5e-4}) {
     WidgetProbe hand(make_widget_program(specs, scene_links(), 0.05));
     hand.step({1, 0, 0.5});
@@ -114,13 +114,13 @@ TEST(WidgetForce, NoTransitionOfHandlesMakesTheForceJump) {
     drive(hand, handles_script(), 2, dt, 0.05, jumps);
     EXPECT_GT(jumps.changes, 9);
     EXPECT_LE(jumps.over, 1e-9) << dt;
-    most.push_back(jumps.most);
+    maximum.push_back(jumps.maximum);
   }
-  EXPECT_LT(most[1], 0.6 * most[0]);
+  EXPECT_LT(maximum[1], 0.6 * maximum[0]);
 }
 
-// explore's plane z goes through the centre, translate's through the probe: one link, another shape
-TEST(WidgetForce, ALinkOnAnotherShapeStartsAnewAndItsOldForceFades) {
+// plane z of mode explore passes through the centre, that of mode translate through the probe: the same link with another shape
+TEST(WidgetForce, ALinkWithAChangedShapeRestartsAndItsOldForceRampsOut) {
   WidgetProbe hand(make_widget_program({make_widget_spec(Kind::cutting_plane)}, {}, 0.1));
   hand.step({1, 0, 0.5});
   hand.step({1, 0, 0.05});
@@ -138,7 +138,7 @@ TEST(WidgetForce, ALinkOnAnotherShapeStartsAnewAndItsOldForceFades) {
   EXPECT_NEAR(norm(hand.out.force_n), 0, 1e-9);
 }
 
-TEST(WidgetForce, WhileOneIsGrabbedTheScenesLinksAreOff) {
+TEST(WidgetForce, WhileAWidgetIsGrabbedTheScenesLinksAreOff) {
   WidgetProbe hand(make_widget_program({make_widget_spec(Kind::cutting_plane)}, scene_links()));
   hand.step({1, 0, 0});
   EXPECT_EQ(hand.link_order(), "a b widget_z");
@@ -163,7 +163,7 @@ HapticProgram everything(double ramp_s) {
       scene_links(), ramp_s);
 }
 
-// 1e5 ticks of any button and any probe, places far away and none at all among them.
+// Ticks with random buttons and probes, including far away and non-finite positions.
 std::uint64_t hostile(std::uint64_t seed, int ticks) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> anywhere(-1.2, 1.2), unit(0, 1);
@@ -202,7 +202,7 @@ std::uint64_t hostile(std::uint64_t seed, int ticks) {
   return hash.value();
 }
 
-TEST(WidgetForce, HostileTicksStayFiniteUnitAndInOrderAndRepeat) {
+TEST(WidgetForce, HostileTicksKeepPosesValidAndAreRepeatable) {
   const std::uint64_t first = hostile(7, 100000);
   EXPECT_EQ(first, hostile(7, 100000));
   EXPECT_NE(first, hostile(8, 1000));

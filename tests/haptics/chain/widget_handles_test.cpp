@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Seed, rake, box, isolevel and ruler by scripted paths, against closed forms.
+// Seed, rake, box, isolevel and ruler on scripted paths, against closed forms.
 #include "tests/haptics/chain/plane_links.h"
 #include "tests/haptics/chain/widget_probe.h"
 
@@ -15,7 +15,7 @@ using widget::Spec;
 
 constexpr double kStep = 0.08;
 
-/// Hovers over a handle and takes it.
+/// Hovers over a handle and grabs it.
 void take(WidgetProbe& hand, const Vec3& at) {
   hand.step(at);
   ASSERT_EQ(hand.mode_name(), "hover");
@@ -23,7 +23,7 @@ void take(WidgetProbe& hand, const Vec3& at) {
   ASSERT_EQ(hand.mode_name(), "drag");
 }
 
-TEST(WidgetHandles, AHandleDrawsTheProbeAndIsDraggedWithThePlanes) {
+TEST(WidgetHandles, AHandleAttractsTheProbeAndIsDraggedOnThePlanes) {
   const Vec3 at(0.3, -0.2, 0.1);
   WidgetProbe hand({make_widget_spec(Kind::seed, at)});
   hand.step({1, 0, 0});
@@ -53,7 +53,7 @@ TEST(WidgetHandles, AHandleDrawsTheProbeAndIsDraggedWithThePlanes) {
   EXPECT_EQ(hand.widget_position(), left);
 }
 
-TEST(WidgetHandles, TheEndsAndTheMiddleOfARake) {
+TEST(WidgetHandles, ARakeIsDraggedByItsEndsAndItsMiddle) {
   const Vec3 from(0, 0, 0), to(1, 0, 0.5), move(0.3, 0.01, -0.4), moved(0.3 - kStep, 0, -0.4 + kStep);
   for (int handle = 0; handle < 3; ++handle) {
     WidgetProbe hand({make_widget_spec(Kind::rake, from, to)});
@@ -72,7 +72,7 @@ TEST(WidgetHandles, TheEndsAndTheMiddleOfARake) {
   }
 }
 
-TEST(WidgetHandles, EveryFaceOfABoxMovesAlongItsNormalAndStopsBeforeTheOther) {
+TEST(WidgetHandles, EveryFaceOfABoxMovesAlongItsNormalAndStopsBeforeTheOppositeFace) {
   const Vec3 lo(-0.5, -0.4, -0.3), hi(0.5, 0.4, 0.7);
   for (int face = 0; face < 6; ++face) {
     const int axis = face / 2;
@@ -84,7 +84,7 @@ TEST(WidgetHandles, EveryFaceOfABoxMovesAlongItsNormalAndStopsBeforeTheOther) {
     EXPECT_EQ(hand.report().handle, face);
     EXPECT_EQ(hand.report().active_planes, 7 & ~(1 << axis));
     const auto drag = [&](double by) {
-      Vec3 probe = at + Vec3(0.3, -0.2, 0.25);  // aside: the planes hold, however far
+      Vec3 probe = at + Vec3(0.3, -0.2, 0.25);  // off the axis: the planes hold at any distance
       probe[axis] = at[axis] + by;
       const auto& points = hand.step(probe, 1).pose.points;
       for (int a = 0; a < 3; ++a) EXPECT_TRUE(a == axis || (points[0][a] == lo[a] && points[1][a] == hi[a]));
@@ -100,7 +100,7 @@ TEST(WidgetHandles, EveryFaceOfABoxMovesAlongItsNormalAndStopsBeforeTheOther) {
   }
 }
 
-TEST(WidgetHandles, TheCentreOfABoxMovesItWhole) {
+TEST(WidgetHandles, TheCentreOfABoxMovesTheWholeBox) {
   const Vec3 lo(-0.5, -0.4, -0.3), hi(0.5, 0.4, 0.7);
   WidgetProbe hand({make_widget_spec(Kind::box, lo, hi)});
   take(hand, (lo + hi) * 0.5);
@@ -136,7 +136,7 @@ class Bowl final : public field::ScalarField {
   double b_;
 };
 
-TEST(WidgetHandles, AnIsolevelMovesAlongTheGradientAndTellsTheValue) {
+TEST(WidgetHandles, AnIsolevelMovesAlongTheGradientAndReportsTheValue) {
   const Vec3 at(0.3, -0.2, 0.1), a(1, 2, -0.5);
   Spec spec = make_widget_spec(Kind::isolevel, at);
   spec.field = std::make_shared<Bowl>(a, 0.7);
@@ -155,13 +155,13 @@ TEST(WidgetHandles, AnIsolevelMovesAlongTheGradientAndTellsTheValue) {
     ASSERT_LE(distance_between(hand.widget_position(), at + n * u), 1e-14) << k;
     ASSERT_EQ(hand.report().value, value(hand.widget_position()));
   }
-  // out of the field the last value stays
+  // outside the field the last value is kept
   const double last = hand.report().value;
   hand.step(at + n * 30.0, 1);
   EXPECT_EQ(hand.report().value, last);
 }
 
-TEST(WidgetHandles, AnIsolevelWithoutAGradientMovesAsASeed) {
+TEST(WidgetHandles, AnIsolevelWithoutAGradientMovesLikeASeed) {
   Spec spec = make_widget_spec(Kind::isolevel, {0.3, -0.2, 0.1});
   spec.field = std::make_shared<Bowl>(Vec3(0.0), 0);
   WidgetProbe hand({spec});
@@ -171,7 +171,7 @@ TEST(WidgetHandles, AnIsolevelWithoutAGradientMovesAsASeed) {
   EXPECT_LE(distance_between(hand.widget_position(), {0.3, 0.3 - kStep, 0.1}), 1e-15);
 }
 
-TEST(WidgetHandles, ARulersEndKeepsToTheLinksThatItGoesAlong) {
+TEST(WidgetHandles, ARulersEndFollowsTheProxyOfItsLinks) {
   Spec spec = make_widget_spec(Kind::ruler, {0, 0, 0}, {1, 0, 0});
   spec.along_links = {1, 0};
   WidgetProbe hand(make_widget_program({spec}, {test::hold_plane("a", {1, 0.2, 0}, 0.9), test::hold_plane("b", {0.3, 1, 0.1}, -0.2)}));
@@ -183,12 +183,12 @@ TEST(WidgetHandles, ARulersEndKeepsToTheLinksThatItGoesAlong) {
     ASSERT_EQ(hand.report().pose.points[1], hand.out.links[0].proxy);
     ASSERT_EQ(hand.report().pose.points[0], Vec3(0.0));
   }
-  // a link that is switched off is none of them
+  // a link that is switched off is skipped
   hand.program.links[0].active_when.button = 5;
   hand.step({1, 0, 0}, 1);
   EXPECT_EQ(hand.link_order(), "b");
   EXPECT_EQ(hand.report().pose.points[1], hand.out.links[1].proxy);
-  // the whole is moved freely
+  // the middle handle moves freely
   hand.step({9, 9, 9});
   const auto points = hand.report().pose.points;
   const Vec3 middle = (points[0] + points[1]) * 0.5;
@@ -197,9 +197,9 @@ TEST(WidgetHandles, ARulersEndKeepsToTheLinksThatItGoesAlong) {
   EXPECT_EQ(hand.link_order(), "widget_x widget_y widget_z");
 }
 
-// ---- a probe that is lost, programs that take over ----
+// ---- lost probes and replaced programs ----
 
-TEST(WidgetGrab, IsHeldWhileThereIsNoProbeAndGoesOnWithoutAJump) {
+TEST(WidgetGrab, AGrabIsHeldWithoutAProbeAndContinuesWithoutAJump) {
   for (const TickCondition condition : {TickCondition::normal, TickCondition::no_device, TickCondition::watchdog}) {
     WidgetProbe hand({make_widget_spec(Kind::cutting_plane)});
     hand.step({1, 0, 0.01});
@@ -214,7 +214,7 @@ TEST(WidgetGrab, IsHeldWhileThereIsNoProbeAndGoesOnWithoutAJump) {
       ASSERT_EQ(hand.mode_name(), "translate");
       ASSERT_EQ(hand.out.force_n, Vec3(0.0));
     }
-    // it is back somewhere else, the button down: as if the hand had been carried there
+    // the probe returns elsewhere with the button down: the drag continues relative to the new position
     hand.step({-2, 1, 3}, 1);
     EXPECT_EQ(hand.mode_name(), "translate");
     EXPECT_LE(distance_between(hand.widget_position(), before.pose.points[0]), 1e-15);
@@ -223,7 +223,7 @@ TEST(WidgetGrab, IsHeldWhileThereIsNoProbeAndGoesOnWithoutAJump) {
   }
 }
 
-TEST(WidgetGrab, IsLetGoWhereTheProbeComesBackWithoutTheButton) {
+TEST(WidgetGrab, AGrabEndsIfTheProbeReturnsWithoutTheButton) {
   WidgetProbe hand({make_widget_spec(Kind::cutting_plane)});
   hand.step({1, 0, 0.01});
   hand.step({1, 0, 0.01}, 1);
@@ -233,13 +233,13 @@ TEST(WidgetGrab, IsLetGoWhereTheProbeComesBackWithoutTheButton) {
   hand.step({-2, 1, 0}, 0);
   EXPECT_EQ(hand.mode_name(), "explore");
   EXPECT_EQ(hand.widget_position(), before);
-  // a press while nobody looked is none
+  // a press while the probe was lost does not count
   hand.step({NAN, 0, 0}, 0);
   hand.step({-2, 1, 0}, 1);
   EXPECT_EQ(hand.mode_name(), "explore");
 }
 
-TEST(WidgetGrab, ATurnGoesOnWithoutAJump) {
+TEST(WidgetGrab, ATurnContinuesWithoutAJump) {
   for (const widget::RotationMode turning : {widget::RotationMode::free, widget::RotationMode::axis}) {
     Spec spec = make_widget_spec(Kind::cutting_plane);
     spec.rotation = turning;
@@ -258,7 +258,7 @@ TEST(WidgetGrab, ATurnGoesOnWithoutAJump) {
   }
 }
 
-TEST(WidgetGrab, ARulersEndOnLinksIsLetGo) {
+TEST(WidgetGrab, ARulersEndOnLinksIsReleased) {
   Spec spec = make_widget_spec(Kind::ruler, {0, 0, 0}, {1, 0, 0});
   spec.along_links = {0};
   WidgetProbe hand(make_widget_program({spec}, {test::hold_plane("a", {1, 0.2, 0}, 0.9)}));
@@ -270,13 +270,13 @@ TEST(WidgetGrab, ARulersEndOnLinksIsLetGo) {
   EXPECT_EQ(hand.report().pose, before);
 }
 
-TEST(WidgetRebind, KeepsWhatTheHandMadeUnlessThePoseWasSetSince) {
+TEST(WidgetRebind, KeepsThePoseByHandUnlessANewerOneWasSet) {
   WidgetProbe hand(make_widget_program({make_widget_spec(Kind::seed, {5, 5, 5}), make_widget_spec(Kind::cutting_plane)}, {}, 0.05));
   hand.step({1, 0, 0.01});
   hand.step({1, 0, 0.01}, 1);
   hand.step({1.3, 0, 0.01}, 1);
   const auto before = hand.report(1);
-  // another order of widgets, another link before theirs: by name
+  // widgets are matched by name under another order and with another link before theirs
   HapticProgram next = make_widget_program({make_widget_spec(Kind::cutting_plane), make_widget_spec(Kind::seed, {7, 7, 7})},
                                            {test::hold_plane("a", {0, 1, 0}, 0)}, 0.05);
   next.widget_names = {"w1", "w0"};
@@ -286,7 +286,7 @@ TEST(WidgetRebind, KeepsWhatTheHandMadeUnlessThePoseWasSetSince) {
   EXPECT_EQ(hand.report(0).pose, before.pose);
   EXPECT_EQ(hand.widget_position(1), Vec3(5, 5, 5)) << "the revision is the same";
   EXPECT_EQ(hand.link_order(), "widget_y widget_z");
-  // set from outside
+  // a newer pose set by the scene
   next.widgets[0].revision = 1;
   next.widgets[0].pose.points[0] = {0.5, 0.5, 3};
   hand.replace(next);
@@ -294,20 +294,20 @@ TEST(WidgetRebind, KeepsWhatTheHandMadeUnlessThePoseWasSetSince) {
   EXPECT_EQ(hand.mode_name(0), "away");
   EXPECT_EQ(hand.widget_position(0), Vec3(0.5, 0.5, 3));
   EXPECT_EQ(hand.report(0).revision, 1u);
-  // an older one does not win again
+  // an older revision is ignored
   next.widgets[0].revision = 0;
   next.widgets[0].pose.points[0] = {9, 9, 9};
   hand.replace(next);
   hand.step({1.3, 0, 0.01}, 1);
   EXPECT_EQ(hand.widget_position(0), Vec3(0.5, 0.5, 3));
-  // another kind of the same name is another widget
+  // a widget of another kind with the same name is another widget
   next.widgets[0] = make_widget_spec(Kind::seed, {2, 2, 2});
   hand.replace(next);
   hand.step({1.3, 0, 0.01}, 1);
   EXPECT_EQ(hand.widget_position(0), Vec3(2, 2, 2));
 }
 
-TEST(WidgetRebind, ReportsThePosesBeforeThereIsAProbe) {
+TEST(WidgetRebind, ReportsThePosesWithoutAValidProbe) {
   WidgetProbe hand({make_widget_spec(Kind::seed, {1, 2, 3})});
   hand.step({NAN, 0, 0});
   EXPECT_EQ(hand.out.widget_count, 1);

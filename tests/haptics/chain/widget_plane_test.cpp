@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The cutting plane by scripted paths, against closed forms (paper, section 6.2).
+// The cutting plane on scripted paths, against closed forms (paper, section 6.2).
 #include <random>
 
 #include "tests/haptics/chain/widget_probe.h"
@@ -58,15 +58,15 @@ TEST(WidgetPlane, ModesAndTheirChainsInOrder) {
   EXPECT_EQ(hand.mode_name(), "turn");
   EXPECT_EQ(hand.link_order(), "widget_y widget_sphere");
   EXPECT_EQ(hand.report().active_planes, 2);
-  hand.step({0.12 + 0.48 * 0.8, 0.09, 0.48 * 0.6}, 1);  // the plane lets go
+  hand.step({0.12 + 0.48 * 0.8, 0.09, 0.48 * 0.6}, 1);  // the plane of the great circle releases
   EXPECT_EQ(hand.link_order(), "widget_sphere");
-  hand.step({0.12 + 0.48 * 0.8, 0, 0.48 * 0.6}, 1);  // until the hand does
+  hand.step({0.12 + 0.48 * 0.8, 0, 0.48 * 0.6}, 1);  // it stays released until the button is
   EXPECT_EQ(hand.link_order(), "widget_sphere");
   hand.step({5, 5, 5}, 0);
   EXPECT_EQ(hand.mode_name(), "away");
 }
 
-TEST(WidgetPlane, TwoGreatCirclesAtAPole) {
+TEST(WidgetPlane, AtAPoleTwoGreatCirclesAreActive) {
   WidgetProbe hand({plane({0, 0, 0})});
   hand.step({0.02, -0.03, 0.5});
   EXPECT_EQ(hand.link_order(), "widget_x widget_y widget_sphere");
@@ -74,8 +74,8 @@ TEST(WidgetPlane, TwoGreatCirclesAtAPole) {
   EXPECT_LE(distance_between(hand.out.links[3].proxy, {0, 0, 0.48}), 1e-15);
 }
 
-// A drag along x by a hand that trembles: y and z stay to the bit, x follows the closed form.
-TEST(WidgetPlane, ADragAlongXLeavesYAndZ) {
+// A trembling drag along x: y and z stay bit-identical, x follows the closed form.
+TEST(WidgetPlane, ADragAlongXKeepsYAndZBitForBit) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> jitter(-0.99 * kStep, 0.99 * kStep);
   const Vec3 center{0.1, -0.2, 0.3};
@@ -97,7 +97,7 @@ TEST(WidgetPlane, ADragAlongXLeavesYAndZ) {
   EXPECT_NEAR(hand.widget_position().x, center.x + 1.2 - kStep, 1e-15);
 }
 
-TEST(WidgetPlane, ADragInATurnedFrameStaysOnItsAxis) {
+TEST(WidgetPlane, ADragInARotatedFrameStaysOnItsAxis) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> jitter(-0.99 * kStep, 0.99 * kStep);
   for (int axis = 0; axis < 3; ++axis) {
@@ -132,7 +132,7 @@ TEST(WidgetPlane, MotionAlongTwoAndThreeAxes) {
   EXPECT_LE(distance_between(hand.widget_position(), center + Vec3(0.5 - kStep, 0.7 - kStep, -0.6 + kStep)), 1e-15);
 }
 
-// The pose depends on where the hand is, not on how it came there; back within the step an axis is where it was.
+// The position depends only on the probe's position, not its path; back within the step an axis is at its start.
 TEST(WidgetPlane, TranslationIsIndependentOfThePath) {
   const Frame frame{{0.1, -0.2, 0.3}, test::kTilted};
   const Vec3 grab = frame.world({0.9, 0.4, 0.03}), end = grab + Vec3(0.31, -0.22, 0.17);
@@ -151,7 +151,7 @@ TEST(WidgetPlane, TranslationIsIndependentOfThePath) {
   EXPECT_EQ(wandering.widget_position(), frame.center);
 }
 
-TEST(WidgetPlane, GrabbingAndLettingGoDoNotMoveIt) {
+TEST(WidgetPlane, GrabbingAndReleasingDoNotMoveThePlane) {
   const Frame frame{{0.1, -0.2, 0.3}, test::kTilted};
   WidgetProbe hand({plane(frame.center, frame.q)});
   for (int k = 0; k < 20; ++k) {
@@ -164,14 +164,14 @@ TEST(WidgetPlane, GrabbingAndLettingGoDoNotMoveIt) {
   EXPECT_LE(distance_between(rotate(hand.report().pose.orientation, {1, 0, 0}), frame.axis(0)), 1e-14);
 }
 
-/// A point of the great circle across `axis`, `angle` from the next axis, at `radius`, `aside` off its plane.
+/// A point on the great circle perpendicular to `axis`, at `angle` from the next axis and `radius`, `aside` off its plane.
 Vec3 on_circle(const Frame& frame, int axis, double angle, double radius, double aside = 0) {
   return frame.center + frame.axis((axis + 1) % 3) * (radius * std::cos(angle)) + frame.axis((axis + 2) % 3) * (radius * std::sin(angle)) +
          frame.axis(axis) * aside;
 }
 
-// Many laps by a hand that trembles off the plane and off the sphere: the axis stays, the angle is that of the hand.
-TEST(WidgetPlane, AxisRotationKeepsItsAxisAndTurnsByTheHandsAngle) {
+// Many laps of a hand that trembles off the plane and off the sphere: the axis stays fixed, the angle is the hand's.
+TEST(WidgetPlane, AxisRotationKeepsTheAxisAndRotatesByTheHandsAngle) {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> jitter(-0.99 * kStep, 0.99 * kStep), radius(0.2, 0.9);
   for (const Quat& q : {kIdentityRotation, test::kTilted})
@@ -196,8 +196,8 @@ TEST(WidgetPlane, AxisRotationKeepsItsAxisAndTurnsByTheHandsAngle) {
     }
 }
 
-// The vector part of the quaternion lies on the axis to the bit, where the widget began unturned.
-TEST(WidgetPlane, AnAxisOfTheWorldStaysToTheBit) {
+// For a widget that starts unrotated, the vector part of the quaternion lies exactly on the axis.
+TEST(WidgetPlane, AWorldAxisStaysFixedBitForBit) {
   const Frame frame{{0, 0, 0}, kIdentityRotation};
   WidgetProbe hand({plane(frame.center)});
   hand.step(on_circle(frame, 2, 0.7, 0.48));
@@ -209,11 +209,11 @@ TEST(WidgetPlane, AnAxisOfTheWorldStaysToTheBit) {
   }
 }
 
-TEST(WidgetPlane, FreeRotationAlongAGreatCircleIsTheRotationInIt) {
+TEST(WidgetPlane, FreeRotationAlongAGreatCircleIsARotationInItsPlane) {
   Spec spec = plane({0.1, -0.2, 0.3}, test::kTilted);
   spec.rotation = RotationMode::free;
   const Frame frame{spec.pose.points[0], spec.pose.orientation};
-  // some circle that is none of the three
+  // a great circle other than the three of the axes
   const Frame circle{frame.center, normalized(Quat(0.5, 0.5, 0.1, -0.6))};
   WidgetProbe hand({spec});
   hand.step(on_circle(circle, 2, 0.2, 0.48));
@@ -230,7 +230,7 @@ TEST(WidgetPlane, FreeRotationAlongAGreatCircleIsTheRotationInIt) {
   }
 }
 
-TEST(WidgetPlane, AnyTurnsFreelyOnceThePlaneLetsGoWithoutAJump) {
+TEST(WidgetPlane, InModeAnyTheRotationBecomesFreeWithoutAJump) {
   const Frame frame{{0, 0, 0}, test::kTilted};
   WidgetProbe hand({plane(frame.center, frame.q)});
   hand.step(on_circle(frame, 0, 0.3, 0.48));
@@ -239,22 +239,22 @@ TEST(WidgetPlane, AnyTurnsFreelyOnceThePlaneLetsGoWithoutAJump) {
   bool free = false;
   for (int k = 1; k <= 400; ++k) {
     const auto& report = hand.step(on_circle(frame, 0, 0.3 + 0.002 * k, 0.48, 0.0005 * k), 1);
-    // never more than the hand itself has turned
+    // never more than the hand's own rotation
     ASSERT_LE(norm(rotation_vector(report.pose.orientation * glm::conjugate(before))), 0.005) << k;
     ASSERT_EQ(report.active_planes, 0.0005 * k <= kStep ? 1 : 0);
     before = report.pose.orientation;
     free = free || report.active_planes == 0;
   }
   EXPECT_TRUE(free);
-  EXPECT_GT(distance_between(rotate(before, {1, 0, 0}), frame.axis(0)), 1e-3);  // it has left the axis
+  EXPECT_GT(distance_between(rotate(before, {1, 0, 0}), frame.axis(0)), 1e-3);  // the rotation has left the axis
 }
 
-TEST(WidgetPlane, AxisNeverLetsGoAndTakesTheNearest) {
+TEST(WidgetPlane, InModeAxisTheNearestGreatCircleHoldsAtAnyDistance) {
   Spec spec = plane({0, 0, 0});
   spec.rotation = RotationMode::axis;
   const Frame frame{{0, 0, 0}, kIdentityRotation};
   WidgetProbe hand({spec});
-  // nearest to the great circle across y, but not within `near` of any
+  // nearest to the great circle perpendicular to y, but within the snap distance of none
   const Vec3 place = Vec3(0.7, 0.35, 0.6) * (0.48 / norm(Vec3(0.7, 0.35, 0.6)));
   hand.step(place);
   EXPECT_EQ(hand.link_order(), "widget_sphere");
@@ -270,7 +270,7 @@ TEST(WidgetPlane, AxisNeverLetsGoAndTakesTheNearest) {
   }
 }
 
-TEST(WidgetPlane, ATouchTurnsWithoutTheButton) {
+TEST(WidgetPlane, RotateOnContactTurnsWithoutTheButton) {
   Spec spec = plane({0, 0, 0});
   spec.rotate_on_contact = true;
   const Frame frame{{0, 0, 0}, kIdentityRotation};
@@ -282,7 +282,7 @@ TEST(WidgetPlane, ATouchTurnsWithoutTheButton) {
   for (int k = 1; k <= 100; ++k) hand.step(on_circle(frame, 0, 0.4 + 0.01 * k, 0.5));
   const Frame turned{frame.center, hand.report().pose.orientation};
   EXPECT_LE(distance_between(turned.axis(1), {0, std::cos(1), std::sin(1)}), 1e-12);
-  // off the sphere it lets go; a press holds it
+  // leaving the sphere releases it, unless the button is held
   hand.step(on_circle(frame, 0, 1.4, 0.6));
   EXPECT_NE(hand.mode_name(), "turn");
   hand.step(on_circle(frame, 0, 1.4, 0.5));
@@ -293,7 +293,7 @@ TEST(WidgetPlane, ATouchTurnsWithoutTheButton) {
   EXPECT_NE(hand.mode_name(), "turn");
 }
 
-TEST(WidgetPlane, TheSphereTurnsAboutTheAxesThatItHasTurned) {
+TEST(WidgetPlane, ConsecutiveTurnsUseTheRotatedAxes) {
   const Frame start{{0, 0, 0}, kIdentityRotation};
   WidgetProbe hand({plane({0, 0, 0})});
   Frame now = start;
@@ -301,11 +301,11 @@ TEST(WidgetPlane, TheSphereTurnsAboutTheAxesThatItHasTurned) {
     hand.step({5, 5, 5});
     hand.step(on_circle(now, axis, 0.6, 0.48));
     hand.step(on_circle(now, axis, 0.6, 0.48), 1);
-    const Vec3 kept = now.axis(axis);
+    const Vec3 held_axis = now.axis(axis);
     for (int k = 1; k <= 50; ++k) hand.step(on_circle(now, axis, 0.6 + 0.02 * k, 0.48), 1);
-    const Quat expected = normalized(rotation_from_vector(kept) * now.q);
+    const Quat expected = normalized(rotation_from_vector(held_axis) * now.q);
     now.q = hand.report().pose.orientation;
-    EXPECT_LE(distance_between(now.axis(axis), kept), 1e-12);
+    EXPECT_LE(distance_between(now.axis(axis), held_axis), 1e-12);
     EXPECT_LE(norm(rotation_vector(normalized(now.q * glm::conjugate(expected)))), 1e-12);
   }
 }

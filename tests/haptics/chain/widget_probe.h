@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A hand that drives widgets through the tick.
+/// A probe that drives widgets in the tick.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -49,7 +49,7 @@ struct WidgetProbe {
     haptics::tick(program, {t += dt, probe, buttons}, state, scratch, out);
     return out.widgets[0];
   }
-  /// In `n` steps from where the hand is.
+  /// Moves in `n` steps from the current position.
   const WidgetReport& move_to(const Vec3& to, std::uint32_t buttons = 0, int n = 50) {
     const Vec3 from = position;
     for (int k = 1; k <= n; ++k) step(k == n ? to : from + (to - from) * (static_cast<double>(k) / n), buttons);
@@ -58,7 +58,7 @@ struct WidgetProbe {
   const WidgetReport& report(std::size_t i = 0) const { return out.widgets[i]; }
   const Vec3& widget_position(std::size_t i = 0) const { return out.widgets[i].pose.points[0]; }
   std::string mode_name(std::size_t i = 0) const { return to_string(out.widgets[i].mode); }
-  /// Names of the links that run, in order.
+  /// Names of the active links, in order.
   std::string link_order() const {
     std::string names;
     for (int k = 0; k < state.order.count; ++k)
@@ -71,7 +71,7 @@ struct WidgetProbe {
   }
 };
 
-/// The turned frame of most tests, and its axes.
+/// Rotation of the tilted frame of most tests.
 inline const Quat kTilted = normalized(Quat(0.8, 0.3, -0.4, 0.35));
 
 inline double distance_between(const Vec3& a, const Vec3& b) { return norm(a - b); }

@@ -34,17 +34,17 @@ std::string text(const Made& b, const std::string& more = "") {
   return out + more + "}";
 }
 
-/// The distance to the surface: the nearest of the six rectangles.
+/// Distance to the surface: the minimum over the six rectangles.
 double brute_distance(const Made& b, const Vec3& x) {
   const Vec3 y = b.local(x);
-  double least = 1e300;
+  double minimum = 1e300;
   for (int axis = 0; axis < 3; ++axis)
     for (const double side : {-0.5, 0.5}) {
       Vec3 q;
       for (int i = 0; i < 3; ++i) q[i] = i == axis ? side * b.size[i] : std::min(std::max(y[i], -0.5 * b.size[i]), 0.5 * b.size[i]);
-      least = std::min(least, norm(y - q));
+      minimum = std::min(minimum, norm(y - q));
     }
-  return least;
+  return minimum;
 }
 
 double brute_value(const Made& b, const Vec3& x) {
@@ -90,7 +90,7 @@ TEST(Box, FromOutsideTheProxyNeverMovesFurtherThanTheProbe) {
   for (int i = 0; i < 40; ++i) {
     const Made box = random_box(random);
     Rig rig(build(text(box)));
-    // a circle around, that stays outside
+    // a circle outside of the box
     const Vec3 u = random.unit(), v = direction(cross(u, random.unit()));
     const double radius = 0.6 * norm(box.size);
     Vec3 last_probe = box.center + u * radius, last = rig.tick(last_probe).proxy;
@@ -105,8 +105,8 @@ TEST(Box, FromOutsideTheProxyNeverMovesFurtherThanTheProbe) {
   }
 }
 
-TEST(Box, FromInsideTheFaceHeldStaysHeld) {
-  // no jump across the middle planes: within the box the proxy follows on its face
+TEST(Box, InsideTheBoxTheProxyStaysOnTheFaceOfEntry) {
+  // no jump at the middle planes: within the box the proxy slides on its face
   Random random(6);
   for (int i = 0; i < 40; ++i) {
     const Made box = random_box(random);
@@ -128,7 +128,7 @@ TEST(Box, FromInsideTheFaceHeldStaysHeld) {
   }
 }
 
-TEST(Box, OverAnEdgeTheHandComesFreeWhereItLeavesTheBox) {
+TEST(Box, SlidingPastAnEdgeFreesTheHand) {
   Rig rig(build(text({Vec3(0.0), Vec3(1, 1, 1)}, R"(, "free": "above")")));
   rig.tick({0.3, 0, 0.6});
   for (double x = 0.3; x < 0.5; x += 0.001) {
@@ -136,11 +136,11 @@ TEST(Box, OverAnEdgeTheHandComesFreeWhereItLeavesTheBox) {
     ASSERT_TRUE(bitwise_equal(rig.state.proxy, Vec3(x, 0, 0.5)));
   }
   EXPECT_EQ(rig.tick({0.5001, 0, 0.49}).status, LinkStatus::free);
-  EXPECT_EQ(rig.tick({0.4999, 0, 0.49}).status, LinkStatus::ok);  // back in by the side
+  EXPECT_EQ(rig.tick({0.4999, 0, 0.49}).status, LinkStatus::ok);  // re-entry through the side face
   EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.5, 0, 0.49)));
 }
 
-TEST(Box, TheTwoSidedProxyGoesRoundAnEdgeWithoutAJump) {
+TEST(Box, TwoSidedTheProxyPassesAnEdgeContinuously) {
   Rig rig(build(text({Vec3(0.0), Vec3(1, 1, 1)})));
   Vec3 last = rig.tick({0.3, 0, 0.6}).proxy;
   for (int i = 0; i <= 1000; ++i) {
@@ -153,7 +153,7 @@ TEST(Box, TheTwoSidedProxyGoesRoundAnEdgeWithoutAJump) {
   EXPECT_TRUE(bitwise_equal(rig.tick({0.4, 0, 0.46}).proxy, Vec3(0.5, 0, 0.46)));
 }
 
-TEST(Box, TheTwoSidedProxyIsTheClosestPointOutsideAndKeepsItsFaceInside) {
+TEST(Box, TwoSidedTheProxyIsTheClosestPointOutsideAndKeepsItsFaceInside) {
   Random random(7);
   for (int i = 0; i < 60; ++i) {
     const Made box = random_box(random);
@@ -170,7 +170,7 @@ TEST(Box, TheTwoSidedProxyIsTheClosestPointOutsideAndKeepsItsFaceInside) {
       if (value > 0) {
         ASSERT_NEAR(norm(probe - proxy), value, 4e-15);
       } else {
-        // a projection onto one face, and always the same one
+        // always the projection onto the same face
         Vec3 face(0.0);
         for (int axis = 0; axis < 3; ++axis)
           if (std::fabs(q[axis] - y[axis]) > 1e-13) face[axis] = q[axis] > 0 ? 1 : -1;
@@ -184,7 +184,7 @@ TEST(Box, TheTwoSidedProxyIsTheClosestPointOutsideAndKeepsItsFaceInside) {
   }
 }
 
-TEST(Box, FreeMeansTheProbeBitForBitAndHeldMeansBehind) {
+TEST(Box, FreeProxyIsTheProbeAndHeldProxyIsTheClosestPoint) {
   Random random(9);
   for (int i = 0; i < 60; ++i) {
     const Made box = random_box(random);
@@ -208,7 +208,7 @@ TEST(Box, FreeMeansTheProbeBitForBitAndHeldMeansBehind) {
   }
 }
 
-TEST(Box, AFastHandIsHeldOnTheFaceByWhichItCameIn) {
+TEST(Box, AFastHandIsHeldOnItsFaceOfEntry) {
   Random random(10);
   for (int i = 0; i < 2000; ++i) {
     const Made box = random_box(random);
@@ -224,16 +224,16 @@ TEST(Box, AFastHandIsHeldOnTheFaceByWhichItCameIn) {
   }
 }
 
-TEST(Box, TwoSidedTooAHandThatCutsAnEdgeIsHeldOnTheFaceByWhichItCameIn) {
+TEST(Box, TwoSidedAHandThatCutsAnEdgeIsHeldOnItsFaceOfEntry) {
   Rig rig(build(R"({"name": "a", "type": "box", "center": [0, 0, 0], "size": [2, 2, 2]})"));
-  // from the region over the edge; it comes in where it meets y = 1, at (0.8, 1), then x = 1, at (1, 0.8)
+  // from the region beyond the edge: enters through y = 1 at (0.8, 1), then through x = 1 at (1, 0.8)
   rig.tick({1.2, 1.1, 0});
   EXPECT_LE(norm(rig.tick({0.7, 0.975, 0}).proxy - Vec3(0.7, 1, 0)), 1e-15);
   rig.tick({1.1, 1.2, 0});
   EXPECT_LE(norm(rig.tick({0.975, 0.7, 0}).proxy - Vec3(1, 0.7, 0)), 1e-15);
 }
 
-TEST(Box, AThinOneHoldsSlowAndFastHands) {
+TEST(Box, AThinBoxHoldsSlowAndFastHands) {
   Random random(11);
   for (int i = 0; i < 300; ++i) {
     Made box = random_box(random, i % 3 == 0);
@@ -245,7 +245,7 @@ TEST(Box, AThinOneHoldsSlowAndFastHands) {
     Vec3 y = random.box(0.4);
     y[axis] = side * (0.0005 + random.uniform(1e-6, step));
     ASSERT_EQ(rig.tick(box.world(y)).status, LinkStatus::free);
-    // through the box, and as far behind the face as it holds
+    // through the box, up to the distance behind the face where it still holds
     while (side * (y[axis] - side * step) > 0.0005 - 0.0799) {
       y[axis] -= side * step;
       rig.tick(box.world(y));
@@ -258,24 +258,24 @@ TEST(Box, AThinOneHoldsSlowAndFastHands) {
       ASSERT_EQ(rig.state.status, LinkStatus::ok) << "step " << step << " at " << y[axis];
       ASSERT_LE(norm(rig.state.proxy - box.world(held)), 2e-15);
     }
-    // back: free again in front of that face
+    // back in front of that face it is free
     y[axis] = side * 0.00051;
     ASSERT_EQ(rig.tick(box.world(y)).status, LinkStatus::free);
-    // however far behind, by steps of a hand; thrown (0.02 L = 0.08) it is free
+    // held at any distance behind in steps of a hand; a step above 0.02 L = 0.08 frees it
     for (y[axis] = -side * 0.03; side * y[axis] > -0.4; y[axis] -= side * 0.07) ASSERT_EQ(rig.tick(box.world(y)).status, LinkStatus::ok);
     y[axis] -= side * 0.09;
     ASSERT_EQ(rig.tick(box.world(y)).status, LinkStatus::free);
   }
 }
 
-TEST(Box, BehindAThinOneTheHandComesFreeBesideIt) {
+TEST(Box, BehindAThinBoxTheHandIsFreeBesideIt) {
   Rig rig(build(text({Vec3(0.0), Vec3(1, 1, 0.001)}, R"(, "free": "above")")));
   rig.tick({0.48, 0, 0.02});
   EXPECT_EQ(rig.tick({0.49, 0, -0.02}).status, LinkStatus::ok);
   EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.49, 0, 0.0005)));
   EXPECT_EQ(rig.tick({0.51, 0, -0.02}).status, LinkStatus::free);
-  EXPECT_EQ(rig.tick({0.49, 0, -0.02}).status, LinkStatus::free);  // now it is below
-  EXPECT_EQ(rig.tick({0.49, 0, 0.02}).status, LinkStatus::ok);     // and is held from there
+  EXPECT_EQ(rig.tick({0.49, 0, -0.02}).status, LinkStatus::free);  // the probe is now below the box
+  EXPECT_EQ(rig.tick({0.49, 0, 0.02}).status, LinkStatus::ok);     // held on the bottom face
   EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.49, 0, -0.0005)));
 }
 
@@ -285,7 +285,7 @@ TEST(Box, ACornerCutWithinOneTickIsFree) {
   EXPECT_EQ(rig.tick({0.51, 0, 0.485}).status, LinkStatus::free);
 }
 
-TEST(Box, StartingOnTheSurfaceItIsNotSlippedThrough) {
+TEST(Box, AStartOnTheSurfaceDoesNotPassThrough) {
   Rig rig(build(text({Vec3(0, 0, -0.0005), Vec3(1, 1, 0.001)}, R"(, "free": "above")")));
   EXPECT_EQ(rig.tick({0.1, 0.1, 0}).status, LinkStatus::free);
   EXPECT_EQ(rig.tick({0.1, 0.1, -0.05}).status, LinkStatus::ok);
@@ -314,19 +314,19 @@ TEST(Box, TwoSidedReleaseAndReArm) {
   EXPECT_EQ(rig.tick({1.02, 1.02, 0}).status, LinkStatus::released);  // 0.028 from an edge
   EXPECT_EQ(rig.tick({1.01, 1.01, 0}).status, LinkStatus::ok);        // 0.014
   EXPECT_EQ(rig.tick({1.3, 1.3, 0}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({0.9, 0, 0}).status, LinkStatus::ok);     // crossed
-  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(1, 0, 0)));  // through y = 1 beside the box, then in at x = 1
-  // past an edge, which the segment misses
+  EXPECT_EQ(rig.tick({0.9, 0, 0}).status, LinkStatus::ok);     // crossed the surface
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(1, 0, 0)));  // passes the plane y = 1 beside the box and enters through x = 1
+  // the segment misses the box beside an edge
   EXPECT_EQ(rig.tick({0.5, 0, 1.3}).status, LinkStatus::released);
   EXPECT_EQ(rig.tick({1.2, 0, 0.9}).status, LinkStatus::released);
-  // through and out again within one tick
+  // in and out within one tick
   Rig thin(build(text({Vec3(0.0), Vec3(1, 1, 0.01)}, R"(, "release": 0.25)")));
   thin.tick({0, 0, 0.1});
   EXPECT_EQ(thin.tick({0, 0, 0.3}).status, LinkStatus::released);
   EXPECT_EQ(thin.tick({0, 0, -0.1}).status, LinkStatus::ok);
 }
 
-TEST(Box, ItsPrimitiveIsAPlaneALineOrAPoint) {
+TEST(Box, ThePrimitiveIsAPlaneALineOrAPoint) {
   Rig rig(build(text({Vec3(0.0), Vec3(2, 2, 2)})));
   Primitive primitive;
   rig.tick({0, 0, 1.2});
@@ -343,7 +343,7 @@ TEST(Box, ItsPrimitiveIsAPlaneALineOrAPoint) {
   EXPECT_TRUE(bitwise_equal(primitive.origin, Vec3(1, -1, 1)));
 }
 
-TEST(Box, AllFormsOfARotationAreOne) {
+TEST(Box, AllFormsOfARotationAreEqual) {
   const std::string head = R"({"name": "a", "type": "box", "center": [0, 0, 0], "size": [1, 2, 3], "rotation": )";
   Rig rows(build(head + "[[0, -1, 0], [1, 0, 0], [0, 0, 1]]}")), flat(build(head + "[0, -1, 0, 1, 0, 0, 0, 0, 1]}"));
   Rig angle(build(head + R"({"axis": [0, 0, 5], "angle_deg": 90}})"));
@@ -352,7 +352,7 @@ TEST(Box, AllFormsOfARotationAreOne) {
   EXPECT_LE(norm(angle.tick({9, 9, 9}).proxy - Vec3(1, 0.5, 1.5)), 1e-15);
 }
 
-TEST(Box, ARoughRotationIsMadeExact) {
+TEST(Box, ARoundedRotationIsOrthonormalized) {
   Rig rig(build(R"({"name": "a", "type": "box", "center": [0, 0, 0], "size": [2, 2, 2],
       "rotation": [0.6000002, -0.8, 0, 0.8, 0.5999999, 0, 0, 1e-7, 1]})"));
   Random random(3);

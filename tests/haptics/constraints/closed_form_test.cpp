@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What all closed forms share: hostile probes, hostile sizes, a proxy on its feature to round-off, energy, primitives.
+// Common properties of all closed-form constraints: hostile probes and sizes, a proxy on its feature up to round-off, energy,
+// primitives.
 #include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
@@ -34,7 +35,7 @@ double hostile(Random& random) {
   return (random.uniform(0, 1) < 0.5 ? -1 : 1) * std::pow(10.0, exponent);
 }
 
-TEST(ClosedFormProjections, HostileProbesGiveAFeaturePointToRoundOff) {
+TEST(ClosedFormProjections, HostileProbesGiveAFeaturePointUpToRoundOff) {
   for (const Kind& kind : kKinds) {
     Random random(17);
     Rig rig(make(kind));
@@ -51,7 +52,7 @@ TEST(ClosedFormProjections, HostileProbesGiveAFeaturePointToRoundOff) {
   }
 }
 
-TEST(ClosedFormProjections, HostileProbesOfReleasingAndOneSidedLinks) {
+TEST(ClosedFormProjections, HostileProbesOnReleasingAndOneSidedLinks) {
   for (const Kind& kind : kKinds) {
     for (const char* more : {R"(, "release": 0.4)", R"(, "free": "above")", R"(, "free": "below", "release": 1e100)"}) {
       const bool surface = kind.type == std::string("plane") || kind.type == std::string("sphere") || kind.type == std::string("box");
@@ -71,7 +72,7 @@ TEST(ClosedFormProjections, HostileProbesOfReleasingAndOneSidedLinks) {
   }
 }
 
-TEST(ClosedFormProjections, ASmallLoopStoresNoEnergy) {
+TEST(ClosedFormProjections, ASmallClosedLoopStoresNoEnergy) {
   for (const Kind& kind : kKinds) {
     Random random(19);
     Rig rig(make(kind));

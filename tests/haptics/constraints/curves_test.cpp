@@ -7,19 +7,19 @@ namespace curves_test {
 using catena::test::make_curve_set;
 using catena::test::Polylines;
 
-/// The closest point of a line's pieces as the file has them.
+/// Distance from line `k` by brute force over its segments.
 double distance_to(const curves::CurveSet& set, std::size_t line, const Vec3& x) {
-  double least = 1e300;
+  double minimum = 1e300;
   for (std::uint32_t k = set.line_offsets[line]; k + 1 < set.line_offsets[line + 1]; ++k) {
     const Vec3 a(set.points[k]), d = Vec3(set.points[k + 1]) - a;
-    least = std::min(least, norm(x - a - d * std::clamp(dot(x - a, d) / dot(d, d), 0.0, 1.0)));
+    minimum = std::min(minimum, norm(x - a - d * std::clamp(dot(x - a, d) / dot(d, d), 0.0, 1.0)));
   }
-  return least;
+  return minimum;
 }
 double distance_to(const curves::CurveSet& set, const Vec3& x) {
-  double least = 1e300;
-  for (std::size_t k = 0; k < set.line_count(); ++k) least = std::min(least, distance_to(set, k, x));
-  return least;
+  double minimum = 1e300;
+  for (std::size_t k = 0; k < set.line_count(); ++k) minimum = std::min(minimum, distance_to(set, k, x));
+  return minimum;
 }
 
 Fields fields_with(const Polylines& lines) {
@@ -28,7 +28,7 @@ Fields fields_with(const Polylines& lines) {
   return made;
 }
 
-TEST(CurvesLink, StartsAtTheClosestPlaceOfAllLines) {
+TEST(CurvesLink, StartsAtTheClosestPointOfAllLines) {
   Random random(1);
   for (const int lines : {1, 2, 9, 300}) {
     const Fields fields = fields_with(random_fibers(lines, 1 + lines % 7 * 5 + 3, 0.05));
@@ -44,7 +44,7 @@ TEST(CurvesLink, StartsAtTheClosestPlaceOfAllLines) {
   }
 }
 
-TEST(CurvesLink, OneLineAlone) {
+TEST(CurvesLink, RestrictedToOneLine) {
   Random random(2);
   const Fields fields = fields_with(random_fibers(40, 30, 0.05));
   const curves::CurveSet& set = *fields.curves.at("fibres");
@@ -57,8 +57,8 @@ TEST(CurvesLink, OneLineAlone) {
   }
 }
 
-// two lines that cross in projection: the hand that follows the first stays on it, though the other is nearer for a while
-TEST(CurvesLink, FollowsTheLineThatItHolds) {
+// two lines that cross in projection: a hand that follows the first stays on it, although the other is nearer for a while
+TEST(CurvesLink, FollowsTheHeldLine) {
   std::vector<Vec3> along, across;
   for (int i = 0; i <= 100; ++i) {
     along.push_back({-1 + 0.02 * i, 0, 0});
@@ -76,7 +76,7 @@ TEST(CurvesLink, FollowsTheLineThatItHolds) {
     EXPECT_NEAR(rig.state.proxy.x, probe.x, 1e-6) << k;
   }
   EXPECT_GE(held, 1000);
-  // pulled away it lets go, and takes hold of the other where that is near
+  // pulled away it is released, and snaps to the other line near it
   rig.tick({0.5, 0.6, 0.4});
   EXPECT_TRUE(rig.state.released);
   rig.tick({0.03, 0.6, 0.06});
@@ -84,24 +84,24 @@ TEST(CurvesLink, FollowsTheLineThatItHolds) {
   EXPECT_EQ(rig.state.proxy.x, 0);
 }
 
-// what one tick may take, and the closest place after a few, in a tractogram of 10^5 fibres
-TEST(CurvesLink, AHundredThousandFibresWithinTheWorkOfATick) {
+// work of one tick, and the closest point after a few ticks, in a tractogram of 10^5 fibres
+TEST(CurvesLink, AHundredThousandFibresFitTheWorkLimitOfATick) {
   const Fields fields = fields_with(random_fibers(100000, 20, 0.01));
   const curves::CurveSet& set = *fields.curves.at("fibres");
   const auto made = build(R"({"name": "a", "type": "curves", "curves": "fibres", "snap": 0.05, "release": 0.06})", fields);
   Random random(3);
   Rig rig(made);
-  int held = 0, waited = 0, most = 0;
+  int held = 0, waited = 0, maximum = 0;
   for (int hop = 0; hop < 40; ++hop) {
     const Vec3 from = random.box(0.9), way = random.box(0.2);
     for (int k = 0; k < 100; ++k) {
       rig.tick(from + way * (0.01 * k));
-      most = std::max(most, rig.state.work());
+      maximum = std::max(maximum, rig.state.work());
       held += rig.state.released ? 0 : 1;
       waited += rig.state.status == LinkStatus::budget ? 1 : 0;
     }
   }
-  EXPECT_LE(most, kMaxWork);
+  EXPECT_LE(maximum, kMaxWork);
   EXPECT_GT(held, 2000);
   EXPECT_LT(waited, 400) << "a search is mostly through in its first ticks";
   for (int i = 0; i < 20; ++i) {
@@ -124,7 +124,7 @@ TEST(CurvesLink, TwoLinksShareOneTree) {
   EXPECT_EQ(fields.curves.at("fibres").use_count(), held) << "a second tree would hold the curves, too";
 }
 
-TEST(CurvesLink, RefusesWithPlaceAndExpectation) {
+TEST(CurvesLink, ErrorsNameTheLineAndTheExpectation) {
   const Fields fields = fields_with(random_fibers(3, 20, 0.01));
   const auto message = [&](const std::string& keys) {
     const auto made = try_build(R"({"name": "a", "type": "curves")" + keys + "}", fields);

@@ -9,7 +9,7 @@ std::string drag(const std::string& threshold, const std::string& more = "") {
   return R"({"name": "a", "type": "drag", "threshold": )" + threshold + more + "}";
 }
 
-TEST(Drag, SticksToTheBitAndSlidesAtTheThreshold) {
+TEST(Drag, SticksExactlyAndSlidesAtTheThreshold) {
   for (const double size : {1e-9, 1.0, 1e6}) {
     const double tau = 0.05 * size;
     char text[40];
@@ -18,7 +18,7 @@ TEST(Drag, SticksToTheBitAndSlidesAtTheThreshold) {
     Random random(4);
     Vec3 probe = random.box(size);
     rig.tick(probe);
-    EXPECT_TRUE(bitwise_equal(rig.state.proxy, probe));  // starts at the incoming probe
+    EXPECT_TRUE(bitwise_equal(rig.state.proxy, probe));  // starts at the link's input
     int stuck = 0, slid = 0;
     for (int i = 0; i < 5000; ++i) {
       const Vec3 before = rig.state.proxy;
@@ -42,7 +42,7 @@ TEST(Drag, SticksToTheBitAndSlidesAtTheThreshold) {
   }
 }
 
-TEST(Drag, IsTheSameInAllDirections) {
+TEST(Drag, IsIsotropic) {
   Random random(5);
   for (int i = 0; i < 200; ++i) {
     Rig rig(build(drag("0.1")));
@@ -55,7 +55,7 @@ TEST(Drag, IsTheSameInAllDirections) {
   }
 }
 
-TEST(Drag, NoThresholdIsNoDrag) {
+TEST(Drag, AZeroThresholdGivesNoDrag) {
   Rig rig(build(drag("0")));
   Random random(6);
   for (int i = 0; i < 100; ++i) {
@@ -65,8 +65,8 @@ TEST(Drag, NoThresholdIsNoDrag) {
   }
 }
 
-// 4 K tau (A - tau) a loop, through the whole tick
-TEST(Drag, TakesTheWorkOfALoop) {
+// 4 K tau (A - tau) per loop, in the whole tick
+TEST(Drag, DissipatesTheWorkOfALoop) {
   constexpr double kTau = 0.02, kAmplitude = 0.1, kStiffness = 400;
   constexpr int kLoop = 20000;
   HapticProgram program;
@@ -101,13 +101,13 @@ TEST(Drag, TheThresholdMayFollowAField) {
   rig.tick({1, 0, 0});
   EXPECT_EQ(rig.state.limit, 0.2);
   rig.tick({1.5, 0, 0});
-  EXPECT_NEAR(rig.state.proxy.x, 1.3, 1e-15);  // as at the proxy before it moved
+  EXPECT_NEAR(rig.state.proxy.x, 1.3, 1e-15);  // the threshold at the proxy before it moved
   rig.tick({1.6, 0, 0});
   EXPECT_NEAR(rig.state.limit, 0.23, 1e-15);
 }
 
-// on a surface: stick to the bit, |x - p| = tau and on the level where it slides
-TEST(Drag, OnASurface) {
+// on a surface: sticks exactly; where it slides, |x - p| = tau on the level
+TEST(Drag, OnASurfaceSticksExactlyAndSlidesAtTheThreshold) {
   struct Case {
     const char* name;
     field::ScalarFieldPtr field;
@@ -160,15 +160,15 @@ TEST(Drag, OffTheSurfaceThereIsNoFriction) {
   EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0, 0, 1.2)));
   EXPECT_EQ(rig.tick({0, 0, 1}).status, LinkStatus::ok);
   EXPECT_EQ(rig.tick({0.1, 0, std::sqrt(0.99)}).status, LinkStatus::ok);
-  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0, 0, 1)));  // stuck
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0, 0, 1)));  // sticks
   EXPECT_EQ(rig.tick({0.1, 0, 1.1}).status, LinkStatus::free);
   EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.1, 0, 1.1)));
-  EXPECT_EQ(rig.tick({0, 0.6, 0.8}).status, LinkStatus::ok);  // from where it comes down
+  EXPECT_EQ(rig.tick({0, 0.6, 0.8}).status, LinkStatus::ok);  // starts where the probe returns to the surface
   EXPECT_LE(norm(rig.state.proxy - Vec3(0, 0.6, 0.8)), 1e-15);
 }
 
-// two spheres: from one to the other there is no surface to slide on
-TEST(Drag, AJumpToAnotherSheetStartsAnewThere) {
+// two spheres without a surface between them to slide on
+TEST(Drag, AJumpToAnotherSheetRestartsThere) {
   const auto two = sample_scalar_grid(field::Mapping::from_linear(Mat3(0.1), Vec3(-2.0)), {41, 41, 41},
                                       [](const Vec3& p) { return std::min(norm(p - Vec3(1, 0, 0)), norm(p + Vec3(1, 0, 0))); });
   Fields fields;

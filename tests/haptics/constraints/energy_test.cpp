@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Work of a chain along slow closed loops of the hand, in units of K gap^2: by the paper's sum of pulls, and by virtual work, which is the
-// gradient of an energy. The work is a trapezoid rule over the parameter of the loop, refined until half the step changes it by less than
-// 1e-10 of K gap^2; gap is the hand's largest distance from the last proxy. Prints the table of pairs.
+// Work of a chain along slow closed loops of the hand, in units of K gap^2: by the paper's sum of spring forces, and by virtual work, the
+// gradient of an energy. The work is integrated by the trapezoid rule over the loop's parameter, refined until halving the step changes
+// it by less than 1e-10 K gap^2; gap is the hand's maximum distance from the last proxy. Prints the table of pairs.
 #include "haptics/chain/tick.h"
 #include "haptics/constraints/common/link_schema.h"
 #include "tests/engine/geometry/flow/lambda_field.h"
@@ -14,7 +14,7 @@ constexpr double kStiffness = 100;
 
 Fields fields() {
   Fields made;
-  made.proxy_tolerance = 1e-10;  // a conservative chain's
+  made.proxy_tolerance = 1e-10;  // tolerance of a conservative chain
   for (const char* name : {"sphere", "torus"}) made.named[name].scalar = analytic_field(name);
   for (const char* name : {"circle", "helix"}) made.named[name].vector = field::make_analytic(name)->vector;
   made.named["torus_grid"].scalar = sampled_field("torus", 33);
@@ -23,7 +23,7 @@ Fields fields() {
   return made;
 }
 
-/// A closed way of the hand about `centre`.
+/// A closed path of the hand about `centre`.
 struct Loop {
   Vec3 centre, a, b, c;
 
@@ -31,7 +31,7 @@ struct Loop {
     const double u = 2 * 3.14159265358979323846 * part;
     return centre + a * std::cos(u) + b * std::sin(u) + c * (0.3 * std::sin(2 * u));
   }
-  /// By `part`.
+  /// Derivative of the position by `part`.
   Vec3 velocity(double part) const {
     const double turn = 2 * 3.14159265358979323846, u = turn * part;
     return (b * std::cos(u) - a * std::sin(u) + c * (0.6 * std::cos(2 * u))) * turn;
@@ -39,12 +39,12 @@ struct Loop {
 };
 
 struct Result {
-  double work = 0;  ///< by K gap^2
+  double work = 0;  ///< in units of K gap^2
   double left_out = 0;
   bool converged = false;
 };
 
-Result work_of(const std::vector<std::string>& links, CouplingForce force, const Loop& loop, int most = 1 << 14) {
+Result work_of(const std::vector<std::string>& links, CouplingForce force, const Loop& loop, int maximum = 1 << 14) {
   static const Fields all = fields();
   HapticProgram program;
   for (const std::string& text : links) {
@@ -58,12 +58,12 @@ Result work_of(const std::vector<std::string>& links, CouplingForce force, const
   program.coupling.max_force_n = 1e9;
   Result result;
   double before = 0;
-  for (int n = 64; n <= most; n *= 2) {
+  for (int n = 64; n <= maximum; n *= 2) {
     ChainState state;
     ChainScratch scratch;
     HapticState out;
     double gap = 0, work = 0, t = 0, left = 0;
-    // one lap to arrive, and one that counts
+    // one lap to settle, one to measure
     for (int k = 0; k <= 2 * n; ++k) {
       const Vec3 next = loop.at(static_cast<double>(k % n) / n);
       tick(program, {t += 1e-3, next, 0}, state, scratch, out);
@@ -95,21 +95,21 @@ const std::string kCircle = R"("type": "streamline", "field": "circle", "seed": 
 const std::string kHelix = R"("type": "streamline", "field": "helix", "seed": [1.5, 0, 0])";
 const std::string kOnline = R"("type": "streamline", "field": "circle", "seed": [1.5, 0, 0], "follow": "online")";
 
-TEST(Energy, TwoPlanesAtFortyFiveDegreesGainByThePaperAndNothingByVirtualWork) {
+TEST(Energy, TwoPlanesAt45DegreesGainEnergyByThePaperAndNoneByVirtualWork) {
   const double s = std::sqrt(0.5);
   const std::vector<std::string> planes{plane({0, 0, 1}), plane({s, 0, s})};
-  double most = 0;
+  double maximum = 0;
   Random random(1);
   for (int i = 0; i < 20; ++i) {
     const Loop loop{random.box(0.1), random.box(0.3), random.box(0.3), Vec3(0.0)};
     const Result paper = work_of(planes, CouplingForce::paper, loop), virtual_work = work_of(planes, CouplingForce::conservative, loop);
-    most = std::max(most, std::fabs(paper.work));
+    maximum = std::max(maximum, std::fabs(paper.work));
     EXPECT_LE(std::fabs(virtual_work.work), 1e-9);
   }
-  EXPECT_GT(most, 0.1) << "the paper's form is not conservative";
+  EXPECT_GT(maximum, 0.1) << "the paper's form is not conservative";
 }
 
-TEST(Energy, OfSmoothProjectionsOverLoopsBySeed) {
+TEST(Energy, SmoothProjectionsOverRandomLoops) {
   Random random(2);
   const std::vector<std::pair<const char*, std::string>> links{{"plane", plane({1, 2, 3}, 0.3)},
                                                                {"line", line({0.2, 0.1, 0}, {1, 0.5, -0.3})},
@@ -124,7 +124,7 @@ TEST(Energy, OfSmoothProjectionsOverLoopsBySeed) {
     for (const auto& [second, b] : links) {
       double paper = 0, conservative = 0;
       {
-        // near the circle of radius 1.5 in z = 0, where all of them have one smooth closest place
+        // near the circle of radius 1.5 in z = 0, where the closest point of every link is unique and smooth
         const Loop loop{Vec3(1.65, 0.1, 0.1) + random.box(0.05), random.box(0.15), random.box(0.15), random.box(0.1)};
         paper = std::max(paper, std::fabs(work_of({a, b}, CouplingForce::paper, loop).work));
         const Result result = work_of({a, b}, CouplingForce::conservative, loop);
@@ -136,7 +136,7 @@ TEST(Energy, OfSmoothProjectionsOverLoopsBySeed) {
     }
 }
 
-TEST(Energy, OfThreeLinks) {
+TEST(Energy, ThreeLinks) {
   Random random(3);
   const std::vector<std::vector<std::string>> chains{{kSphere, plane({1, 2, 3}, 0.3), line({0, 0, 0}, {1, 0.2, 0})},
                                                      {kTorus, kSphere, kCircle},
@@ -151,8 +151,8 @@ TEST(Energy, OfThreeLinks) {
     }
 }
 
-TEST(Energy, OfAProxyThatJumpsAtConcaveCornersIsLeftOut) {
-  // an arc of straight pieces, and the hand on its inner side: at each corner the proxy jumps
+TEST(Energy, JumpsAtConcaveCornersAreExcludedFromTheLedger) {
+  // an arc of straight segments with the hand on its inner side: the proxy jumps at each corner
   std::string points;
   for (int i = -30; i <= 30; ++i) points += fmt::format("{}[{}, {}, 0]", i > -30 ? ", " : "", std::cos(0.04 * i), std::sin(0.04 * i));
   const std::vector<std::string> links{R"("type": "polyline", "points": [)" + points + "]", plane({0.3, 1, 0.2})};
@@ -164,7 +164,7 @@ TEST(Energy, OfAProxyThatJumpsAtConcaveCornersIsLeftOut) {
   }
 }
 
-TEST(Energy, OfContactsThatComeAndGoAndOfCells) {
+TEST(Energy, TemporaryContactsAndGridCells) {
   Random random(4);
   const std::string one_sided = plane({0, 0, 1}, 0.1) + R"(, "free": "above")";
   const std::string grid = R"("type": "isosurface", "field": "torus_grid", "level": 0.4)";
@@ -174,14 +174,14 @@ TEST(Energy, OfContactsThatComeAndGoAndOfCells) {
                                                      {plane({1, 2, 3}, 0.3), grid},
                                                      {grid, kCircle}};
   for (const auto& chain : chains) {
-    // where a contact begins the force jumps, and the sum over the loop is as good as its step
+    // the force jumps where a contact begins, so that the sum over the loop is only first order in its step
     const Loop loop{Vec3(1.65, 0.1, 0.1) + random.box(0.05), random.box(0.15), random.box(0.15), random.box(0.1)};
     const Result result = work_of(chain, CouplingForce::conservative, loop, 1 << 19);
     EXPECT_LE(std::fabs(result.work + result.left_out), 1e-6) << chain[0] << " " << chain[1];
   }
 }
 
-TEST(Energy, OfAStiffnessThatFollowsAField) {
+TEST(Energy, AStiffnessThatFollowsAField) {
   static const Fields all = fields();
   auto node = json::parse(R"({"k": {"field": "slope", "map": [[-2, 50], [2, 300]]}})", "s.json");
   const auto map = get_parameter(*node, "k", 0.0, json::NumberRange::non_negative, all.context());

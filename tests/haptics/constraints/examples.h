@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The examples of every constraint type, and the fields that they name: what the conformance and the endurance tests run over.
-/// A new type adds its row to examples().
+/// Examples of every constraint type, and the fields that they name, for the conformance and the endurance tests.
+/// A new type needs a row in examples().
 #pragma once
 #include <limits>
 #include "tests/support/curve_files.h"
@@ -26,7 +26,7 @@ inline std::string zigzag(int points) {
   return text + "]";
 }
 
-/// Lines that go astray through the box -1..1, each begun anywhere in it.
+/// Wandering lines with random starts in the box -1..1.
 inline catena::test::Polylines random_fibers(int lines, int points, double step) {
   Random random(17);
   catena::test::Polylines all(static_cast<std::size_t>(lines));
@@ -52,7 +52,7 @@ inline curves::PointSetPtr point_cloud(int count) {
   return set ? std::make_shared<const curves::PointSet>(std::move(*set)) : nullptr;
 }
 
-/// Examples by type, without name and type. Fields: see fields().
+/// JSON keys of the examples by type, without name and type. The fields are in fields().
 inline std::map<std::string, std::vector<std::string>> examples() {
   return {
       {"point", {R"("position": [0.3, -0.2, 0.1])", R"("position": [0, 0, 0], "release": 0.4)"}},
@@ -196,7 +196,7 @@ inline const Fields& fields() {
         catena::test::make_mesh_from(catena::test::sheet_soup(12, 1, [](double x, double y) { return 0.3 * x * x - 0.4 * y; }));
     made.meshes["sphere"] = catena::test::make_mesh_from(catena::test::sphere_soup(12));
     made.meshes["plate"] = catena::test::make_mesh_from(catena::test::box_soup({-1, -1, -5e-4}, {1, 1, 5e-4}));
-    // three leaves at one spine, one of them turned over
+    // three sheets at a common edge, one of them with inverted orientation
     mesh::TriangleSoup book;
     catena::test::add_quad(book, {0, -1, 0}, {1, -1, 0.2}, {1, 1, 0.2}, {0, 1, 0});
     catena::test::add_quad(book, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0.2}, {-1, -1, 0.2});
@@ -224,7 +224,7 @@ inline std::vector<Example> all_examples() {
     if (it == table.end()) continue;
     for (const std::string& body : it->second) out.push_back({it->first, body});
   }
-  // each of them once more, snapping
+  // each example also with the key "snap"
   for (std::size_t i = 0, n = out.size(); i < n; ++i) {
     const bool has_release = out[i].body.find("\"release\"") != std::string::npos;
     out.push_back({out[i].type, out[i].body + (has_release ? R"(, "snap": 0.05)" : R"(, "snap": 0.1, "release": 0.3)")});

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// A hand that stays on a surface, for the friction links: the proxies of an isosurface link along a random walk.
+/// Input of the friction links: the proxies of an isosurface link along a random walk of the hand.
 #pragma once
 #include "haptics/constraints/isosurface/level_set_field.h"
 #include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 
-/// `step`: of the hand, world units a tick. Starts near `from`.
+/// `step`: the hand's step in world units per tick. Starts near `from`.
 inline std::vector<Vec3> walk_on_surface(const field::ScalarFieldPtr& surface, double level, const Vec3& from, double step, int ticks,
                                          std::uint64_t seed) {
   Rig rig(isosurface(surface, level));
@@ -16,7 +16,7 @@ inline std::vector<Vec3> walk_on_surface(const field::ScalarFieldPtr& surface, d
   for (int i = 0; i < ticks; ++i) {
     v = direction(v + random.unit() * (0.2 * step)) * step;
     rig.tick(hand + v);
-    // the hand goes along with the surface, a little above it
+    // the hand follows the surface, slightly off it
     hand = rig.state.proxy;
     if (rig.state.status == LinkStatus::ok) path.push_back(hand);
     if (rig.state.status != LinkStatus::ok) v = -v;
@@ -24,7 +24,7 @@ inline std::vector<Vec3> walk_on_surface(const field::ScalarFieldPtr& surface, d
   return path;
 }
 
-/// |s - level| / |grad s|.
+/// Distance from the level, |s - level| / |grad s|.
 inline double off_level(const field::ScalarField& surface, double level, const Vec3& p) {
   field::Cursor cursor;
   const field::ScalarSample s = surface.sample(p, cursor);

@@ -42,7 +42,7 @@ TEST(Friction, IsFreeAlongAndSticksAcross) {
   rig.tick(Vec3(0.0));
   rig.tick(way * 0.7);
   EXPECT_LE(norm(rig.state.proxy - way * 0.7), 4e-8);
-  rig.tick(way * 0.2 + across * 0.09);  // back along it, not yet across
+  rig.tick(way * 0.2 + across * 0.09);  // reversed along the field, still sticking across
   EXPECT_LE(norm(rig.state.proxy - way * 0.2), 1e-9);
   const Vec3 before = rig.state.proxy;
   rig.tick(before + across * 0.0999);
@@ -52,8 +52,8 @@ TEST(Friction, IsFreeAlongAndSticksAcross) {
   EXPECT_EQ(rig.state.limit, 0.1);
 }
 
-// |x - p| = tau where it slides, |e.d| <= 1e-8 L always, the proxy never ahead of the threshold
-TEST(Friction, KeepsBothConditionsOnAWalk) {
+// |x - p| = tau where it slides, |e.d| <= 1e-8 L always, |x - p| <= tau always
+TEST(Friction, KeepsTheThresholdAndTheLineConditionOnAWalk) {
   for (const char* name : {"circle", "hill", "abc"}) {
     const auto v = vectors(name);
     Rig rig(build(friction(0.03), fields_of(v)));
@@ -84,13 +84,13 @@ TEST(Friction, KeepsBothConditionsOnAWalk) {
                 over, worst_along, loose, budget, evaluations.at_quantile(0.5), evaluations.at_quantile(0.99), evaluations.at_quantile(1));
     EXPECT_GT(slid, 1000);
     EXPECT_EQ(over, 0);
-    EXPECT_LE(budget, 4);  // where the line turns about within tau
+    EXPECT_LE(budget, 4);  // where the line reverses within tau
     EXPECT_LE(loose, 4);
     EXPECT_LE(worst_along, 5e-8);
   }
 }
 
-// with a large threshold it is a streamline link: the drift of one lap, R = 0.05, 0.2 units/s, 1 kHz (Euler: 0.63e-3)
+// with a large threshold it equals a streamline link: drift of one lap, R = 0.05, 0.2 units/s, 1 kHz (Euler: 0.63e-3)
 TEST(Friction, DriftOfALap) {
   struct Case {
     const char* name;
@@ -104,7 +104,7 @@ TEST(Friction, DriftOfALap) {
     double drift = 0, behind = 0;
     for (int k = 0; k <= ticks; ++k) {
       const double a = 2 * kPi * k / ticks;
-      // the hand is off the line by a fifth of its radius, on the surface
+      // the hand is on the surface, a fifth of the radius off the line
       const double r = k == 0 ? c.radius : c.radius * (1 + 0.2 * std::sin(3 * a));
       const double z = c.height > 0 ? std::sqrt(1 - r * r) : 0;
       rig.tick({r * std::cos(a), r * std::sin(a), z});
@@ -119,8 +119,8 @@ TEST(Friction, DriftOfALap) {
   }
 }
 
-// the still hand's tremor drives it nowhere: 60 s of 1e-3 at R = 0.05 (Euler: 1.2e-3)
-TEST(Friction, DoesNotDriftUnderTremor) {
+// no drift under the tremor of a still hand: 60 s of 1e-3 at R = 0.05 (Euler: 1.2e-3)
+TEST(Friction, DoesNotDriftUnderATremor) {
   Rig rig(build(friction(1), fields_of(vectors("circle"))));
   rig.tick({0.05, 0, 0});
   double drift = 0;
@@ -133,8 +133,8 @@ TEST(Friction, DoesNotDriftUnderTremor) {
   EXPECT_LE(drift, 1e-8);
 }
 
-// where the field is ill-defined it is the isotropic drag
-TEST(Friction, WithoutADirectionItIsDrag) {
+// without a valid field it is the isotropic drag
+TEST(Friction, WithoutADirectionItEqualsDrag) {
   const auto nothing = std::make_shared<Formula>([](const Vec3&) { return Vec3(0.0); });
   const auto radial = std::make_shared<Formula>([](const Vec3& p) { return p; });
   const auto nan = std::make_shared<Formula>([](const Vec3&) { return Vec3(std::nan("")); });
@@ -156,8 +156,8 @@ TEST(Friction, WithoutADirectionItIsDrag) {
   }
 }
 
-// from the one to the other without a step: the proxy as a function of the field's strength
-TEST(Friction, GoesOverIntoDragSmoothly) {
+// the proxy is a continuous function of the field's strength
+TEST(Friction, ChangesIntoDragContinuously) {
   const Vec3 probe(0.4, 0.2, 0);
   const auto at = [&](double exponent) {
     // v = strength (1, 0, 0) near the origin, 1 elsewhere: X = 1
@@ -171,7 +171,7 @@ TEST(Friction, GoesOverIntoDragSmoothly) {
   };
   EXPECT_LE(norm(at(-9) - (probe - direction(probe) * 0.1)), 1e-12);
   EXPECT_LE(norm(at(-3) - Vec3(0.4, 0.1, 0)), 1e-6);
-  // no jump: twice the steps, half the largest
+  // continuous: twice the number of steps halves the largest step
   double largest[2] = {0, 0};
   for (int fine = 0; fine < 2; ++fine) {
     const int steps = fine ? 200 : 100;
@@ -204,8 +204,8 @@ TEST(Friction, TheUnitsOfTheFieldDoNotMatter) {
   }
 }
 
-// fibres: the same path whatever the signs of the voxels
-TEST(Friction, LineFieldsHaveNoSign) {
+// line field: the path is independent of the signs of the voxels
+TEST(Friction, LineFieldsAreSignInvariant) {
   constexpr int n = 41;
   std::vector<float> plain, flipped;
   Random random(11);
@@ -231,17 +231,17 @@ TEST(Friction, LineFieldsHaveNoSign) {
     a.tick(probe);
     b.tick(probe);
     ASSERT_LE(norm(a.state.proxy - b.state.proxy), 1e-12) << i;
-    // dyads are another interpolation than vectors
+    // dyads are interpolated differently from vectors
     ASSERT_LE(norm(vector.state.proxy - b.state.proxy), 1e-3) << i;
   }
 }
 
-// on a surface: the tangential part of the field leads, all on the level
+// on a surface: the proxy follows the tangential part of the field and stays on the level
 TEST(Friction, FollowsTheTangentialFieldOnASurface) {
   const auto sphere = analytic_field("sphere");
   const auto tilted = std::make_shared<Formula>([](const Vec3& p) { return Vec3(-p.y, p.x, 0) + p * 3.0; });
   Rig rig(build(friction(0.4, kOnS + "1"), fields_of(tilted, sphere)));
-  // parallels of the sphere, whatever the normal part
+  // circles of latitude, for any normal part
   const double z = 0.6, r = 0.8;
   for (int k = 0; k <= 5000; ++k) {
     const double a = 2 * kPi * k / 5000, up = z + 0.2 * std::sin(5 * a);
@@ -253,8 +253,8 @@ TEST(Friction, FollowsTheTangentialFieldOnASurface) {
   }
 }
 
-// the end of the known field holds the proxy; back inside it goes on
-TEST(Friction, TheLineEndsWhereTheFieldDoes) {
+// the end of the valid field holds the proxy; back inside it moves on
+TEST(Friction, TheLineEndsAtTheEndOfTheField) {
   constexpr int n = 21;
   std::vector<float> v;
   std::vector<std::uint8_t> valid;
@@ -273,9 +273,9 @@ TEST(Friction, TheLineEndsWhereTheFieldDoes) {
   EXPECT_NEAR(rig.state.proxy.x, 0.5, 1e-8);
 }
 
-// The normal of a sampled surface jumps at every face, and the line turns there: OK is said only where e has nothing more along it, or at
-// a corner that is the closest point. Before, the rounds ran out with a third of the threshold left along the line, and it was OK.
-TEST(Friction, OnACreasedSurfaceItIsNotThereUntilItIs) {
+// The normal of a sampled surface jumps at every face, and so does the line's direction: OK is reported only where e is perpendicular to
+// the line, or at a corner that is the closest point.
+TEST(Friction, OnACreasedSurfaceOkMeansConverged) {
   Random random(3);
   const auto bumps = sample_scalar_grid(field::Mapping::from_linear(Mat3(2.0 / 19), Vec3(-1.0)), {20, 20, 20}, [](const Vec3& p) {
     return norm(p) + 0.12 * std::sin(6 * p.x) * std::sin(5 * p.y + 1) * std::sin(7 * p.z);
@@ -303,7 +303,7 @@ TEST(Friction, OnACreasedSurfaceItIsNotThereUntilItIs) {
     const Vec3 p = rig.state.proxy, e = surface.state.proxy - p, d = tangent(p);
     const double left = dot(e, d);
     if (std::fabs(left) <= 1e-7 * length) continue;
-    // a corner: a little further, and e points back
+    // a corner is the closest point if e points back slightly further along the line
     const Vec3 further = p + d * (left > 0 ? 1e-5 : -1e-5) * length;
     early += left * dot(surface.state.proxy - further, tangent(further)) > 0;
   }

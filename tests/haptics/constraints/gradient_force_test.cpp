@@ -15,14 +15,14 @@ ConstraintPtr pull(field::ScalarFieldPtr f, const std::string& direction, const 
 }
 
 TEST(GradientForce, IsProportionalToTheGradient) {
-  // s = |x|^2 on a grid: |grad s| = 2 |x|, largest in the outermost cells' centres
+  // s = |x|^2 on a grid: |grad s| = 2 |x|, with its maximum in the centres of the outermost cells
   const auto f =
       sample_scalar_grid(field::Mapping::from_linear(Mat3(0.125), Vec3(-2.0)), {33, 33, 33}, [](const Vec3& p) { return dot(p, p); });
   Rig high(pull(f, "up_gradient")), low(pull(f, "down_gradient"));
   const double largest = 2 * norm(Vec3(2 - 0.0625));
   Random random(1);
   for (int i = 0; i < 300; ++i) {
-    // at a cell's centre the trilinear gradient is the formula's
+    // at a cell's centre the trilinear gradient equals the formula's
     const Vec3 index(std::floor(random.uniform(0, 32)) + 0.5, std::floor(random.uniform(0, 32)) + 0.5,
                      std::floor(random.uniform(0, 32)) + 0.5);
     const Vec3 x = Vec3(-2.0) + 0.125 * index, shift = 0.2 * 2.0 * x / largest;
@@ -65,7 +65,7 @@ TEST(GradientForce, IsFreeOutsideTheDomainAndIdleOnAPlateau) {
   EXPECT_TRUE(bitwise_equal(flat.state.proxy, Vec3(-0.0, 0.5, 0)));
 }
 
-TEST(GradientForce, VoxelsThatAreNotFiniteAreFree) {
+TEST(GradientForce, NonFiniteVoxelsAreFree) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto f = sample_scalar_grid(field::Mapping::from_linear(Mat3(0.5), Vec3(-2.0)), {9, 9, 9},
                                     [&](const Vec3& p) { return norm(p) < 0.1 ? nan : p.x; });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Isosurfaces of cubic grids in the hand: the closest point, its normal, and the walls of the domain. Judged by the field's own samples,
-// by closed forms (the cubic repeats planes and paraboloids exactly) and beside linear cells.
+// Isosurface links on cubic grids: closest point, normal, and the domain's walls. Compared with the field's own samples, with closed
+// forms (cubic interpolation reproduces planes and paraboloids exactly) and with linear cells.
 #include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
@@ -25,7 +25,7 @@ class CubicIsosurface : public testing::TestWithParam<Case> {
     const auto sampled = tests::sampled_field(GetParam().name, GetParam().resolution);
     return cubic_of(std::dynamic_pointer_cast<const field::ScalarGrid>(sampled));
   }
-  /// Counts a place that is not on the level, or not the closest nearby.
+  /// Counts a proxy that is off the level, or not the closest point locally.
   void count(const field::ScalarField& field, const Vec3& probe, const LinkState& state) {
     const SurfaceCheck j = check_on_surface(field, GetParam().level, probe, state.proxy);
     ++runs;
@@ -56,7 +56,7 @@ TEST_P(CubicIsosurface, ReachesTheClosestPointFromAnyStart) {
   EXPECT_LE(farther, runs / 500);
 }
 
-TEST_P(CubicIsosurface, WalksWithAHand) {
+TEST_P(CubicIsosurface, FollowsAWalkingHand) {
   const auto grid = make();
   Rig rig(isosurface(grid, GetParam().level));
   Random random(12);
@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Grids, CubicIsosurface,
                          testing::Values(Case{"torus", 0.4, 32}, Case{"torus", 0.4, 64}, Case{"sphere", 1, 32}, Case{"gaussian", 0.5, 48}),
                          [](const auto& test) { return std::string(test.param.name) + std::to_string(test.param.resolution); });
 
-/// The greatest angle between the felt normal and that of the sphere of |x|, over hands all about it.
+/// Maximum angle between the field's normal at the proxy and that of the sphere |x|, over random probes around it.
 double normal_error(const field::ScalarFieldPtr& field, double radius) {
   Rig rig(isosurface(field, radius));
   Random random(14);
@@ -93,7 +93,7 @@ double normal_error(const field::ScalarFieldPtr& field, double radius) {
   return worst;
 }
 
-TEST(CubicIsosurface, NormalsOfSpheresAreTwentyTimesNearerToTheTruth) {
+TEST(CubicIsosurface, NormalErrorOfSpheresIsTwentyTimesSmallerThanLinear) {
   const auto linear = std::dynamic_pointer_cast<const field::ScalarGrid>(sampled_field("sphere", 64));
   const auto cubic = cubic_of(linear);
   for (const double radius : {0.5, 0.8, 1.0, 1.25, 1.5}) {
@@ -103,17 +103,17 @@ TEST(CubicIsosurface, NormalsOfSpheresAreTwentyTimesNearerToTheTruth) {
   }
 }
 
-/// z - x / 10 - (x^2 + y^2) / 4, repeated exactly.
+/// z - x / 10 - (x^2 + y^2) / 4, reproduced exactly.
 double bowl(const Vec3& p) { return p.z - 0.1 * p.x - 0.25 * (p.x * p.x + p.y * p.y); }
 field::Mapping cube() { return field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)); }
 
-TEST(CubicWalls, TheProxySlidesOnTheBoxAndComesBack) {
+TEST(CubicWalls, TheProxySlidesOnTheDomainBoundaryAndReturns) {
   const auto grid = cubic_of(sample_scalar_grid(cube(), {17, 17, 17}, [](const Vec3& p) { return p.z - 0.1 * p.x; }));
   Rig rig(isosurface(grid, 0));
   for (double x = 0; x < 3; x += 0.01) {
     rig.tick({x, 0.33, 0.5});
     ASSERT_LE(rig.state.proxy.x, 2 + 1e-12);
-    // the foot on the plane; beyond the wall the nearest on the edge
+    // the closest point on the plane; beyond the wall the closest point on the edge
     const double foot = (x + 0.1 * 0.5) / 1.01;
     ASSERT_TRUE(std::fabs(foot - 2) < 1e-6 || rig.state.status == (foot < 2 ? LinkStatus::ok : LinkStatus::boundary)) << x;
     ASSERT_NEAR(rig.state.proxy.x, std::min(foot, 2.0), 1e-6) << x;
@@ -123,13 +123,13 @@ TEST(CubicWalls, TheProxySlidesOnTheBoxAndComesBack) {
   EXPECT_EQ(rig.state.reason, SampleStatus::outside_box);
   rig.tick({3, -0.7, 0.5});
   EXPECT_NEAR(rig.state.proxy.y, -0.7, 1e-6);
-  rig.tick({3, 3, 0.5});  // where two walls meet
+  rig.tick({3, 3, 0.5});  // the intersection of two walls
   EXPECT_NEAR(norm(rig.state.proxy - Vec3(2, 2, 0.2)), 0, 1e-6);
   EXPECT_EQ(rig.state.status, LinkStatus::boundary);
   EXPECT_EQ(rig.tick({1, 0, 0}).status, LinkStatus::ok);
 }
 
-TEST(CubicWalls, OnACurvedSurfaceTheWallIsACurve) {
+TEST(CubicWalls, OnACurvedSurfaceTheBoundaryIsACurve) {
   const auto grid = cubic_of(sample_scalar_grid(cube(), {17, 17, 17}, bowl));
   Rig rig(isosurface(grid, 0.5));
   // on x = 2: z = 1.7 + y^2 / 4; brute force over y
@@ -138,7 +138,7 @@ TEST(CubicWalls, OnACurvedSurfaceTheWallIsACurve) {
     rig.tick(probe);
     for (int k = 0; k < 3 && rig.state.status == LinkStatus::budget; ++k) rig.tick(probe);
     double best = 1e9, at = 0;
-    for (double t = -1.0954; t <= 1.0954; t += 1e-4) {  // below the box's top
+    for (double t = -1.0954; t <= 1.0954; t += 1e-4) {  // the part below the box's top
       const double d = norm(probe - Vec3(2, t, 0.5 + 0.2 + 0.25 * (4 + t * t)));
       if (d < best) best = d, at = t;
     }
@@ -149,7 +149,7 @@ TEST(CubicWalls, OnACurvedSurfaceTheWallIsACurve) {
   }
 }
 
-TEST(CubicWalls, ObliqueBoxesToo) {
+TEST(CubicWalls, ObliqueDomainsHaveWalls) {
   const auto mapping = field::Mapping::from_linear(Mat3(0.2, 0.05, 0, -0.04, 0.25, 0.02, 0.03, 0, 0.3), Vec3(-2.0));
   const auto grid = cubic_of(sample_scalar_grid(mapping, {17, 17, 17}, [](const Vec3& p) { return p.z - 0.1 * p.x; }));
   const Vec3 from = mapping.world_from_index(Vec3(8.0)), out = mapping.world_from_index(Vec3(22, 8, 8));
@@ -157,14 +157,14 @@ TEST(CubicWalls, ObliqueBoxesToo) {
   for (int k = 0; k <= 100; ++k) rig.tick(from + (k / 100.0) * (out - from));
   ASSERT_EQ(rig.state.status, LinkStatus::boundary);
   EXPECT_NEAR(mapping.index_from_world(rig.state.proxy).x, 16, 1e-8);
-  // what is left of the way points out of the wall, in the plane of the wall and the level's normal only
+  // the residual has no component along the edge and points out of the wall
   const Vec3 n = direction(Vec3(-0.1, 0, 1)), wall = direction(mapping.world_from_index_gradient(Vec3(1, 0, 0)));
   const Vec3 edge = direction(cross(n, wall));
   EXPECT_NEAR(dot(out - rig.state.proxy, edge), 0, 1e-6);
   EXPECT_GT(dot(out - rig.state.proxy, wall), 0);
 }
 
-TEST(CubicWalls, MasksAndValuesThatAreNoneAreWalls) {
+TEST(CubicWalls, MasksAndNonFiniteValuesAreWalls) {
   for (const bool masked : {true, false}) {
     std::vector<std::uint8_t> valid;
     for (int z = 0; z < 17; ++z)
@@ -188,7 +188,7 @@ TEST(CubicWalls, MasksAndValuesThatAreNoneAreWalls) {
   }
 }
 
-TEST(CubicWalls, ASliceHasACurve) {
+TEST(CubicWalls, TheSurfaceOfASliceIsACurve) {
   const auto grid = cubic_of(sample_scalar_grid(cube(), {17, 17, 1}, [](const Vec3& p) { return p.y - 0.25 * p.x * p.x; }));
   Rig rig(isosurface(grid, 0));
   rig.tick({1, 1, -2});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Folded and steep formulas: the marschner-lobb ripples (radius of curvature down to L / 2000) and the far flank of a gaussian.
-// Judged by formulas of this file, not by the field's own. A proxy is good: OK, off the level by at most 1e-11 L, tangential
-// residual at most 1e-6 L; it may take 20 still ticks, then it rests bit for bit.
+// Checked with formulas of this file, not with the field's samples. A valid proxy is OK, off the level by at most 1e-11 L, and has a
+// tangential residual of at most 1e-6 L, within 20 still ticks, after which it rests exactly.
 #include <numbers>
 
 #include "tests/haptics/constraints/constraint_fixture.h"
@@ -85,7 +85,7 @@ class Judge {
     return true;
   }
 
-  /// No neighbour on the surface, 2e-6 L away in eight directions, is nearer to the probe.
+  /// True if no neighbour on the surface, 2e-6 L away in eight directions, is nearer to the probe.
   bool is_minimum(const Vec3& proxy, const Vec3& probe) const {
     const Vec3 n = direction(formula_.gradient(proxy));
     const Vec3 a = direction(cross(n, std::fabs(n.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0))), b = cross(n, a);
@@ -142,11 +142,11 @@ TEST(FoldedIsosurface, RipplesAfterJumpsFromSideToSide) {
   Random random(26);
   for (int i = 0; i < 2000; ++i) judge.run(rig, random.box(1.5));
   EXPECT_EQ(judge.count.bad + judge.count.restless + judge.count.no_minimum, 0) << judge.count.text();
-  EXPECT_LE(judge.count.late, judge.count.runs * 15 / 100) << judge.count.text();  // a hundred ridges on the way
+  EXPECT_LE(judge.count.late, judge.count.runs * 15 / 100) << judge.count.text();  // a hundred ridges on the path
   RecordProperty("figures", judge.count.text());
 }
 
-TEST(FoldedIsosurface, AHandOnTheRipples) {
+TEST(FoldedIsosurface, AHandFollowsTheRipples) {
   Rig rig(isosurface(analytic_field("marschner-lobb"), 0.5));
   Judge judge(kRipples, 0.5);
   Random random(23);
@@ -162,7 +162,7 @@ TEST(FoldedIsosurface, AHandOnTheRipples) {
   RecordProperty("figures", judge.count.text());
 }
 
-TEST(FoldedIsosurface, AStartAboveTheRipplesIsNotStuckBehindThem) {
+TEST(FoldedIsosurface, AStartAboveTheRipplesReachesTheSurface) {
   Rig rig(isosurface(analytic_field("marschner-lobb"), 0.5));
   Judge judge(kRipples, 0.5);
   const Vec3 probe(-0.7, 0.9, 0.8);
@@ -171,7 +171,7 @@ TEST(FoldedIsosurface, AStartAboveTheRipplesIsNotStuckBehindThem) {
   EXPECT_LE(norm(probe - rig.state.proxy), 0.66);  // the level is 0.640 away
 }
 
-TEST(FoldedIsosurface, ABellsFarFlankAfterJumps) {
+TEST(FoldedIsosurface, TheFarFlankOfAGaussianAfterJumps) {
   for (const double level : {1e-5, 1e-3, 0.01}) {
     Rig rig(isosurface(analytic_field("gaussian"), level));
     Judge judge(kBell, level);
@@ -181,7 +181,7 @@ TEST(FoldedIsosurface, ABellsFarFlankAfterJumps) {
     for (int i = 0; i < 3000; ++i) {
       const Vec3 probe = random.box(2);
       judge.run(rig, probe);
-      // near the centre every point of the sphere is as close, to the residual that is allowed
+      // near the centre all points of the sphere are equally close, up to the allowed residual
       worst = std::max(worst, norm(rig.state.proxy - direction(probe) * radius) * std::min(norm(probe) / radius, 1.0));
     }
     EXPECT_EQ(judge.count.bad + judge.count.restless, 0) << level << ": " << judge.count.text();
@@ -191,7 +191,7 @@ TEST(FoldedIsosurface, ABellsFarFlankAfterJumps) {
   }
 }
 
-TEST(FoldedIsosurface, AJumpAcrossTheBellIsNotStuckOnItsWay) {
+TEST(FoldedIsosurface, AJumpAcrossTheGaussianArrives) {
   Rig rig(isosurface(analytic_field("gaussian"), 1e-5));
   Judge judge(kBell, 1e-5);
   judge.run(rig, {1.32, -0.01, 0.77});
@@ -199,8 +199,8 @@ TEST(FoldedIsosurface, AJumpAcrossTheBellIsNotStuckOnItsWay) {
   EXPECT_EQ(judge.count.late + judge.count.bad + judge.count.restless, 0) << judge.count.text();
 }
 
-TEST(FoldedIsosurface, OnlyADegenerateSurfaceIsGivenUp) {
-  // the ring |x| = 1 in z = 0 is no surface
+TEST(FoldedIsosurface, ADegenerateSurfaceIsReportedAsCriticalOrAbsent) {
+  // level 0 is the circle |x| = 1 in z = 0, not a surface
   int given_up = 0;
   Random random(25);
   for (int i = 0; i < 50; ++i) {

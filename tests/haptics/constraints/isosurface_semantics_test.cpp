@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Sides, release, thin sheets, the edge of the data, broken voxels: the exact meaning of an isosurface link.
+// Exact behaviour of an isosurface link: sides, release, thin sheets, the domain's boundary, invalid voxels.
 #include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
-namespace isosurface_rules_test {
+namespace isosurface_semantics_test {
 
 const std::string kAbove = R"(, "free": "above")", kBelow = R"(, "free": "below")";
 
-/// Both kinds of the same sphere |x| = 1; the grid's error stays far below what is asked.
+/// The sphere |x| = 1 as a formula and as a grid; the grid's error is far below the tolerances.
 class Sphere : public testing::TestWithParam<bool> {
  protected:
   field::ScalarFieldPtr field() const { return GetParam() ? sampled_field("sphere", 81) : analytic_field("sphere"); }
@@ -50,7 +50,7 @@ TEST_P(Sphere, ACrossingIsDecidedWithinTheTick) {
   EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0, 0, 1.5)));
 }
 
-TEST_P(Sphere, OneSidedReleaseNeedsTheFreeSideAgain) {
+TEST_P(Sphere, OneSidedReArmsOnTheFreeSide) {
   Rig rig(make(kAbove + R"(, "release": 0.2)"));
   EXPECT_EQ(rig.tick({0, 0, 1.1}).status, LinkStatus::free);
   EXPECT_EQ(rig.tick({0, 0, 0.85}).status, LinkStatus::ok);
@@ -63,20 +63,20 @@ TEST_P(Sphere, OneSidedReleaseNeedsTheFreeSideAgain) {
   EXPECT_EQ(rig.tick({0, 0, 0.95}).status, LinkStatus::ok);
 }
 
-TEST_P(Sphere, TwoSidedReleaseNeedsTheLevelAgain) {
+TEST_P(Sphere, TwoSidedReArmsNearOrAcrossTheLevel) {
   Rig rig(make(R"(, "release": 0.2)"));
   EXPECT_EQ(rig.tick({0, 0, 1.1}).status, LinkStatus::ok);
   EXPECT_EQ(rig.tick({0, 0, 1.21}).status, LinkStatus::released);
   EXPECT_EQ(rig.tick({0, 0, 1.03}).status, LinkStatus::released);
   EXPECT_EQ(rig.tick({0, 0, 1.018}).status, LinkStatus::ok);  // within a tenth of release
   EXPECT_EQ(rig.tick({0, 0, 1.3}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({0, 0, 0.9}).status, LinkStatus::ok);  // across the level in one tick
+  EXPECT_EQ(rig.tick({0, 0, 0.9}).status, LinkStatus::ok);  // crosses the level in one tick
   EXPECT_NEAR(rig.state.proxy.z, 1, slack());
   EXPECT_EQ(rig.tick({0, 0, 0.7}).status, LinkStatus::released);
   EXPECT_EQ(rig.tick({0, 0, 0.97}).status, LinkStatus::released);
   EXPECT_EQ(rig.tick({0, 0, 0.985}).status, LinkStatus::ok);
   EXPECT_EQ(rig.tick({0, 0, 0.7}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({0, 0, 1.5}).status, LinkStatus::released);  // crossed, but too far at once: it lets go again
+  EXPECT_EQ(rig.tick({0, 0, 1.5}).status, LinkStatus::released);  // crosses beyond the release distance: stays released
 }
 
 TEST_P(Sphere, FirstProbeDeeperThanReleaseStartsReleased) {
@@ -89,7 +89,7 @@ TEST_P(Sphere, FirstProbeDeeperThanReleaseStartsReleased) {
   EXPECT_EQ(free.tick({0, 0, 0.1}).status, LinkStatus::free);
 }
 
-TEST_P(Sphere, TheCentreIsNoTrap) {
+TEST_P(Sphere, TheCentreDoesNotTrapTheProxy) {
   Rig rig(make(""));
   EXPECT_EQ(rig.tick(Vec3(0.0)).status, LinkStatus::ok);
   EXPECT_NEAR(norm(rig.state.proxy), 1, 0.01);
@@ -99,11 +99,11 @@ TEST_P(Sphere, TheCentreIsNoTrap) {
   EXPECT_NEAR(norm(rig.state.proxy), 1, 0.01);
 }
 
-TEST_P(Sphere, ATangentialPathKeepsToTheSurface) {
+TEST_P(Sphere, ATangentialPathStaysOnTheSurface) {
   Rig rig(make(""));
   Rig sided(make(kAbove));
   for (int i = -500; i <= 500; ++i) {
-    const Vec3 probe(i * 2e-3, 0, 1);  // touches the sphere at i = 0
+    const Vec3 probe(i * 2e-3, 0, 1);  // tangent to the sphere at i = 0
     rig.tick(probe);
     sided.tick(probe);
     ASSERT_EQ(rig.state.status, LinkStatus::ok) << i;
@@ -117,7 +117,7 @@ TEST_P(Sphere, ATangentialPathKeepsToTheSurface) {
 
 INSTANTIATE_TEST_SUITE_P(BothKinds, Sphere, testing::Bool(), [](const auto& test) { return test.param ? "Grid" : "Formula"; });
 
-TEST(IsosurfaceSemantics, AFastHandDoesNotTunnelAThinSheet) {
+TEST(IsosurfaceSemantics, AFastHandDoesNotTunnelThroughAThinSheet) {
   // |z| on a fine grid: a sheet 0.02 thick, free above, crossed by steps of 0.05
   const auto grid =
       sample_scalar_grid(field::Mapping::from_linear(Mat3(0.0625), Vec3(-2.0)), {65, 65, 65}, [](const Vec3& p) { return std::fabs(p.z); });
@@ -125,23 +125,23 @@ TEST(IsosurfaceSemantics, AFastHandDoesNotTunnelAThinSheet) {
   EXPECT_EQ(rig.tick({0.3, 0.2, 0.04}).status, LinkStatus::free);
   EXPECT_EQ(rig.tick({0.3, 0.2, -0.03}).status, LinkStatus::ok);
   EXPECT_NEAR(rig.state.proxy.z, 0.01, 1e-6);
-  EXPECT_EQ(rig.tick({0.3, 0.25, -0.04}).status, LinkStatus::ok);  // slides along
+  EXPECT_EQ(rig.tick({0.3, 0.25, -0.04}).status, LinkStatus::ok);  // slides along the sheet
   EXPECT_NEAR(rig.state.proxy.y, 0.25, 1e-6);
   EXPECT_EQ(rig.tick({0.3, 0.25, 0.03}).status, LinkStatus::free);
-  // a jump is no hand: by the field's value it is free
+  // a jump is not a hand's motion: free by the field's value
   EXPECT_EQ(rig.tick({0.3, 0.2, -1.5}).status, LinkStatus::free);
 }
 
-TEST(IsosurfaceSemantics, AGrazedCornerIsNoSheet) {
-  // a fast chord outside-to-outside through a shallow cap of the sphere
+TEST(IsosurfaceSemantics, AChordThroughAShallowCapIsFree) {
+  // a fast chord from outside to outside through a shallow cap of the sphere
   Rig rig(isosurface(analytic_field("sphere"), 1, kAbove));
   rig.tick({-0.035, 0, 0.99999});
   EXPECT_EQ(rig.tick({0.035, 0, 0.99999}).status, LinkStatus::free);
 }
 
-TEST(IsosurfaceSemantics, NoSurfacePassesTheProbeThrough) {
+TEST(IsosurfaceSemantics, WithoutASurfaceTheProbePassesThrough) {
   Rig rig(isosurface(analytic_field("constant"), 1));
-  // the whole domain is looked through, for as many ticks as that takes
+  // the search covers the whole domain and may take several ticks
   for (int k = 0; k < 3 && (k == 0 || rig.state.status == LinkStatus::budget); ++k) {
     rig.tick({0.1, 0.2, 0.3});
     EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.1, 0.2, 0.3)));
@@ -162,7 +162,7 @@ TEST(IsosurfaceSemantics, FarStartsEndOnTheLevel) {
   EXPECT_NEAR(grid.state.proxy.y, 1, 0.01);
 }
 
-TEST(IsosurfaceSemantics, TheProxyStopsAtTheDomainsWall) {
+TEST(IsosurfaceSemantics, TheProxyStopsAtTheDomainBoundary) {
   // z = 0.1 x on [-2, 2]^3: pulled out through x = 2 the proxy slides on the wall
   const auto grid =
       sample_scalar_grid(field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)), {17, 17, 17}, [](const Vec3& p) { return p.z - 0.1 * p.x; });
@@ -178,7 +178,7 @@ TEST(IsosurfaceSemantics, TheProxyStopsAtTheDomainsWall) {
   EXPECT_NEAR(rig.state.proxy.z, 0.2, 1e-6);
   rig.tick({3, -0.7, 0.5});
   EXPECT_NEAR(rig.state.proxy.y, -0.7, 1e-6);
-  EXPECT_EQ(rig.tick({1, 0, 0}).status, LinkStatus::ok);  // and comes back
+  EXPECT_EQ(rig.tick({1, 0, 0}).status, LinkStatus::ok);  // returns from the boundary
 }
 
 TEST(IsosurfaceSemantics, TheMaskIsAWall) {
@@ -205,7 +205,7 @@ TEST(IsosurfaceSemantics, TheMaskIsAWall) {
   }
 }
 
-TEST(IsosurfaceSemantics, BrokenVoxelsNeverComeOut) {
+TEST(IsosurfaceSemantics, InvalidVoxelsNeverReachTheOutput) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const auto grid = sample_scalar_grid(field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)), {17, 17, 17},
                                        [&](const Vec3& p) { return p.x > 0.4 && p.x < 0.9 ? nan : static_cast<float>(p.z - 0.1 * p.x); });
@@ -228,14 +228,14 @@ TEST(IsosurfaceSemantics, BrokenVoxelsNeverComeOut) {
   }
 }
 
-TEST(IsosurfaceSemantics, RotatedAndShearedGridsAreFeltInTheWorld) {
+TEST(IsosurfaceSemantics, RotatedAndShearedGridsAreExactInWorldCoordinates) {
   Random random(5);
   for (int i = 0; i < 20; ++i) {
     Mat3 j(0.0);
     for (int a = 0; a < 3; ++a) j[a] = random.unit() * 0.1;
     if (std::fabs(dot(j[0], cross(j[1], j[2]))) < 3e-4) continue;
     const auto mapping = field::Mapping::from_linear(j, j * Vec3(-20.0));
-    // a plane is reproduced exactly by trilinear cells, whatever their shape
+    // trilinear cells of any shape reproduce a plane exactly
     const Vec3 n = random.unit();
     const auto grid = sample_scalar_grid(mapping, {41, 41, 41}, [&](const Vec3& p) { return dot(n, p); });
     Rig rig(isosurface(grid, 0.01));
@@ -244,15 +244,15 @@ TEST(IsosurfaceSemantics, RotatedAndShearedGridsAreFeltInTheWorld) {
       rig.tick(probe);
       const Vec3 e = probe - rig.state.proxy;
       if (rig.state.status != LinkStatus::ok) continue;
-      EXPECT_LE(norm(e - n * dot(n, e)), 1e-6) << i;  // float values
+      EXPECT_LE(norm(e - n * dot(n, e)), 1e-6) << i;  // the values are floats
       EXPECT_NEAR(dot(n, rig.state.proxy), 0.01, 1e-7);
     }
     EXPECT_EQ(rig.state.status, LinkStatus::ok);
   }
 }
 
-TEST(IsosurfaceSemantics, ASliceHasACurve) {
-  // one voxel thick: the surface is the circle in the slice
+TEST(IsosurfaceSemantics, TheSurfaceOfASliceIsACurve) {
+  // a grid of one voxel layer: the surface is a circle in the slice
   const auto grid = sample_scalar_grid(field::Mapping::from_linear(Mat3(0.1), Vec3(-2, -2, 0.5)), {41, 41, 1},
                                        [](const Vec3& p) { return std::sqrt(p.x * p.x + p.y * p.y); });
   Rig rig(isosurface(grid, 1));
@@ -264,7 +264,7 @@ TEST(IsosurfaceSemantics, ASliceHasACurve) {
   }
 }
 
-TEST(IsosurfaceSemantics, TheSameProxiesAtAnyScaleOfTheField) {
+TEST(IsosurfaceSemantics, ProxiesAreInvariantUnderScalingOfTheField) {
   for (const double scale : {1e-300, 1e-30, -2.0, 1e30, 1e300}) {
     Rig one(isosurface(analytic_field("sphere"), 1)), other(isosurface(analytic_field("sphere", scale), scale));
     Random random(6);
@@ -303,5 +303,5 @@ TEST(IsosurfaceSemantics, KeysAreChecked) {
   EXPECT_NE(level.find("99"), std::string::npos);
 }
 
-}  // namespace isosurface_rules_test
+}  // namespace isosurface_semantics_test
 }  // namespace catena::haptics::tests

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Number 8 of the acceptance tests (figures printed when they fail), then the rules of sides, release and the domain's edge.
+// Isosurface links on formulas and sampled grids: closest points, convergence and evaluations. Figures are printed on failure.
 #include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace isosurface_test {
 
-constexpr double kOffAnalytic = 1e-11, kOffSampled = 1e-9, kTangential = 1e-6;  // of L
+constexpr double kOffAnalytic = 1e-11, kOffSampled = 1e-9, kTangential = 1e-6;  // fractions of L
 
 struct Tally {
   int runs = 0, bad = 0;
@@ -69,7 +69,7 @@ TEST_P(AnalyticIsosurface, FollowsJumpsWithinTheTick) {
   RecordProperty("figures", tally.text());
 }
 
-TEST_P(AnalyticIsosurface, AHandsMotionCostsFewEvaluations) {
+TEST_P(AnalyticIsosurface, AHandsMotionNeedsFewEvaluations) {
   const auto f = analytic_field(GetParam().name);
   Rig rig(isosurface(f, GetParam().level));
   Random random(9);
@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(Formulas, AnalyticIsosurface,
                                          Formula{"tanh", 0.95}, Formula{"plane", 0.2}, Formula{"linear", 0.5}),
                          [](const auto& test) { return std::string(test.param.name) + std::to_string(test.index); });
 
-TEST(Isosurface, AStillProbeLeavesTheProxyStill) {
+TEST(Isosurface, TheProxyRestsWhileTheProbeRests) {
   for (const bool grid : {false, true}) {
     const auto f = grid ? sampled_field("sphere", 33, 4) : analytic_field("sphere");
     for (const double d : {0.1, 0.5, 0.9, 1.5, 2.5, 3.0, 5.0, 20.0}) {
@@ -114,7 +114,7 @@ TEST(Isosurface, AStillProbeLeavesTheProxyStill) {
   }
 }
 
-// the control: the printed Newton (Eq. 5) must fail where the safeguarded one does not
+// negative control: Newton's method as printed (Eq. 5) fails where the safeguarded one does not
 TEST(Isosurface, PlainNewtonFailsOnASteepProfile) {
   const auto f = analytic_field("tanh");
   field::Cursor cursor;
@@ -133,7 +133,7 @@ TEST(Isosurface, PlainNewtonFailsOnASteepProfile) {
   EXPECT_EQ(failed, 100);
 }
 
-TEST(Isosurface, PlateausAreLeft) {
+TEST(Isosurface, StartsOnPlateausReachTheSurface) {
   const auto f = analytic_field("tanh");
   for (const double z : {0.1, -0.5, 1.0, -1.9, 1.99}) {
     Rig rig(isosurface(f, 0.3));
@@ -145,7 +145,7 @@ TEST(Isosurface, PlateausAreLeft) {
 
 // ---- grids ----
 
-/// The steepest feasible descent of |probe - p| that any adjoining cell offers at p, of L. Grids with axis-aligned voxels.
+/// Maximum feasible descent of |probe - p| at p over the adjoining cells, as a fraction of L. For grids with axis-aligned voxels.
 double descent_left(const field::ScalarGrid& grid, const Vec3& proxy, const Vec3& probe) {
   const field::Mapping& m = grid.mapping();
   const Vec3 index = m.index_from_world(proxy);
@@ -160,7 +160,7 @@ double descent_left(const field::ScalarGrid& grid, const Vec3& proxy, const Vec3
       if ((b == low || face[static_cast<std::size_t>(a)]) && b >= grid.index_box().lo[a] && b <= grid.index_box().hi[a] - 1)
         bases[static_cast<std::size_t>(a)].push_back(b);
   }
-  double most = 0;
+  double maximum = 0;
   for (const int bx : bases[0])
     for (const int by : bases[1])
       for (const int bz : bases[2]) {
@@ -182,10 +182,10 @@ double descent_left(const field::ScalarGrid& grid, const Vec3& proxy, const Vec3
           if (held == 3 || held == 5 || held == 6 || held == 7) t = Vec3(0.0);
           for (int a = 0; a < 3; ++a)
             if (face[static_cast<std::size_t>(a)] && !(held >> a & 1) && (f[a] < 0.5 ? t[a] < 0 : t[a] > 0)) legal = false;
-          if (legal) most = std::max(most, norm(t));
+          if (legal) maximum = std::max(maximum, norm(t));
         }
       }
-  return most / grid.domain_length();
+  return maximum / grid.domain_length();
 }
 
 struct Grid {
@@ -211,7 +211,7 @@ class SampledIsosurface : public testing::TestWithParam<Grid> {
     return sample_scalar_grid(field::Mapping::from_linear(j, Vec3(-2.0)), size,
                               [&](const Vec3& x) { return exact->sample(x, cursor).value; });
   }
-  /// Holds the probe still until the work is done: at once, or in a few ticks. True: later.
+  /// Holds the probe still until the proxy has arrived. True if that took more than one tick.
   static bool arrive(Rig& rig, const Vec3& probe) {
     if (rig.tick(probe).status != LinkStatus::budget) return false;
     for (int k = 0; k < 3 && rig.state.status == LinkStatus::budget; ++k) rig.tick(probe);
@@ -245,7 +245,7 @@ TEST_P(SampledIsosurface, ReachesTheClosestPointFromAnyStart) {
   RecordProperty("figures", tally.text());
 }
 
-TEST_P(SampledIsosurface, WalksWithAHand) {
+TEST_P(SampledIsosurface, FollowsAWalkingHand) {
   const auto grid = make();
   Rig rig(isosurface(grid, GetParam().level));
   Random random(12);

@@ -19,7 +19,7 @@ TEST(Line, ProjectsOrthogonally) {
   }
 }
 
-TEST(Line, IsInfiniteAndKeepsItsAccuracyFarOut) {
+TEST(Line, IsInfiniteAndAccurateFarFromTheOrigin) {
   Rig rig(build(R"({"name": "a", "type": "line", "point": [1, 2, 3], "direction": [1, 2, 2]})"));
   for (const double scale : {1e3, 1e9, 1e150, 1e200, 1e300}) {
     const Vec3 probe = Vec3(1, -0.5, 0.25) * scale;
@@ -31,7 +31,7 @@ TEST(Line, IsInfiniteAndKeepsItsAccuracyFarOut) {
   }
 }
 
-TEST(Line, TheLengthOfItsDirectionDoesNotCount) {
+TEST(Line, TheLengthOfTheDirectionDoesNotMatter) {
   Rig one(build(R"({"name": "a", "type": "line", "point": [0, 0, 0], "direction": [1, 2, -2]})"));
   for (const char* other : {"[1e-300, 2e-300, -2e-300]", "[1e300, 2e300, -2e300]"}) {
     Rig rig(build(std::string(R"({"name": "a", "type": "line", "point": [0, 0, 0], "direction": )") + other + "}"));
@@ -40,7 +40,7 @@ TEST(Line, TheLengthOfItsDirectionDoesNotCount) {
   }
 }
 
-TEST(Line, LetsGoAtReleaseAndTakesHoldWithinATenth) {
+TEST(Line, ReleasesAndReArmsWithinATenth) {
   Rig rig(build(R"({"name": "a", "type": "line", "point": [0, 0, 0], "direction": [1, 0, 0], "release": 0.5})"));
   EXPECT_EQ(rig.tick({3, 0.49, 0}).status, LinkStatus::ok);
   EXPECT_EQ(rig.state.limit, 0.5);
@@ -51,14 +51,14 @@ TEST(Line, LetsGoAtReleaseAndTakesHoldWithinATenth) {
   EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(9, 0, 0)));
 }
 
-TEST(Line, SweepsThereAndBackWithTheSameBits) {
+TEST(Line, ForwardAndBackwardSweepsAreBitIdentical) {
   Rig rig(build(R"({"name": "a", "type": "line", "point": [0.1, 0.2, 0.3], "direction": [0.3, -0.2, 0.7]})"));
   std::vector<Vec3> there;
   for (int i = 0; i <= 100; ++i) there.push_back(rig.tick({0.01 * i, 0.5, -0.02 * i}).proxy);
   for (int i = 100; i >= 0; --i) EXPECT_TRUE(bitwise_equal(rig.tick({0.01 * i, 0.5, -0.02 * i}).proxy, there[static_cast<std::size_t>(i)]));
 }
 
-TEST(Line, IsItsOwnPrimitive) {
+TEST(Line, ThePrimitiveIsTheLine) {
   Rig rig(build(R"({"name": "a", "type": "line", "point": [0, 0, 1], "direction": [0, 3, 0], "release": 0.5})"));
   ASSERT_TRUE(rig.constraint->has_primitive());
   rig.tick({0.1, 2, 1});

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// Meshes that are hard on a god-object: seams, parts that cut each other, rough and stepped bodies.
+/// Difficult meshes for the god-object method: seams, intersecting parts, rough and stepped bodies.
 #include "tests/haptics/constraints/mesh_fixture.h"
 
 namespace catena::haptics::tests {
-namespace mesh_bodies_test {
+namespace mesh_edge_cases_test {
 
-/// Two halves of a sheet whose seam does not share vertices, and is 1e-8 wide.
-TEST(Mesh, SeamsThatDoNotQuiteMeetAreCrossed) {
+/// Two halves of a sheet with a seam of width 1e-8 and without shared vertices.
+TEST(Mesh, NarrowSeamsAreCrossed) {
   mesh::TriangleSoup soup;
   add_quad(soup, {-1, -1, 0}, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0});
   add_quad(soup, {1e-8, -1, 0}, {1, -1, 0}, {1, 0.3, 0}, {1e-8, 0.3, 0});
@@ -34,8 +34,8 @@ TEST(Mesh, TwoSidedStaysOnItsSideOfAThinPlate) {
   }
 }
 
-/// A soup of boxes that cut each other: no pair of faces shares an edge where they meet.
-TEST(Mesh, HoldsWherePartsCutEachOther) {
+/// Intersecting boxes: the faces do not share edges where they intersect.
+TEST(Mesh, HoldsOnIntersectingParts) {
   mesh::TriangleSoup soup;
   add_box(soup, {-1, -1, -0.2}, {1, 1, 0});
   add_box(soup, {0.3, -0.5, -0.1}, {0.5, 0.5, 0.4});
@@ -51,12 +51,12 @@ TEST(Mesh, HoldsWherePartsCutEachOther) {
   }
 }
 
-/// Random walks deep inside random bodies: on the mesh, outside of it, no further from the probe than any move could be.
+/// Random walks deep inside random bodies: the proxy stays on the mesh and is locally the closest point outside of the body.
 TEST(Mesh, StaysOutsideARoughBody) {
   Random random(11);
   mesh::TriangleSoup soup = sphere_soup(6);
   for (Vec3& v : soup.vertices) {
-    // a bump a direction, the same for corners that coincide
+    // one bump per direction, equal for coincident corners
     v *= 1 + 0.25 * std::sin(5 * v.x) * std::sin(4 * v.y + 1) * std::sin(6 * v.z + 2);
   }
   const auto body = make_mesh_from(std::move(soup));
@@ -76,7 +76,7 @@ TEST(Mesh, StaysOutsideARoughBody) {
     ++held;
     if (i % 10 != 0) continue;
     ASSERT_LE(off(*body, rig.state.proxy), 1e-12) << i;
-    // no place outside the body and close by is nearer to the probe: settled in valleys, past saddles
+    // no point nearby and outside the body is nearer to the probe
     const double gap = norm(probe - rig.state.proxy);
     for (int k = 0; k < 40 && gap > 1e-3; ++k) {
       const Vec3 other = rig.state.proxy + 1e-6 * random.unit();
@@ -88,8 +88,8 @@ TEST(Mesh, StaysOutsideARoughBody) {
   EXPECT_GT(held, 5000);
 }
 
-/// Stairs and a pit out of cubes, probes on the lattice of their corners: every hit is on an edge, a vertex or a seam.
-TEST(Mesh, NothingLeaksThroughSeams) {
+/// Stairs and a pit of cubes, with probes on the lattice of their corners: every hit is on an edge, a vertex or a seam.
+TEST(Mesh, NoProbePassesThroughSeams) {
   const auto solid = [](int x, int y, int z) {
     if (x < 0 || y < 0 || z < 0 || x > 3 || y > 3 || z > 3) return false;
     return z <= x && !(x == 2 && y == 2 && z >= 1);
@@ -136,5 +136,5 @@ TEST(Mesh, NothingLeaksThroughSeams) {
   EXPECT_GT(held, 3000);
 }
 
-}  // namespace mesh_bodies_test
+}  // namespace mesh_edge_cases_test
 }  // namespace catena::haptics::tests

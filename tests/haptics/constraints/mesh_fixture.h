@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Felt meshes, and what a mesh is by brute force: the closest point over all triangles, inside by crossings of a ray.
+/// Mesh links, and brute-force references: the closest point over all triangles, and inside by ray crossings.
 #pragma once
 #include "tests/haptics/constraints/constraint_fixture.h"
 #include "tests/support/mesh_shapes.h"
@@ -19,7 +19,7 @@ inline ConstraintPtr mesh_link(mesh::MeshPtr mesh, const std::string& more = R"(
   return build(R"({"name": "a", "type": "mesh", "mesh": "m")" + more + "}", fields);
 }
 
-/// The closest point of a triangle, on its own: over its plane, its edges, its corners.
+/// The closest point of one triangle, over its plane, its edges and its corners.
 inline Vec3 closest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
   const Vec3 n = cross(b - a, c - a);
   const Vec3 p = x - n * (dot(n, x - a) / dot(n, n));
@@ -35,18 +35,18 @@ inline Vec3 closest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, con
 
 inline Vec3 closest_on_mesh(const mesh::TriangleMesh& mesh, const Vec3& x) {
   Vec3 best(1e300);
-  double least = 1e300;
+  double minimum = 1e300;
   for (const mesh::Triangle& t : mesh.triangles()) {
     const Vec3 p = closest_on_triangle(mesh.vertices()[t[0]], mesh.vertices()[t[1]], mesh.vertices()[t[2]], x);
-    if (norm(p - x) < least) {
-      least = norm(p - x);
+    if (norm(p - x) < minimum) {
+      minimum = norm(p - x);
       best = p;
     }
   }
   return best;
 }
 
-/// Inside a closed mesh: by the number of crossings of a ray in an odd direction.
+/// True inside a closed mesh, by the parity of the crossings of a ray in a generic direction.
 inline bool is_inside(const mesh::TriangleMesh& mesh, const Vec3& x) {
   const Vec3 way = direction(Vec3(0.5377, 0.8339, -0.2259));
   int crossings = 0;

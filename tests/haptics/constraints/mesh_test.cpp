@@ -9,16 +9,16 @@ TEST(Mesh, BoxIsFreeOutsideAndHoldsInside) {
   EXPECT_EQ(rig.tick({0.1, 0.2, 0.8}).status, LinkStatus::free);
   EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.1, 0.2, 0.8)));
   EXPECT_EQ(rig.tick({0.1, 0.2, 0.5}).status, LinkStatus::free);
-  EXPECT_EQ(rig.tick({0.1, 0.2, 0.3}).status, LinkStatus::ok);  // within the tick that crosses
+  EXPECT_EQ(rig.tick({0.1, 0.2, 0.3}).status, LinkStatus::ok);  // within the tick of the crossing
   EXPECT_LE(norm(rig.state.proxy - Vec3(0.1, 0.2, 0.5)), 1e-12);
   EXPECT_EQ(rig.state.evaluations, 0);
-  // deep, nearer to a side wall by now: still on the face that it met
+  // deep and nearer to a side wall, the proxy stays on the face of entry
   EXPECT_EQ(rig.tick({0.1, 0.45, -0.3}).status, LinkStatus::ok);
   EXPECT_LE(norm(rig.state.proxy - Vec3(0.1, 0.45, 0.5)), 1e-12);
   EXPECT_EQ(rig.tick({0.1, 0.45, 0.6}).status, LinkStatus::free);
 }
 
-TEST(Mesh, InsideOutIsFreeInside) {
+TEST(Mesh, FreeBelowIsFreeInside) {
   Rig rig(mesh_link(make_mesh_from(box_soup()), R"(, "free": "below")"));
   EXPECT_EQ(rig.tick({0, 0, 0}).status, LinkStatus::free);
   EXPECT_EQ(rig.tick({0.7, 0.1, 0}).status, LinkStatus::ok);
@@ -61,13 +61,13 @@ TEST(Mesh, TwoSidedReleaseAndReArm) {
   EXPECT_EQ(rig.tick({0.3, 0, 0.2}).status, LinkStatus::ok);
   EXPECT_EQ(rig.tick({0.3, 0, 0.3}).status, LinkStatus::released);
   EXPECT_EQ(rig.tick({0.3, 0, 0.026}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({0.3, 0, 0.024}).status, LinkStatus::ok);  // within a tenth
+  EXPECT_EQ(rig.tick({0.3, 0, 0.024}).status, LinkStatus::ok);  // within a tenth of release
   EXPECT_EQ(rig.tick({0.3, 0, 0.3}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({0.3, 0.2, -0.1}).status, LinkStatus::ok);  // passed through
+  EXPECT_EQ(rig.tick({0.3, 0.2, -0.1}).status, LinkStatus::ok);  // crossed the surface
   EXPECT_LE(norm(rig.state.proxy - Vec3(0.3, 0.2, 0)), 1e-12);
 }
 
-/// A plate of two faces 1e-3 apart; the hand goes right through it at 0.02 L a tick, from many sides.
+/// A plate of two faces 1e-3 apart; the hand moves through it at 0.02 L per tick, from many directions.
 TEST(Mesh, ThinPlateIsNeverPassedThrough) {
   const auto plate = make_mesh_from(box_soup({-1, -1, -5e-4}, {1, 1, 5e-4}));
   Random random(5);
@@ -84,7 +84,7 @@ TEST(Mesh, ThinPlateIsNeverPassedThrough) {
       ASSERT_EQ(rig.state.status, LinkStatus::ok) << step << " tick " << i;
       ASSERT_LE(norm(rig.state.proxy - Vec3(probe.x, probe.y, 5e-4)), 2e-12) << step << " tick " << i;
     }
-    // and back out on the side where it came in
+    // the hand returns on the side of entry
     probe.z = 1;
     EXPECT_EQ(rig.tick(probe).status, LinkStatus::free);
   }
@@ -103,7 +103,7 @@ TEST(Mesh, FastHandsDoNotTunnel) {
   }
 }
 
-/// Two half planes that meet at the bottom: the floor of a wedge of opening `angle`.
+/// Two half planes that form a wedge with opening `angle`.
 mesh::MeshPtr wedge(double angle) {
   mesh::TriangleSoup soup;
   const double c = std::sin(angle / 2), s = std::cos(angle / 2);
@@ -121,15 +121,15 @@ TEST(Mesh, SettlesInConcaveWedges) {
       const Vec3 probe(random.uniform(-0.05, 0.05), random.uniform(-0.5, 0.5), random.uniform(-0.3, -0.2));
       rig.tick(probe);
       ASSERT_EQ(rig.state.status, LinkStatus::ok) << angle;
-      // the closest point of a convex set, by closed form
+      // the closest point of a convex set, in closed form
       const double c = std::sin(angle / 2), s = std::cos(angle / 2), side = probe.x < 0 ? -1 : 1;
       const double along = std::max(0.0, side * probe.x * c + probe.z * s);
       const Vec3 best(side * along * c, probe.y, along * s);
       ASSERT_LE(norm(rig.state.proxy - best), angle > 3.14 ? 1e-7 : 1e-12 / std::sin(angle / 2)) << angle << " " << i;
-      // the energy test: a still probe gets a still proxy, bit for bit
+      // energy test: with a still probe the proxy is still, bit for bit
       const Vec3 rest = rig.state.proxy;
       for (int k = 0; k < 3; ++k) ASSERT_TRUE(bitwise_equal(rig.tick(probe).proxy, rest));
-      // and a probe that hardly moves a proxy that hardly moves
+      // a tiny step of the probe gives a tiny step of the proxy
       rig.tick(probe + Vec3(1e-9, 0, 0));
       ASSERT_LE(norm(rig.state.proxy - rest), angle > 3.14 ? 1e-7 : 3e-9) << angle;
     }
@@ -137,7 +137,7 @@ TEST(Mesh, SettlesInConcaveWedges) {
 }
 
 TEST(Mesh, SlidesOverAConvexEdge) {
-  // over the ridge of a roof, 1e-3 below it: the proxy moves no faster than geometry says, the force turns once
+  // over the ridge of a roof, 1e-3 below it: the proxy's steps are bounded by the geometry
   for (const double slope : {0.001, 0.01, 0.1, 0.3, 0.6}) {
     const auto roof = make_mesh_from(sheet_soup(8, 1, [&](double x, double) { return -slope * std::fabs(x); }));
     Rig rig(mesh_link(roof));
@@ -167,12 +167,12 @@ TEST(Mesh, SlidesOffTheBorderOfAnOpenSheet) {
   rig.tick({0, 0, 0.1});
   EXPECT_EQ(rig.tick({0.9, 0, -0.1}).status, LinkStatus::ok);
   EXPECT_EQ(rig.tick({1.1, 0, -0.1}).status, LinkStatus::free);
-  EXPECT_EQ(rig.tick({0.2, 0, -0.1}).status, LinkStatus::free);  // from behind it lets pass
+  EXPECT_EQ(rig.tick({0.2, 0, -0.1}).status, LinkStatus::free);  // free from behind
   EXPECT_EQ(rig.tick({0.2, 0, 0.1}).status, LinkStatus::free);
   EXPECT_EQ(rig.tick({0.2, 0, -0.1}).status, LinkStatus::ok);
 }
 
-/// 100 k triangles: the accuracy that the issue asks for.
+/// 100 000 triangles.
 TEST(Mesh, ForceOnAFineSphereIsRadial) {
   const auto sphere = make_mesh_from(sphere_soup(71));
   ASSERT_EQ(sphere->triangles().size(), 20u * 71 * 71);
@@ -226,8 +226,8 @@ TEST(Mesh, TwoSidedIsTheClosestPointOfConvexMeshes) {
   }
 }
 
-TEST(Mesh, HugeAndTinyMeshesBehaveTheSame) {
-  // scaled by a power of two: the same bits; by 1e-6 and 1e6: the same to rounding
+TEST(Mesh, ScaledMeshesGiveScaledProxies) {
+  // scaled by a power of two: bit-identical; by 1e-6 and 1e6: equal up to rounding
   const auto walk = [](double scale) {
     mesh::TriangleSoup soup = sphere_soup(8);
     for (Vec3& v : soup.vertices) v *= scale;
@@ -250,7 +250,7 @@ TEST(Mesh, HugeAndTinyMeshesBehaveTheSame) {
   }
 }
 
-TEST(Mesh, HostileProbes) {
+TEST(Mesh, HostileProbesGiveFiniteProxies) {
   const auto box = make_mesh_from(box_soup());
   for (const char* side : {R"(, "free": "above")", R"(, "free": "below")", ""}) {
     Rig rig(mesh_link(box, side));

@@ -4,7 +4,7 @@
 #include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
-namespace modes_test {
+namespace mode_presets_test {
 
 json::Node node_of(const std::string& text) {
   auto node = json::parse(text, "scene.json");
@@ -17,7 +17,7 @@ const std::string kSkin = R"({"name": "skin", "type": "anisotropic_friction",
   "level": 0.45,
   "field": "velocity")";
 
-TEST(ReadyMadeModes, AnisotropicFrictionIsThreeLinks) {
+TEST(ModePresets, AnisotropicFrictionIsThreeLinks) {
   const auto links = expand_link(node_of(kSkin + R"(, "kind": "line", "threshold": 0.02, "tau_min": 0.001,
     "tau_max": 0.01, "law": "as_published", "free": "above", "release": 0.3, "stiffness": 70, "active_when": {"button": 2}, "release_cue": {"type": "detent"}})"));
   ASSERT_TRUE(links) << links.error().message;
@@ -44,15 +44,15 @@ TEST(ReadyMadeModes, AnisotropicFrictionIsThreeLinks) {
   EXPECT_EQ((*links)[2].find("surface")->string, "density");
 }
 
-TEST(ReadyMadeModes, AConstraintStandsForItself) {
+TEST(ModePresets, AConstraintIsNotExpanded) {
   const auto links = expand_link(node_of(R"({"name": "a", "type": "point", "position": [0, 0, 0]})"));
   ASSERT_TRUE(links);
   ASSERT_EQ(links->size(), 1u);
   EXPECT_EQ((*links)[0].find("name")->string, "a");
 }
 
-// every key of a mode is handed on, to a key that the constraint knows
-TEST(ReadyMadeModes, TheTableMatchesTheRegistry) {
+// every key of a preset is mapped to a key that the constraint's type has
+TEST(ModePresets, TheTableMatchesTheRegistry) {
   for (const ModePreset& mode : mode_presets()) {
     EXPECT_EQ(find_constraint_type(mode.type), nullptr);
     EXPECT_EQ(find_mode_preset(mode.type), &mode);
@@ -73,7 +73,7 @@ TEST(ReadyMadeModes, TheTableMatchesTheRegistry) {
   }
 }
 
-TEST(ReadyMadeModes, ErrorsNameThePlace) {
+TEST(ModePresets, ErrorsNameTheLine) {
   const auto refused = [](const std::string& text, int line, const std::string& what) {
     const auto made = expand_link(node_of(text));
     ASSERT_FALSE(made) << text;
@@ -85,5 +85,5 @@ TEST(ReadyMadeModes, ErrorsNameThePlace) {
   refused(kSkin + ",\n\"treshold\": 1}", 5, "did you mean \"threshold\"");
 }
 
-}  // namespace modes_test
+}  // namespace mode_presets_test
 }  // namespace catena::haptics::tests

@@ -18,7 +18,7 @@ class Formula final : public field::VectorField {
   std::function<Vec3(const Vec3&)> f_;
 };
 
-/// On the sphere |x| = 1 with v = cos(angle) n + sin(angle) tangent, times `scale`.
+/// Fields of the sphere |x| = 1 with v = scale (cos(angle) n + sin(angle) tangent).
 Fields at_angle(double angle, double scale = 1, double slope = 1) {
   Fields fields;
   fields.named["s"].scalar = analytic_field("sphere", slope);
@@ -29,9 +29,9 @@ Fields at_angle(double angle, double scale = 1, double slope = 1) {
   return fields;
 }
 
-std::string modulated(double least, double most, const std::string& more = "") {
+std::string modulated(double tau_min, double tau_max, const std::string& more = "") {
   char text[120];
-  std::snprintf(text, sizeof text, R"("tau_min": %.17g, "tau_max": %.17g)", least, most);
+  std::snprintf(text, sizeof text, R"("tau_min": %.17g, "tau_max": %.17g)", tau_min, tau_max);
   return std::string(R"({"name": "a", "type": "modulated_friction", "field": "v", "surface": "s", )") + text + more + "}";
 }
 
@@ -56,8 +56,8 @@ TEST(ModulatedFriction, TheThresholdFollowsTheAngle) {
   }
 }
 
-// the text of the paper: a field along the normal is the hardest to follow; Eq. 7 as printed says the easiest
-TEST(ModulatedFriction, AlongTheNormalIsTheHardest) {
+// by the paper's text a field along the normal has the maximum threshold; by Eq. 7 as printed the minimum
+TEST(ModulatedFriction, AFieldAlongTheNormalGivesTheMaximumThreshold) {
   Rig safe(build(modulated(0.01, 0.1), at_angle(0))), inward(build(modulated(0.01, 0.1), at_angle(3.141592653589793)));
   Rig printed(build(modulated(0.01, 0.1, R"(, "law": "as_published")"), at_angle(0)));
   for (Rig* rig : {&safe, &inward, &printed}) rig->tick({0, 0, 1});
@@ -66,8 +66,8 @@ TEST(ModulatedFriction, AlongTheNormalIsTheHardest) {
   EXPECT_NEAR(printed.state.limit, 0.01, 1e-12);
 }
 
-// the angle is taken before the proxy moves: the slide goes by the old place's threshold
-TEST(ModulatedFriction, AsAtTheProxyBeforeItMoves) {
+// the angle is evaluated before the proxy moves, so that the slide uses the threshold of the old position
+TEST(ModulatedFriction, UsesTheThresholdAtTheProxyBeforeItMoves) {
   Fields fields;
   fields.named["s"].scalar = analytic_field("plane");
   fields.named["v"].vector = std::make_shared<Formula>([](const Vec3& p) { return Vec3(p.x < 0.5 ? 1 : 0, 0, p.x < 0.5 ? 0 : 1); });
@@ -81,8 +81,8 @@ TEST(ModulatedFriction, AsAtTheProxyBeforeItMoves) {
   EXPECT_NEAR(rig.state.proxy.x, 0.69, 1e-12);
 }
 
-// 1e-300..1e300 in both fields: the same; nothing, NaN, infinity: u = 0
-TEST(ModulatedFriction, SafeNormalisation) {
+// the threshold is equal for scales 1e-300..1e300 of both fields; zero, NaN and infinity give u = 0
+TEST(ModulatedFriction, NormalizesSafelyAtAnyScale) {
   for (const double scale : {1e-300, 1e-160, 1.0, 1e160, 1e300})
     for (const double slope : {1e-300, 1.0, 1e300}) {
       Rig rig(build(modulated(0.01, 0.1), at_angle(0.5, scale, slope)));
@@ -105,8 +105,8 @@ TEST(ModulatedFriction, SafeNormalisation) {
   }
 }
 
-// Eq. 7 for u < 0 leaves the range; it must not leave the numbers
-TEST(ModulatedFriction, ThePrintedLawIsNeverNegative) {
+// Eq. 7 leaves the range for u < 0; the threshold must be finite and not negative
+TEST(ModulatedFriction, ThePublishedLawIsNeverNegative) {
   const std::string law = R"(, "law": "as_published")";
   Rig above(build(modulated(0.01, 0.1, law), at_angle(3.141592653589793)));
   above.tick({0, 0, 1});
@@ -118,7 +118,7 @@ TEST(ModulatedFriction, ThePrintedLawIsNeverNegative) {
   EXPECT_LE(norm(below.state.proxy - Vec3(0, 0.6, 0.8)), 1e-15);
 }
 
-TEST(ModulatedFriction, LineFieldsHaveNoSign) {
+TEST(ModulatedFriction, LineFieldsAreSignInvariant) {
   for (const double angle : {0.4, 2.741592653589793}) {
     Rig rig(build(modulated(0.01, 0.1, R"(, "kind": "line", "law": "as_published")"), at_angle(angle)));
     rig.tick({0, 0, 1});
@@ -126,11 +126,11 @@ TEST(ModulatedFriction, LineFieldsHaveNoSign) {
   }
 }
 
-TEST(ModulatedFriction, AsksTheFieldOnlyWhereTheProxyMoves) {
+TEST(ModulatedFriction, SamplesTheFieldOnlyWhenTheProxyMoves) {
   Rig rig(build(modulated(0.05, 0.1, R"(, "level": 1)"), at_angle(0.7)));
   rig.tick({0, 0, 1});
   rig.tick({0, 0.01, std::sqrt(1 - 1e-4)});
-  EXPECT_EQ(rig.state.evaluations, 1);  // is the probe on the surface?
+  EXPECT_EQ(rig.state.evaluations, 1);  // one evaluation for the check that the probe is on the surface
   rig.tick({0, 0.01, std::sqrt(1 - 1e-4)});
   EXPECT_EQ(rig.state.evaluations, 0);
 }

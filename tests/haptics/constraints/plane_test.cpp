@@ -24,7 +24,7 @@ TEST(Plane, IsFreeAboveAndHeldBelow) {
   EXPECT_EQ(rig.tick({0.1, 0.2, 0.3}).status, LinkStatus::free);
   EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.1, 0.2, 0.3)));
   EXPECT_TRUE(rig.state.active());
-  EXPECT_EQ(rig.tick({0.1, 0.2, -0.3}).status, LinkStatus::ok);  // within the tick that crosses
+  EXPECT_EQ(rig.tick({0.1, 0.2, -0.3}).status, LinkStatus::ok);  // within the tick of the crossing
   EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.1, 0.2, 0)));
   EXPECT_EQ(rig.tick({0.1, 0.2, 1e-9}).status, LinkStatus::free);
 }
@@ -43,7 +43,7 @@ TEST(Plane, OneSidedReleaseAndReArm) {
   EXPECT_EQ(rig.tick({0, 0, -0.25}).status, LinkStatus::released);
   EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0, 0, -0.25)));
   EXPECT_FALSE(rig.state.active());
-  EXPECT_EQ(rig.tick({0, 0, -0.01}).status, LinkStatus::released);  // close is not enough for one side
+  EXPECT_EQ(rig.tick({0, 0, -0.01}).status, LinkStatus::released);  // a one-sided link re-arms only on the free side
   EXPECT_EQ(rig.tick({0, 0, 0.01}).status, LinkStatus::free);
   EXPECT_TRUE(rig.state.active());
   EXPECT_EQ(rig.tick({0, 0, -0.01}).status, LinkStatus::ok);
@@ -55,7 +55,7 @@ TEST(Plane, TwoSidedReleaseAndReArm) {
   EXPECT_EQ(rig.tick({0, 0, 0.2}).status, LinkStatus::ok);
   EXPECT_EQ(rig.tick({0, 0, 0.3}).status, LinkStatus::released);
   EXPECT_EQ(rig.tick({0, 0, 0.026}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({0, 0, 0.024}).status, LinkStatus::ok);  // within a tenth
+  EXPECT_EQ(rig.tick({0, 0, 0.024}).status, LinkStatus::ok);  // within a tenth of release
   EXPECT_EQ(rig.tick({0, 0, 0.3}).status, LinkStatus::released);
   EXPECT_EQ(rig.tick({0, 0, -0.1}).status, LinkStatus::ok);  // crossed the level
   EXPECT_EQ(rig.tick({0, 0, 0.1}).status, LinkStatus::ok);

@@ -15,7 +15,7 @@ TEST(Point, HoldsTheProxyAtItsPosition) {
   }
 }
 
-TEST(Point, LetsGoAtReleaseAndTakesHoldWithinATenth) {
+TEST(Point, ReleasesAndReArmsWithinATenth) {
   Rig rig(build(R"({"name": "a", "type": "point", "position": [0, 0, 0], "release": 0.5})"));
   EXPECT_EQ(rig.tick({0.49, 0, 0}).status, LinkStatus::ok);
   EXPECT_EQ(rig.tick({0.5, 0, 0}).status, LinkStatus::released);

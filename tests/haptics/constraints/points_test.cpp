@@ -15,12 +15,12 @@ curves::PointSetPtr cloud(int count, unsigned seed) {
 }
 
 double distance_to(const curves::PointSet& set, const Vec3& x) {
-  double least = 1e300;
-  for (const glm::vec3& p : set.points) least = std::min(least, norm(x - Vec3(p)));
-  return least;
+  double minimum = 1e300;
+  for (const glm::vec3& p : set.points) minimum = std::min(minimum, norm(x - Vec3(p)));
+  return minimum;
 }
 
-TEST(PointsLink, TakesHoldOfTheClosestOfAll) {
+TEST(PointsLink, HoldsTheClosestPoint) {
   Random random(1);
   for (const int count : {1, 2, 9, 3000, 100000}) {
     Fields fields;
@@ -38,7 +38,7 @@ TEST(PointsLink, TakesHoldOfTheClosestOfAll) {
   }
 }
 
-TEST(PointsLink, StaysUntilItLetsGoAndSnapsToTheNext) {
+TEST(PointsLink, HoldsItsPointUntilReleaseAndSnapsToTheNext) {
   Fields fields;
   auto set = std::make_shared<curves::PointSet>();
   set->points = {{0, 0, 0}, {1, 0, 0}};
@@ -59,21 +59,21 @@ TEST(PointsLink, StaysUntilItLetsGoAndSnapsToTheNext) {
   EXPECT_EQ(rig.state.proxy, Vec3(1, 0, 0));
 }
 
-TEST(PointsLink, AMillionPointsWithinTheWorkOfATick) {
+TEST(PointsLink, AMillionPointsFitTheWorkLimitOfATick) {
   Fields fields;
   fields.points["cloud"] = cloud(1000000, 77);
   Rig rig(build(R"({"name": "a", "type": "points", "points": "cloud", "snap": 0.05, "release": 0.06})", fields));
   Random random(3);
-  int held = 0, most = 0;
+  int held = 0, maximum = 0;
   for (int hop = 0; hop < 20; ++hop) {
     const Vec3 from = random.box(0.9), way = random.box(0.3);
     for (int k = 0; k < 200; ++k) {
       rig.tick(from + way * (0.005 * k));
-      most = std::max(most, rig.state.work());
+      maximum = std::max(maximum, rig.state.work());
       held += rig.state.released ? 0 : 1;
     }
   }
-  EXPECT_LE(most, kMaxWork);
+  EXPECT_LE(maximum, kMaxWork);
   EXPECT_GT(held, 3500);
 }
 

@@ -4,7 +4,7 @@
 #include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
-namespace polyline_search_test {
+namespace polyline_bvh_test {
 
 std::vector<LineSegment> pieces_of(const std::vector<Vec3>& points) {
   std::vector<LineSegment> pieces;
@@ -21,12 +21,12 @@ std::vector<Vec3> walk(Random& random, int count, double step) {
 double distance(const LineSegment& piece, const Vec3& x) { return norm(x - piece.at(piece.along(x))); }
 
 double brute(const std::vector<LineSegment>& pieces, const Vec3& x) {
-  double least = 1e308;
-  for (const LineSegment& piece : pieces) least = std::min(least, distance(piece, x));
-  return least;
+  double minimum = 1e308;
+  for (const LineSegment& piece : pieces) minimum = std::min(minimum, distance(piece, x));
+  return minimum;
 }
 
-TEST(PolylineSearch, FindsTheClosestPlace) {
+TEST(PolylineSearch, FindsTheClosestPoint) {
   Random random(4);
   for (const int count : {2, 3, 9, 10, 17, 100, 1000, 5000}) {
     const auto pieces = pieces_of(walk(random, count, 0.1));
@@ -41,7 +41,7 @@ TEST(PolylineSearch, FindsTheClosestPlace) {
   }
 }
 
-TEST(PolylineSearch, AFarProbeFindsThePointMostInItsDirection) {
+TEST(PolylineSearch, AFarProbeFindsTheExtremePointInItsDirection) {
   Random random(5);
   const auto points = walk(random, 3000, 0.1);
   const auto pieces = pieces_of(points);
@@ -51,15 +51,15 @@ TEST(PolylineSearch, AFarProbeFindsThePointMostInItsDirection) {
       const Vec3 way = random.unit();
       SearchState state{};
       tree.search(pieces, way * far, 1 << 20, state);
-      double most = -1e300;
-      for (const Vec3& p : points) most = std::max(most, dot(p, way));
+      double maximum = -1e300;
+      for (const Vec3& p : points) maximum = std::max(maximum, dot(p, way));
       const LineSegment& best = pieces[state.best_item];
-      EXPECT_LE(most - dot(best.at(best.along(way * far)), way), 10 / far + 1e-15) << far;
+      EXPECT_LE(maximum - dot(best.at(best.along(way * far)), way), 10 / far + 1e-15) << far;
     }
   }
 }
 
-TEST(PolylineSearch, ALongCurveTakesFewVisits) {
+TEST(PolylineSearch, ALongCurveNeedsFewVisits) {
   std::vector<Vec3> points;
   for (int i = 0; i <= 100000; ++i) points.emplace_back(std::cos(i * 0.01), std::sin(i * 0.01), i * 2e-5);
   const auto pieces = pieces_of(points);
@@ -78,8 +78,8 @@ TEST(PolylineSearch, ALongCurveTakesFewVisits) {
   RecordProperty("p99", visits.at_quantile(0.99));
 }
 
-TEST(PolylineSearch, GoesOnFromTickToTickWithinItsVisits) {
-  // a circle seen from its centre: all places are as near, but one dent
+TEST(PolylineSearch, ContinuesOverTicksWithinItsVisits) {
+  // from its centre all points of the circle are equally near, except one dent
   std::vector<Vec3> points;
   for (int i = 0; i <= 50000; ++i) {
     const double r = i == 31234 ? 0.9 : 1 + 1e-9 * (i % 7);
@@ -118,5 +118,5 @@ TEST(PolylineSearch, TinyAndHugeCurves) {
   }
 }
 
-}  // namespace polyline_search_test
+}  // namespace polyline_bvh_test
 }  // namespace catena::haptics::tests

@@ -16,9 +16,9 @@ std::string polyline(const std::vector<Vec3>& points, const std::string& more = 
 
 const std::string kClosed = R"(, "closed": true)";
 
-/// The closest point of all pieces, in extended precision.
+/// The closest point of all segments, in extended precision.
 double brute_distance(const std::vector<Vec3>& points, bool closed, const Vec3& x) {
-  long double least = 1e300L;
+  long double minimum = 1e300L;
   for (std::size_t k = 0; k + (closed ? 0 : 1) < points.size(); ++k) {
     const Vec3 &a = points[k], &b = points[(k + 1) % points.size()];
     long double up = 0, down = 0, sum = 0;
@@ -32,9 +32,9 @@ double brute_distance(const std::vector<Vec3>& points, bool closed, const Vec3& 
       const long double e = x[i] - (a[i] + t * (static_cast<long double>(b[i]) - a[i]));
       sum += e * e;
     }
-    least = std::min(least, sum);
+    minimum = std::min(minimum, sum);
   }
-  return static_cast<double>(std::sqrt(least));
+  return static_cast<double>(std::sqrt(minimum));
 }
 
 std::vector<Vec3> walk(Random& random, int count, double step) {
@@ -43,7 +43,7 @@ std::vector<Vec3> walk(Random& random, int count, double step) {
   return points;
 }
 
-TEST(Polyline, StartsAtTheClosestPlace) {
+TEST(Polyline, StartsAtTheClosestPoint) {
   Random random(1);
   for (const int count : {2, 3, 5, 40, 400}) {
     for (const bool closed : {false, true}) {
@@ -62,19 +62,19 @@ TEST(Polyline, StartsAtTheClosestPlace) {
   }
 }
 
-TEST(Polyline, DoesNotChangeOverToAPartThatItMerelyPasses) {
-  // a hairpin: two runs 0.2 apart, joined far away
+TEST(Polyline, DoesNotJumpToANearerPart) {
+  // a hairpin: two parallel parts 0.2 apart, joined far away
   const std::vector<Vec3> hairpin{{0, 0, 0}, {5, 0, 0}, {5, 0.2, 0}, {0, 0.2, 0}};
   Rig rig(build(polyline(hairpin)));
   rig.tick({1, -0.05, 0});
   for (int i = 0; i <= 300; ++i) {
-    const Vec3 probe(1 + 0.01 * i, 0.19, 0);  // 0.01 from the other run
+    const Vec3 probe(1 + 0.01 * i, 0.19, 0);  // 0.01 from the other part
     ASSERT_TRUE(bitwise_equal(rig.tick(probe).proxy, Vec3(probe.x, 0, 0)));
   }
-  // round the end the local minimum vanishes
+  // beyond the bend the local minimum vanishes
   EXPECT_TRUE(bitwise_equal(rig.tick({5.1, 0.1, 0}).proxy, Vec3(5, 0.1, 0)));
   EXPECT_TRUE(bitwise_equal(rig.tick({5.1, 0.3, 0}).proxy, Vec3(5, 0.2, 0)));
-  EXPECT_TRUE(bitwise_equal(rig.tick({4, 0.01, 0}).proxy, Vec3(4, 0.2, 0)));  // on the other run now
+  EXPECT_TRUE(bitwise_equal(rig.tick({4, 0.01, 0}).proxy, Vec3(4, 0.2, 0)));  // now on the other part
 }
 
 TEST(Polyline, HoldsAtCornersBitForBit) {
@@ -89,11 +89,11 @@ TEST(Polyline, HoldsAtCornersBitForBit) {
   EXPECT_TRUE(bitwise_equal(rig.tick({1, 7, 0}).proxy, Vec3(1, 1, 0)));
 }
 
-TEST(Polyline, LeavesACornerByTheSteeperSide) {
+TEST(Polyline, LeavesACornerOnTheSteeperSide) {
   const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
   for (const bool from_above : {false, true}) {
     Rig rig(build(polyline(points)));
-    // to the corner from either side: what follows is the same
+    // the next step is the same from either side of the corner
     rig.tick(from_above ? Vec3(1, 0.5, 0) : Vec3(0.5, 0, 0));
     ASSERT_TRUE(bitwise_equal(rig.tick({1.1, -0.1, 0}).proxy, Vec3(1, 0, 0)));
     EXPECT_TRUE(bitwise_equal(rig.tick({0.5, 0.25, 0}).proxy, Vec3(0.5, 0, 0)));
@@ -102,7 +102,7 @@ TEST(Polyline, LeavesACornerByTheSteeperSide) {
   }
 }
 
-TEST(Polyline, AClosedOneWrapsAndRepeatsItsBits) {
+TEST(Polyline, AClosedPolylineWrapsAndIsRepeatable) {
   std::vector<Vec3> points;
   for (int i = 0; i < 24; ++i) points.emplace_back(std::cos(i * 0.2617993877991494), std::sin(i * 0.2617993877991494), 0.1 * (i % 2));
   Rig rig(build(polyline(points, kClosed)));
@@ -122,7 +122,7 @@ TEST(Polyline, AClosedOneWrapsAndRepeatsItsBits) {
   }
 }
 
-TEST(Polyline, FromOutsideAConvexOneTheProxyNeverMovesFurtherThanTheProbe) {
+TEST(Polyline, OutsideAConvexPolylineTheProxyNeverMovesFurtherThanTheProbe) {
   const std::vector<Vec3> square{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
   Rig rig(build(polyline(square, kClosed)));
   Vec3 last_probe(2, 0, 0), last = rig.tick(last_probe).proxy;
@@ -134,7 +134,7 @@ TEST(Polyline, FromOutsideAConvexOneTheProxyNeverMovesFurtherThanTheProbe) {
   }
 }
 
-TEST(Polyline, RepeatedPointsCountOnce) {
+TEST(Polyline, RepeatedPointsAreMerged) {
   const std::vector<Vec3> once{{0, 0, 0}, {1, 0, 0}, {1, 1, 1}},
       twice{{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 1, 1}, {1, 1, 1}};
   auto ring = once;
@@ -165,7 +165,7 @@ TEST(Polyline, ALongWalkTakesSeveralTicksAndArrives) {
   EXPECT_EQ(rig.state.status, LinkStatus::budget);
 }
 
-TEST(Polyline, SeekFindsTheClosestPlaceAnywhere) {
+TEST(Polyline, SeekFindsTheClosestPointAnywhere) {
   Random random(3);
   const auto points = walk(random, 20000, 0.05);
   const auto made = build(polyline(points));
@@ -179,14 +179,14 @@ TEST(Polyline, SeekFindsTheClosestPlaceAnywhere) {
       ++ticks;
     } while ((rig.state.status == LinkStatus::budget || ticks < 2) && ticks < 200);
     ASSERT_NEAR(norm(probe - rig.state.proxy), brute_distance(points, false, probe), 1e-15);
-    // and once it is taken, it is followed from there
+    // the point found is then followed
     const Vec3 found = rig.state.proxy;
     rig.tick(probe);
     ASSERT_TRUE(bitwise_equal(rig.state.proxy, found));
   }
 }
 
-TEST(Polyline, ASeekThatTheHandInterruptsStillEnds) {
+TEST(Polyline, ASeekInterruptedByTheHandEnds) {
   Random random(4);
   const auto points = walk(random, 20000, 0.05);
   const auto made = build(polyline(points));
@@ -202,7 +202,7 @@ TEST(Polyline, ASeekThatTheHandInterruptsStillEnds) {
   EXPECT_NEAR(norm(probe - rig.state.proxy), brute_distance(points, false, probe), 1e-15);
 }
 
-TEST(Polyline, LetsGoAtReleaseAndTakesHoldOfAnyPart) {
+TEST(Polyline, ReleasesAndReArmsOnAnyPart) {
   const std::vector<Vec3> hairpin{{0, 0, 0}, {5, 0, 0}, {5, 3, 0}, {0, 3, 0}};
   Rig rig(build(polyline(hairpin, R"(, "release": 0.5)")));
   EXPECT_EQ(rig.tick({1, 0.49, 0}).status, LinkStatus::ok);
@@ -213,13 +213,13 @@ TEST(Polyline, LetsGoAtReleaseAndTakesHoldOfAnyPart) {
   EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(1, 3, 0)));
 }
 
-TEST(Polyline, OnceTakenItIsFollowedAlsoWhereTheSearchWasNotThrough) {
+TEST(Polyline, APointFoundByAnUnfinishedSearchIsFollowed) {
   std::vector<Vec3> points;
   for (int i = 0; i < 50000; ++i) points.emplace_back(0.03 * std::cos(i * 1.2566e-4), 0.03 * std::sin(i * 1.2566e-4), 0);
   Rig rig(build(polyline(points, R"(, "release": 0.5)")));
   ASSERT_EQ(rig.tick({0.04, 0, 0}).status, LinkStatus::ok);
   ASSERT_EQ(rig.tick({1, 0, 0}).status, LinkStatus::released);
-  // at the centre all places are as near, and all within a tenth
+  // at the centre all points are equally near and within a tenth of release
   ASSERT_EQ(rig.tick({0, 0, 1e-9}).status, LinkStatus::ok);
   const Vec3 taken = rig.state.proxy;
   for (int i = 1; i < 50; ++i) {
@@ -228,7 +228,7 @@ TEST(Polyline, OnceTakenItIsFollowedAlsoWhereTheSearchWasNotThrough) {
   }
 }
 
-TEST(Polyline, FarProbes) {
+TEST(Polyline, FarProbesGiveTheExtremePoint) {
   const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, 2, 0.5}};
   for (const double far : {1e20, 1e160, 1e300}) {
     Rig rig(build(polyline(points)));
@@ -239,7 +239,7 @@ TEST(Polyline, FarProbes) {
   }
 }
 
-TEST(Polyline, ItsPrimitiveIsALineAndAtACornerAPoint) {
+TEST(Polyline, ThePrimitiveIsALineAndAtACornerAPoint) {
   Rig rig(build(polyline({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}})));
   rig.tick({0.5, -0.1, 0});
   Primitive primitive;
@@ -250,7 +250,7 @@ TEST(Polyline, ItsPrimitiveIsALineAndAtACornerAPoint) {
   ASSERT_TRUE(rig.constraint->primitive({1.1, -0.1, 0}, rig.state, rig.scratch, primitive));
   EXPECT_EQ(primitive.kind, Primitive::Kind::point);
   EXPECT_TRUE(bitwise_equal(primitive.origin, Vec3(1, 0, 0)));
-  EXPECT_TRUE(bitwise_equal(rig.tick({0.5, -0.1, 0}).proxy, Vec3(0.5, 0, 0)));  // asking has moved nothing
+  EXPECT_TRUE(bitwise_equal(rig.tick({0.5, -0.1, 0}).proxy, Vec3(0.5, 0, 0)));  // primitive() has not moved the proxy
 }
 
 TEST(Polyline, RefusesBadKeys) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The linear primitives that stand for curves and surfaces near a place: what the baselines combine.
+/// The linear primitives that approximate curves and surfaces at a position, for the baselines.
 #include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
@@ -15,7 +15,7 @@ ConstraintPtr circle(const std::string& more) {
   return build(R"({"name": "a", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.25])" + more + "}", with_vector("circle"));
 }
 
-TEST(Primitive, OfAStreamlineIsTheTangentAtTheFoot) {
+TEST(Primitive, OfAStreamlineIsTheTangentAtTheClosestPoint) {
   for (const char* more : {"", R"(, "follow": "online")", R"(, "method": "dp54")"}) {
     Rig rig(circle(more));
     Random random(2);
@@ -27,7 +27,8 @@ TEST(Primitive, OfAStreamlineIsTheTangentAtTheFoot) {
       Primitive line;
       ASSERT_TRUE(rig.constraint->primitive({0.4 * std::cos(b), 0.4 * std::sin(b), 0}, rig.state, rig.scratch, line));
       EXPECT_EQ(line.kind, Primitive::Kind::line);
-      EXPECT_LE(norm(line.origin - Vec3(0.5 * std::cos(b), 0.5 * std::sin(b), 0.25)), *more ? 1e-7 : 1e-8);  // online: 4e-9 a step, summed
+      EXPECT_LE(norm(line.origin - Vec3(0.5 * std::cos(b), 0.5 * std::sin(b), 0.25)),
+                *more ? 1e-7 : 1e-8);  // online: 4e-9 per step, accumulated
       EXPECT_LE(norm(line.axis - Vec3(-std::sin(b), std::cos(b), 0)), 1e-7);
       EXPECT_TRUE(bitwise_equal(rig.state.proxy, before.proxy));
       EXPECT_LE(rig.state.evaluations, kMaxEvaluations);
@@ -42,7 +43,7 @@ TEST(Primitive, OfAnOnlineStreamlineAtItsOwnProxyIsTheFieldThere) {
   Primitive line;
   ASSERT_TRUE(rig.constraint->primitive(rig.state.proxy, rig.state, rig.scratch, line));
   EXPECT_LE(norm(line.axis - Vec3(-1, 0, 0)), 1e-15);
-  rig.state.proxy = {0, 0, 0};  // the circles' centre: no direction
+  rig.state.proxy = {0, 0, 0};  // the centre of the circles has no direction
   EXPECT_FALSE(rig.constraint->primitive(rig.state.proxy, rig.state, rig.scratch, line));
   EXPECT_EQ(rig.state.status, LinkStatus::critical);
 }
@@ -51,7 +52,7 @@ TEST(Primitive, OfAnOpenEndIsAPoint) {
   for (const char* more : {"", R"(, "follow": "online")"}) {
     Rig rig(
         build(std::string(R"({"name": "a", "type": "streamline", "field": "v", "seed": [0.5, 0, 0])") + more + "}", with_vector("node")));
-    for (int i = 0; i < 20; ++i) rig.tick({-0.5, 0, 0});  // back to the node and held there
+    for (int i = 0; i < 20; ++i) rig.tick({-0.5, 0, 0});  // moves to the node and is held there
     ASSERT_EQ(rig.state.status, LinkStatus::critical);
     Primitive end;
     ASSERT_TRUE(rig.constraint->primitive({-0.1, 0, 0}, rig.state, rig.scratch, end));
@@ -60,7 +61,7 @@ TEST(Primitive, OfAnOpenEndIsAPoint) {
   }
 }
 
-TEST(Primitive, OfAnIsosurfaceIsTheTangentPlaneByOneFetch) {
+TEST(Primitive, OfAnIsosurfaceIsTheTangentPlaneByOneSample) {
   for (const auto& sphere : {analytic_field("sphere"), sampled_field("sphere", 64)}) {
     const double tolerance = sphere->is_grid() ? 1e-2 : 1e-15;
     Rig rig(isosurface(sphere, 1));

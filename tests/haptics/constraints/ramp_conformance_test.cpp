@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The rule of ramps (haptics/chain/ramp.h) for every constraint and every cause of a step: no tick changes the force by more than
-// K |dx| + max_force dt / ramp_s. Prints the table of the largest steps by type and cause, in units of that bound.
+// The bound of haptics/chain/ramp.h for every constraint and every cause of a step: no tick changes the force by more than
+// K |dx| + max_force dt / ramp_s. Prints a table of the largest steps by type and cause, in units of that bound.
 #include "haptics/chain/tick.h"
 #include "tests/haptics/constraints/examples.h"
 
 namespace catena::haptics::tests {
-namespace ramp_rule_test {
+namespace ramp_conformance_test {
 
 enum Cause { motion, fast, thrown, switched, reordered, replaced, lost, kCauses };
 constexpr std::array<const char*, kCauses> kNames{"slow hand", "10 m/s", "thrown", "switch", "mode", "program", "device lost"};
@@ -24,7 +24,7 @@ struct Hand {
   }
 };
 
-/// The example, and a plane that it hands its probe on to.
+/// A chain of the example and a plane.
 HapticProgram program_of(const ConstraintPtr& example, double stiffness, double ramp_s) {
   HapticProgram program;
   Link first, second;
@@ -40,7 +40,7 @@ HapticProgram program_of(const ConstraintPtr& example, double stiffness, double 
   return program;
 }
 
-/// The largest step of the force, in units of what the rule allows.
+/// The largest step of the force, in units of the bound.
 double worst(const ConstraintPtr& example, Cause cause, double rate, std::uint64_t seed) {
   const double dt = 1 / rate, ramp_s = seed % 2 == 0 ? 0.02 : 0.05;
   Hand hand;
@@ -48,7 +48,7 @@ double worst(const ConstraintPtr& example, Cause cause, double rate, std::uint64
   HapticProgram other = program_of(example, 200, ramp_s);
   Random random(seed);
   Vec3 at = random.box(0.9), way = random.unit();
-  double most = 0;
+  double maximum = 0;
   std::uint32_t buttons = 0;
   for (int i = 0; i < 400; ++i) {
     const Vec3 last = at, force = hand.out.force_n;
@@ -69,12 +69,12 @@ double worst(const ConstraintPtr& example, Cause cause, double rate, std::uint64
     double k = 0;
     for (const Link& link : hand.program.links) k += link.stiffness_n_per_m.max();
     const double bound = k * norm(at - last) + hand.program.coupling.max_force_n * dt / ramp_s;
-    most = std::max(most, (norm(hand.out.force_n - force) - 1e-12) / bound);
+    maximum = std::max(maximum, (norm(hand.out.force_n - force) - 1e-12) / bound);
   }
-  return most;
+  return maximum;
 }
 
-TEST(RampConformance, HoldsForEveryConstraintAndCause) {
+TEST(RampConformance, BoundsTheForceStepForEveryConstraintAndCause) {
   std::printf("%-20s", "constraint");
   for (const char* name : kNames) std::printf("%12s", name);
   std::printf("\n");
@@ -87,19 +87,19 @@ TEST(RampConformance, HoldsForEveryConstraintAndCause) {
         const ConstraintPtr made = build(R"({"name": "a", "type": ")" + type + "\", " + body + "}", fields());
         for (int cause = 0; cause < kCauses; ++cause) {
           const double rate = std::array{100.0, 1000.0, 8000.0}[++seed % 3];
-          double& most = largest[static_cast<std::size_t>(cause)];
-          most = std::max(most, worst(made, static_cast<Cause>(cause), rate, seed));
+          double& maximum = largest[static_cast<std::size_t>(cause)];
+          maximum = std::max(maximum, worst(made, static_cast<Cause>(cause), rate, seed));
         }
       }
     std::printf("%-20s", type.c_str());
     for (int cause = 0; cause < kCauses; ++cause) {
-      const double most = largest[static_cast<std::size_t>(cause)];
-      std::printf("%12.3f", most);
-      EXPECT_LE(most, 1 + 1e-9) << type << ": " << kNames[static_cast<std::size_t>(cause)];
+      const double maximum = largest[static_cast<std::size_t>(cause)];
+      std::printf("%12.3f", maximum);
+      EXPECT_LE(maximum, 1 + 1e-9) << type << ": " << kNames[static_cast<std::size_t>(cause)];
     }
     std::printf("\n");
   }
 }
 
-}  // namespace ramp_rule_test
+}  // namespace ramp_conformance_test
 }  // namespace catena::haptics::tests

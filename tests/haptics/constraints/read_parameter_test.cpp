@@ -33,7 +33,7 @@ double at(const std::string& value, const Vec3& place) {
   return parameter->at(place, cursor, evaluations);
 }
 
-TEST(ReadParameter, ANumberOrAMap) {
+TEST(ReadParameter, AcceptsANumberOrAMap) {
   EXPECT_EQ(at("0.25", {1, 2, 3}), 0.25);
   EXPECT_TRUE(read("0.25")->is_constant());
   EXPECT_DOUBLE_EQ(at(R"({"field": "plane", "map": [[0, 1], [2, 3]]})", {0, 0, 0.5}), 1.5);
@@ -45,8 +45,8 @@ TEST(ReadParameter, ANumberOrAMap) {
   EXPECT_EQ(get_parameter(*node, "threshold", 9.0, json::NumberRange::positive, none.context())->min(), 9);
 }
 
-TEST(ReadParameter, NormalisesByTheFieldsOwnRange) {
-  // the sampled |x| on -2..2: 0 .. sqrt 12; its largest gradient is 1 (in the cells' centres, all but), the largest |v| 2 sqrt 2
+TEST(ReadParameter, NormalizesByTheFieldsRange) {
+  // the sampled |x| on -2..2: 0 .. sqrt 12; its maximum gradient is 1 (nearly, in the cells' centres), the maximum |v| 2 sqrt 2
   EXPECT_NEAR(at(R"({"field": "ball", "normalise": true, "map": [[0, 1], [1, 3]]})", {1.5, 0, 0}), 1 + 2 * 1.5 / std::sqrt(12.0), 1e-6);
   EXPECT_NEAR(at(R"({"field": "ball", "quantity": "gradient", "normalise": true, "map": [[0, 1], [1, 3]]})", {1.5, 0.7, 0.3}), 3, 2e-3);
   EXPECT_NEAR(at(R"({"field": "swirl", "normalise": true, "map": [[0, 1], [1, 3]]})", {1, 0, 0}), 1 + 2 / std::sqrt(8.0), 1e-6);
@@ -55,7 +55,7 @@ TEST(ReadParameter, NormalisesByTheFieldsOwnRange) {
   EXPECT_EQ(at(R"({"field": "constant", "quantity": "gradient", "normalise": true, "map": [[0, 1], [1, 3]]})", {0, 0, 0}), 1);
 }
 
-TEST(ReadParameter, OutsideIsTheFirstOutputOrWhatIsSaid) {
+TEST(ReadParameter, OutsideDefaultsToTheFirstOutput) {
   EXPECT_EQ(at(R"({"field": "ball", "map": [[0, 1], [1, 3]]})", {5, 0, 0}), 1);
   EXPECT_EQ(at(R"({"field": "ball", "map": [[0, 1], [1, 3]], "outside": 2.5})", {5, 0, 0}), 2.5);
 }
@@ -79,7 +79,7 @@ TEST(ReadParameter, ErrorsNameTheirLine) {
   fails("{\"field\": \"plane\",\n\"map\": []}", 3, {"empty"});
   fails("{\"field\": \"plane\",\n\"map\": [[0, 1, 2]]}", 3, {"map"});
   fails("{\"field\": \"plane\",\n\"map\": 1}", 3, {"map"});
-  fails("{\"field\": \"plane\", \"map\": [[0, 1],\n[0, 2]]}", 3, {"do not rise", "> 0"});
+  fails("{\"field\": \"plane\", \"map\": [[0, 1],\n[0, 2]]}", 3, {"do not increase", "> 0"});
   fails("{\"field\": \"plane\", \"map\": [[0, 1],\n[1, 0]]}", 3, {"\"threshold\" is 0", "> 0"});
   fails("{\"field\": \"plane\", \"map\": [[0, 1]],\n\"outside\": 0}", 3, {"\"outside\" is 0"});
   fails("{\"field\": \"plane\", \"map\": [[0, 1]],\n\"quantity\": \"magnitude\"}", 3, {"scalar field", "\"value\" or \"gradient\""});
@@ -91,14 +91,14 @@ TEST(ReadParameter, ErrorsNameTheirLine) {
 }
 
 TEST(ReadParameter, AReleaseFollowsAField) {
-  // the link lets go at 0.1 + 0.2 z of its proxy
+  // release at 0.1 + 0.2 z, with z of the proxy
   const auto plane = build(R"({"name": "a", "type": "plane", "point": [0, 0, 0], "normal": [1, 0, 0],
       "release": {"field": "plane", "map": [[0, 0.1], [1, 0.3]]}})",
                            fields());
   Rig rig(plane);
   EXPECT_EQ(rig.tick({0.19, 0, 0.5}).status, LinkStatus::ok);
   EXPECT_DOUBLE_EQ(rig.state.limit, 0.2);
-  EXPECT_EQ(rig.state.evaluations, 2);  // start and advance
+  EXPECT_EQ(rig.state.evaluations, 2);  // one in start, one in advance
   EXPECT_EQ(rig.tick({0.21, 0, 0.5}).status, LinkStatus::released);
   EXPECT_EQ(rig.state.evaluations, 1);
   Rig higher(plane);

@@ -4,7 +4,7 @@
 namespace catena::haptics::tests {
 namespace segment_test {
 
-/// The closest point of a..b in extended precision.
+/// The closest point of the segment a..b in extended precision.
 Vec3 reference(const Vec3& a, const Vec3& b, const Vec3& x) {
   long double up = 0, down = 0;
   for (int i = 0; i < 3; ++i) {
@@ -66,7 +66,7 @@ TEST(Segment, NeverMovesFurtherThanTheProbe) {
   }
 }
 
-TEST(Segment, TinyAndHugeOnes) {
+TEST(Segment, TinyAndHugeSegments) {
   Rig tiny(build(segment({0, 0, 0}, {0, 1e-310, 0})));
   EXPECT_TRUE(bitwise_equal(tiny.tick({1, 1, 1}).proxy, Vec3(0, 1e-310, 0)));
   EXPECT_TRUE(bitwise_equal(tiny.tick({1, 4e-311, 1}).proxy, Vec3(0, 4e-311, 0)));
@@ -75,7 +75,7 @@ TEST(Segment, TinyAndHugeOnes) {
   EXPECT_EQ(huge.state.status, LinkStatus::ok);
 }
 
-TEST(Segment, LetsGoAtReleaseAndTakesHoldWithinATenth) {
+TEST(Segment, ReleasesAndReArmsWithinATenth) {
   Rig rig(build(segment({0, 0, 0}, {1, 0, 0}, R"(, "release": 0.5)")));
   EXPECT_EQ(rig.tick({1.49, 0, 0}).status, LinkStatus::ok);
   EXPECT_EQ(rig.tick({1.5, 0, 0}).status, LinkStatus::released);
@@ -83,7 +83,7 @@ TEST(Segment, LetsGoAtReleaseAndTakesHoldWithinATenth) {
   EXPECT_EQ(rig.tick({0.5, 0.0499, 0}).status, LinkStatus::ok);
 }
 
-TEST(Segment, ItsPrimitiveIsALineAndBeyondAnEndAPoint) {
+TEST(Segment, ThePrimitiveIsALineAndBeyondAnEndAPoint) {
   Rig rig(build(segment({0, 0, 0}, {0, 0, 2})));
   rig.tick({1, 0, 1});
   Primitive primitive;

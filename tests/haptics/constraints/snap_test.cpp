@@ -22,7 +22,7 @@ bool apart(const Rig& rig, const Vec3& probe) {
 }
 bool held(const Rig& rig) { return rig.state.status == LinkStatus::ok && !rig.state.released && rig.state.active(); }
 
-TEST(Snap, TakesHoldWithinSnapAndLetsGoAtRelease) {
+TEST(Snap, SnapsAndReleasesAtItsDistances) {
   Rig rig(build(kPoint + R"(, "snap": 0.1, "release": 0.3})"));
   const auto at = [&](double x) {
     rig.tick({x, 0, 0});
@@ -49,20 +49,20 @@ TEST(Snap, StartsHeldOnlyWithinSnap) {
   EXPECT_TRUE(held(near));
   far.tick({0.15, 0, 0});
   EXPECT_TRUE(apart(far, {0.15, 0, 0}));
-  // release is twice snap where nothing is said
+  // the default of release is twice snap
   near.tick({0.199, 0, 0});
   EXPECT_TRUE(held(near));
   near.tick({0.2, 0, 0});
   EXPECT_TRUE(apart(near, {0.2, 0, 0}));
 }
 
-TEST(Snap, NoChatterUnderTremorSmallerThanTheGap) {
+TEST(Snap, DoesNotChatterUnderATremorSmallerThanTheGap) {
   for (const double boundary : {0.1, 0.3}) {
     Rig rig(build(kPoint + R"(, "snap": 0.1, "release": 0.3})"));
     Random random(5);
     int changes = 0;
     bool was = false;
-    // in to the boundary with tremor of up to 0.09, a long while there, then away
+    // in to the snap distance with a tremor of up to 0.09, a long rest there, then away
     for (int i = 0; i < 4000; ++i) {
       const double way = i < 1000 ? 0.001 * i : i < 3000 ? 1.0 : 0.001 * (i - 2000);
       const double x = boundary == 0.1 ? 1.0 - 0.9 * std::min(way, 1.0) : 0.3 * way;
@@ -74,8 +74,8 @@ TEST(Snap, NoChatterUnderTremorSmallerThanTheGap) {
   }
 }
 
-TEST(Snap, SweepsInAndOutWithHysteresis) {
-  // a streamline: a straight line along x
+TEST(Snap, SweepsShowHysteresis) {
+  // streamline: a straight line along x
   Rig rig(
       build(R"({"name": "a", "type": "streamline", "field": "uniform", "seed": [0, 0, 0], "snap": 0.2, "release": 0.5})", flow_fields()));
   std::vector<double> takes, lets;
@@ -100,7 +100,7 @@ TEST(Snap, SweepsInAndOutWithHysteresis) {
   for (const double y : lets) EXPECT_NEAR(y, 0.5, 1e-12);
 }
 
-TEST(Snap, ReleaseAloneStartsHeldAndTakesHoldWithinATenth) {
+TEST(Snap, ReleaseAloneStartsHeldAndReArmsWithinATenth) {
   Rig rig(build(R"({"name": "a", "type": "streamline", "field": "uniform", "seed": [0, 0, 0], "release": 0.5})", flow_fields()));
   rig.tick({0, 0.4, 0});
   EXPECT_TRUE(held(rig));
@@ -113,7 +113,7 @@ TEST(Snap, ReleaseAloneStartsHeldAndTakesHoldWithinATenth) {
   EXPECT_LE(norm(rig.state.proxy - Vec3(1, 0, 0)), 1e-12);
 }
 
-TEST(Snap, SurfacesThatReleaseByThemselvesKeepTheirRuleWithoutSnap) {
+TEST(Snap, WithoutSnapSurfacesKeepTheirOwnReArmRule) {
   const std::string floor = R"({"name": "a", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "free": "above", "release": 0.25)";
   Rig own(build(floor + "}")), snaps(build(floor + R"(, "snap": 0.1})"));
   for (Rig* rig : {&own, &snaps}) {
@@ -125,7 +125,7 @@ TEST(Snap, SurfacesThatReleaseByThemselvesKeepTheirRuleWithoutSnap) {
     EXPECT_EQ(rig->tick({0, 0, -0.25}).status, LinkStatus::released);
     EXPECT_EQ(rig->tick({0, 0, -0.2}).status, LinkStatus::released);
   }
-  // its own rule waits for the free side, snap takes hold within reach
+  // the surface's own rule re-arms on the free side, snap within its distance
   EXPECT_EQ(own.tick({0, 0, -0.05}).status, LinkStatus::released);
   EXPECT_EQ(snaps.tick({0, 0, -0.05}).status, LinkStatus::ok);
   EXPECT_TRUE(bitwise_equal(snaps.state.proxy, Vec3(0, 0, 0)));
@@ -133,7 +133,7 @@ TEST(Snap, SurfacesThatReleaseByThemselvesKeepTheirRuleWithoutSnap) {
   EXPECT_EQ(snaps.tick({0, 0, 0.05}).status, LinkStatus::free);
 }
 
-TEST(Snap, ASurfaceIsFoundWhereverTheHandWentMeanwhile) {
+TEST(Snap, ASurfaceIsFoundFromAnyPosition) {
   Rig rig(build(R"({"name": "a", "type": "isosurface", "field": "sphere", "level": 1, "snap": 0.05, "release": 0.2})", flow_fields()));
   Random random(6);
   for (int i = 0; i < 300; ++i) {
@@ -149,7 +149,7 @@ TEST(Snap, ASurfaceIsFoundWhereverTheHandWentMeanwhile) {
   }
 }
 
-TEST(Snap, ASelectedStreamlineTakesHoldOfItsClosestPlace) {
+TEST(Snap, ASelectedStreamlineSnapsToItsClosestPoint) {
   const Fields fields = flow_fields();
   const ConstraintPtr link = build(R"({"name": "a", "type": "streamline", "field": "circle", "seed": [1, 0, 0], "snap": 0.1})", fields);
   Rig rig(link);
@@ -165,14 +165,14 @@ TEST(Snap, ASelectedStreamlineTakesHoldOfItsClosestPlace) {
   }
 }
 
-TEST(Snap, AnOnlineStreamlineWithoutSeedTakesHoldWhereTheHandIs) {
+TEST(Snap, AnOnlineStreamlineWithoutASeedSnapsAtTheProbe) {
   Rig rig(build(R"({"name": "a", "type": "streamline", "field": "uniform", "snap": 0.1, "release": 0.3})", flow_fields()));
   rig.tick({0, 0.5, 0});
   EXPECT_TRUE(held(rig));
   EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0, 0.5, 0)));
   rig.tick({0.2, 0.7, 0});
   EXPECT_LE(norm(rig.state.proxy - Vec3(0.2, 0.5, 0)), 1e-11);
-  // pulled off, it lets go, and then takes hold of the line through the hand
+  // pulled off it is released, then snaps to the line through the probe
   rig.tick({0.2, 0.81, 0});
   EXPECT_TRUE(apart(rig, {0.2, 0.81, 0}));
   rig.tick({0.2, 0.81, 0});
@@ -193,8 +193,8 @@ TEST(Snap, AnOnlineStreamlineWithASeedStaysOnItsLine) {
   EXPECT_LE(norm(rig.state.proxy - Vec3(std::cos(3.0), std::sin(3.0), 0)), 1e-7);
 }
 
-TEST(Snap, FollowsAField) {
-  // gaussian: 1 at the origin, falling off; both distances from it, release never under snap
+TEST(Snap, TheDistancesMayFollowAField) {
+  // gaussian: 1 at the origin and decreasing; both distances follow it, and release is never below snap
   Rig rig(build(kPoint + R"(, "snap": {"field": "gaussian", "map": [[0, 0.2], [1, 0.4]]},
       "release": {"field": "gaussian", "map": [[0, 0.1], [1, 0.1]]}})",
                 flow_fields()));

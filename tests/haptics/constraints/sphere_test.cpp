@@ -43,7 +43,7 @@ TEST(Sphere, TheCentreKeepsTheLastNormal) {
   EXPECT_EQ(rig.state.status, LinkStatus::ok);
 }
 
-TEST(Sphere, FreeAboveIsOutsideFreeBelowIsInside) {
+TEST(Sphere, FreeAboveIsOutsideAndFreeBelowIsInside) {
   Rig ball(build(sphere(1, R"(, "free": "above")")));
   EXPECT_EQ(ball.tick({1.5, 0, 0}).status, LinkStatus::free);
   EXPECT_TRUE(bitwise_equal(ball.state.proxy, Vec3(1.5, 0, 0)));
@@ -75,9 +75,9 @@ TEST(Sphere, TwoSidedReleaseAndReArm) {
   EXPECT_EQ(rig.tick({1.026, 0, 0}).status, LinkStatus::released);
   EXPECT_EQ(rig.tick({1.024, 0, 0}).status, LinkStatus::ok);
   EXPECT_EQ(rig.tick({1.3, 0, 0}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({0.9, 0, 0}).status, LinkStatus::ok);  // crossed
+  EXPECT_EQ(rig.tick({0.9, 0, 0}).status, LinkStatus::ok);  // crossed the surface
   EXPECT_EQ(rig.tick({0.7, 0, 0}).status, LinkStatus::released);
-  // in and out again within one tick, then held at the closest point
+  // in and out within one tick, then held at the closest point
   Rig passed(build(sphere(0.1, R"(, "release": 0.25)")));
   passed.tick({0.2, 0, 0});
   EXPECT_EQ(passed.tick({0.5, 0.05, 0}).status, LinkStatus::released);
@@ -98,7 +98,7 @@ TEST(Sphere, TheForceIsContinuousFromOutsideAndInside) {
   }
 }
 
-TEST(Sphere, AThinOneIsNotPassedWithinOneTick) {
+TEST(Sphere, ASmallSphereIsNotPassedThroughWithinOneTick) {
   Random random(8);
   for (int i = 0; i < 500; ++i) {
     Rig rig(build(sphere(0.01, R"(, "free": "above")")));
@@ -110,26 +110,26 @@ TEST(Sphere, AThinOneIsNotPassedWithinOneTick) {
     ASSERT_LT(dot(rig.state.proxy, way), 0);
     ASSERT_EQ(rig.tick(aside + way * 0.04).status, LinkStatus::ok);
     ASSERT_LT(dot(rig.state.proxy, way), 0);
-    ASSERT_EQ(rig.tick(aside - way * 0.035).status, LinkStatus::free);  // back
+    ASSERT_EQ(rig.tick(aside - way * 0.035).status, LinkStatus::free);  // returned
     rig.tick(aside + way * 0.035);
-    ASSERT_EQ(rig.tick(aside + way * 0.1).status, LinkStatus::ok);    // however far behind
-    ASSERT_EQ(rig.tick(aside + way * 0.2).status, LinkStatus::free);  // thrown
+    ASSERT_EQ(rig.tick(aside + way * 0.1).status, LinkStatus::ok);    // at any distance behind
+    ASSERT_EQ(rig.tick(aside + way * 0.2).status, LinkStatus::free);  // a step of more than 0.02 L
   }
 }
 
 TEST(Sphere, CuttingACapOrPassingBesideIsFree) {
   Rig cap(build(sphere(1, R"(, "free": "above")")));
   cap.tick({-0.035, 1.0004, 0});
-  EXPECT_EQ(cap.tick({0.035, 1.0004, 0}).status, LinkStatus::free);  // the chord goes 0.0002 deep
+  EXPECT_EQ(cap.tick({0.035, 1.0004, 0}).status, LinkStatus::free);  // the chord is 0.0002 deep
   Rig beside(build(sphere(0.01, R"(, "free": "above")")));
   beside.tick({-0.03, 0.0101, 0});
   EXPECT_EQ(beside.tick({0.03, 0.0101, 0}).status, LinkStatus::free);
   Rig jump(build(sphere(0.01, R"(, "free": "above")")));
   jump.tick({-0.5, 0, 0});
-  EXPECT_EQ(jump.tick({0.5, 0, 0}).status, LinkStatus::free);  // a jump, no hand
+  EXPECT_EQ(jump.tick({0.5, 0, 0}).status, LinkStatus::free);  // a jump, not a hand's motion
 }
 
-TEST(Sphere, ItsPrimitiveIsTheTangentPlane) {
+TEST(Sphere, ThePrimitiveIsTheTangentPlane) {
   Rig rig(build(sphere(2, R"(, "free": "above")")));
   Primitive primitive;
   rig.tick({0, 1.9, 0});

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// StreamlineTracing of cubic grids in the hand: the line that is felt is the line that is drawn.
+// Streamline links on cubic grids: the haptic and the drawn line are the same.
 #include "engine/geometry/flow/curve.h"
 #include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace streamline_cubic_test {
 
-TEST(StreamlineCubic, FeltAndDrawnLinesAgree) {
+TEST(StreamlineCubic, HapticAndDrawnLinesAgree) {
   const auto abc = field::make_analytic("abc")->vector;
   const auto made = field::sample_on_grid(*abc, 40, -2, 2)->as_cubic();
   ASSERT_TRUE(made);

@@ -44,7 +44,7 @@ struct StreamlineFixture {
   }
 };
 
-/// One link, as the chain's tick drives it.
+/// One link, driven as in the tick.
 struct LinkDriver {
   std::shared_ptr<const haptics::Constraint> constraint;
   haptics::LinkState state;

@@ -35,24 +35,24 @@ LinkDriver online(const field::VectorFieldPtr& field, const Online& with) {
   return LinkDriver(make_online_streamline(spec));
 }
 
-/// The probe goes round the circle of radius 0.05 at 0.2 units/s and 1 kHz; how far the proxy is from it after one lap.
-double drift_of_a_lap(flow::Method method, int& most) {
+/// Distance of the proxy from the circle of radius 0.05 after one lap of the probe at 0.2 units/s and 1 kHz.
+double drift_of_a_lap(flow::Method method, int& max_evaluations) {
   LinkDriver hand = online(analytic_vector("circle"), {Vec3(0.05, 0.0, 0.0), method});
   const int ticks = static_cast<int>(std::lround(2 * M_PI * 0.05 / 0.2e-3));
   double worst = 0;
-  most = 0;
+  max_evaluations = 0;
   for (int i = 0; i <= ticks; ++i) {
     const double angle = 0.2e-3 * i / 0.05;
     hand.to(Vec3(0.05 * std::cos(angle), 0.05 * std::sin(angle), 0.0));
     worst = std::max(worst, std::fabs(norm(hand.state.proxy) - 0.05));
-    most = std::max(most, hand.state.evaluations);
+    max_evaluations = std::max(max_evaluations, hand.state.evaluations);
     EXPECT_EQ(hand.state.status, LinkStatus::ok);
   }
   return worst;
 }
 
-TEST(StreamlineOnline, DriftOfALapOfTheCircle) {
-  int most = 0;
+TEST(StreamlineOnline, DriftOfOneLapOfTheCircle) {
+  int max_evaluations = 0;
   const struct {
     flow::Method method;
     double least, greatest;
@@ -64,26 +64,26 @@ TEST(StreamlineOnline, DriftOfALapOfTheCircle) {
                {flow::Method::rkf34, 0, 5e-10},
                {flow::Method::dp54, 0, 5e-10}};
   for (const auto& c : cases) {
-    const double drift = drift_of_a_lap(c.method, most);
-    std::printf("online circle %s: drift %.3e, evaluations a tick <= %d\n", flow::to_string(c.method), drift, most);
+    const double drift = drift_of_a_lap(c.method, max_evaluations);
+    std::printf("online circle %s: drift %.3e, evaluations a tick <= %d\n", flow::to_string(c.method), drift, max_evaluations);
     EXPECT_LE(drift, c.greatest) << flow::to_string(c.method);
     EXPECT_GE(drift, c.least) << flow::to_string(c.method);
     if (c.method == flow::Method::linear) {
-      EXPECT_LE(most, 2);
+      EXPECT_LE(max_evaluations, 2);
     }
   }
 }
 
-TEST(StreamlineOnline, ConvergesFromAnywhereAroundACircleAndNeverGoesAway) {
+TEST(StreamlineOnline, ConvergesFromAnyDistanceToACircleAndRests) {
   // R = 1, the probe at d in [0.2, 6] R, 20 degrees off
   const auto circle = analytic_vector("circle");
-  int most = 0;
+  int max_evaluations = 0;
   for (const double d : {0.2, 0.5, 0.9, 1.0, 1.1, 1.9, 2.1, 2.5, 4.0, 6.0}) {
     LinkDriver hand = online(circle, {Vec3(1.0, 0.0, 0.0)});
     const double angle = 20 * M_PI / 180;
     const Vec3 probe(d * std::cos(angle), d * std::sin(angle), 0.0);
     hand.to(probe);
-    most = std::max(most, hand.state.evaluations);
+    max_evaluations = std::max(max_evaluations, hand.state.evaluations);
     EXPECT_EQ(hand.state.status, LinkStatus::ok) << d;
     EXPECT_LE(norm(hand.state.proxy - Vec3(std::cos(angle), std::sin(angle), 0.0)), 4e-8) << d;
     // tangential residual
@@ -93,15 +93,15 @@ TEST(StreamlineOnline, ConvergesFromAnywhereAroundACircleAndNeverGoesAway) {
     EXPECT_EQ(hand.state.proxy, rest);
     EXPECT_EQ(hand.state.evaluations, 0);
   }
-  std::printf("online, 20 degrees off: evaluations <= %d\n", most);
-  EXPECT_LE(most, kMaxEvaluations);
+  std::printf("online, 20 degrees off: evaluations <= %d\n", max_evaluations);
+  EXPECT_LE(max_evaluations, kMaxEvaluations);
 }
 
 TEST(StreamlineOnline, DistanceNeverGrowsFromColdStarts) {
   const auto abc = analytic_vector("abc");
   std::mt19937 random(17);
   std::uniform_real_distribution<double> place(-4, 4);
-  int budget = 0, most = 0;
+  int budget = 0, max_evaluations = 0;
   for (int i = 0; i < 600; ++i) {
     const Vec3 seed(place(random), place(random), place(random)), probe(place(random), place(random), place(random));
     LinkDriver hand = online(i % 2 ? analytic_vector("circle") : abc, {seed});
@@ -112,16 +112,16 @@ TEST(StreamlineOnline, DistanceNeverGrowsFromColdStarts) {
       const double now = norm(hand.state.proxy - probe);
       ASSERT_LE(now, distance * (1 + 1e-15) + 1e-15);
       distance = now;
-      most = std::max(most, hand.state.evaluations);
+      max_evaluations = std::max(max_evaluations, hand.state.evaluations);
     }
     budget += hand.state.status == LinkStatus::budget;
   }
-  std::printf("cold starts: %d of 600 still under way after 6 ticks, evaluations <= %d\n", budget, most);
+  std::printf("cold starts: %d of 600 still under way after 6 ticks, evaluations <= %d\n", budget, max_evaluations);
   EXPECT_LE(budget, 30);
 }
 
 TEST(StreamlineOnline, Equation3AsPrintedFailsBeyondTwoRadii) {
-  // negative control: the plain iteration, not ours
+  // negative control: the iteration as printed
   const auto circle = analytic_vector("circle");
   const flow::Flow flow{circle.get()};
   field::Cursor cursor;
@@ -139,7 +139,7 @@ TEST(StreamlineOnline, Equation3AsPrintedFailsBeyondTwoRadii) {
   EXPECT_TRUE(converges(1.2));
 }
 
-TEST(StreamlineOnline, NodesAndStraightManifoldsStopCriticalAndLetGo) {
+TEST(StreamlineOnline, NodesAndStraightManifoldsStopAsCriticalAndAreLeft) {
   const auto node = lambda_field([](const Vec3& p) { return Vec3(-p.x, -2 * p.y, -3 * p.z); });
   const auto saddle = lambda_field([](const Vec3& p) { return Vec3(2 * p.x, -p.y, 0.0); });
   for (const auto method : {flow::Method::euler, flow::Method::rk2, flow::Method::rk4, flow::Method::rkf34, flow::Method::dp54})
@@ -154,7 +154,7 @@ TEST(StreamlineOnline, NodesAndStraightManifoldsStopCriticalAndLetGo) {
       EXPECT_LE(norm(hand.state.proxy), 4e-6) << flow::to_string(method);
       hand.to(-0.1 * seed);
       EXPECT_EQ(hand.state.evaluations, 0);
-      // the hand turns back
+      // the hand reverses
       for (int tick = 0; tick < 3; ++tick) hand.to(0.3 * seed);
       EXPECT_EQ(hand.state.status, LinkStatus::ok);
       EXPECT_LE(norm(hand.state.proxy - 0.3 * seed), 1e-6) << flow::to_string(method);
@@ -223,7 +223,7 @@ TEST(StreamlineOnline, SmallCirclesAreNotMistakenForTheirCentre) {
   }
 }
 
-TEST(StreamlineOnline, LeastSpeedHoldsCritical) {
+TEST(StreamlineOnline, TheMinimumSpeedStopsAsCritical) {
   const auto field = lambda_field([](const Vec3& p) { return Vec3(1 - 0.5 * p.x, 0.0, 0.0); });
   Online with{Vec3(0.0)};
   with.min_speed = 0.25;
@@ -256,7 +256,7 @@ TEST(StreamlineOnline, BoundaryHoldsUntilTheProbeTurnsBack) {
   }
 }
 
-TEST(StreamlineOnline, WithoutASeedItBeginsAtTheProbe) {
+TEST(StreamlineOnline, WithoutASeedItStartsAtTheProbe) {
   const auto grid = sample_vector_grid(field::Mapping{}, {9, 9, 9}, [](const Vec3&) { return Vec3(1.0, 0.0, 0.0); });
   LinkDriver hand = online(grid, {});
   EXPECT_EQ(hand.to(Vec3(-1.0, 3.0, 3.0)), Vec3(-1.0, 3.0, 3.0));
@@ -293,7 +293,7 @@ TEST(StreamlineOnline, SurvivesBadValuesAndFarProbes) {
     }
 }
 
-TEST(StreamlineOnline, LineFieldsKeepTheirSide) {
+TEST(StreamlineOnline, LineFieldsAreSignInvariant) {
   const auto helix = [](const Vec3& p) { return direction(Vec3(-2 * p.y, 2 * p.x, 0.5)); };
   const auto mapping = field::Mapping::from_linear(Mat3(4.0 / 31), Vec3(-2.0));
   std::mt19937 random(5);
@@ -312,7 +312,7 @@ TEST(StreamlineOnline, LineFieldsKeepTheirSide) {
   }
 }
 
-TEST(StreamlineOnline, SameBitsAndNoAllocation) {
+TEST(StreamlineOnline, IsRepeatableAndAllocatesNothing) {
   const auto abc = analytic_vector("abc");
   const auto walk = [&](std::vector<Vec3>& out) {
     LinkDriver hand = online(abc, {Vec3(0.3, 0.2, 0.1)});

@@ -102,12 +102,12 @@ TEST(Streamline, SelectedLapOfTheCircle) {
   EXPECT_LE(work, 8);
 }
 
-TEST(Streamline, TheCentreOfACircleMovesNothing) {
+TEST(Streamline, AProbeAtTheCentreOfACircleKeepsTheProxy) {
   StreamlineFixture bench;
   bench.with("f", analytic_vector("circle"));
   LinkDriver hand(bench.link(kCircle));
   for (const double z : {0.0, 0.3, -2.0}) EXPECT_EQ(hand.to(Vec3(0.0, 0.0, z)), Vec3(0.05, 0.0, 0.0));
-  // and very far away
+  // and with a very far probe
   for (const double far : {1e100, 1e299, 1.7e308}) {
     hand.to(Vec3(-far, far, -far));
     EXPECT_LE(norm(hand.state.proxy - Vec3(-std::sqrt(0.5), std::sqrt(0.5), 0.0) * 0.05), 1e-8) << far;
@@ -130,12 +130,12 @@ TEST(Streamline, SweepsHaveNoHysteresis) {
     }
 }
 
-TEST(Streamline, SelectedGoesDownhillOnly) {
+TEST(Streamline, SelectedMovesOnlyAlongDecreasingDistance) {
   StreamlineFixture bench;
   bench.with("f", lambda_field([](const Vec3& p) { return Vec3(-2 * p.y, 2 * p.x, 0.1); }));
   LinkDriver hand(bench.link(R"({"field": "f", "seed": [1, 0, 0]})"));
   hand.to(Vec3(1.0, 0.0, 0.0));
-  // near the next turn of the helix, which is another branch: the proxy stays on its own
+  // near the next turn of the helix the proxy stays on its own turn
   const Vec3 proxy = hand.to(Vec3(1.0, 0.0, 0.3));
   EXPECT_LT(std::fabs(proxy.z), 0.1);
   std::mt19937 random(2);
@@ -149,7 +149,7 @@ TEST(Streamline, SelectedGoesDownhillOnly) {
   }
 }
 
-TEST(Streamline, OpenEndsHoldWithTheirWord) {
+TEST(Streamline, OpenEndsHoldAndReportTheirCause) {
   StreamlineFixture bench;
   bench.with("grid", sample_vector_grid(field::Mapping{}, {9, 9, 9}, [](const Vec3&) { return Vec3(1.0, 0.0, 0.0); }));
   bench.with("node", lambda_field([](const Vec3& p) { return -p; }));
@@ -170,23 +170,23 @@ TEST(Streamline, OpenEndsHoldWithTheirWord) {
   EXPECT_EQ(ended.state.status, LinkStatus::ok);
 }
 
-TEST(Streamline, SelectedNeverAllocatesAndKeepsUpWithAFastHand) {
+TEST(Streamline, SelectedAllocatesNothingAndFollowsAFastHand) {
   StreamlineFixture bench;
   bench.with("f", analytic_vector("abc"));
   LinkDriver hand(bench.link(R"({"field": "f", "seed": [0.3, 0.2, 0.1]})"));
   hand.to(Vec3(0.3, 0.2, 0.1));
-  int most = 0;
+  int max_knots = 0;
   const AllocationCounter guard;
   for (int i = 0; i < 2000; ++i) {
     const Vec3 target = bench.last_curve->position(0.004 * i);
     hand.to(target);
     EXPECT_NE(hand.state.status, LinkStatus::budget);
     EXPECT_LE(norm(hand.state.proxy - target), 1e-9);
-    most = std::max(most, memory_as<SelectedStreamlineMemory>(hand.state).knots_visited);
+    max_knots = std::max(max_knots, memory_as<SelectedStreamlineMemory>(hand.state).knots_visited);
   }
   EXPECT_EQ(guard.count(), 0u);
-  std::printf("selected abc at 1e-3 L a tick: knots a tick %d\n", most);
-  EXPECT_LE(most, 8);
+  std::printf("selected abc at 1e-3 L a tick: knots a tick %d\n", max_knots);
+  EXPECT_LE(max_knots, 8);
 }
 
 }  // namespace streamline_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Friction on surfaces that are hostile: noise, broken voxels, masks, thin sheets, jumps from sheet to sheet.
+// Friction on hostile surfaces: noise, invalid voxels, masks, thin sheets, jumps from sheet to sheet.
 #include "haptics/constraints/friction/friction_contact.h"
 
 #include <limits>
@@ -39,7 +39,7 @@ std::vector<Surface> surfaces() {
       {"huge", sample_scalar_grid(kMapping, kSize, [](const Vec3& p) { return 1e30 * norm(p); }), 1.2e30}};
 }
 
-/// Places on the level: far apart, then a stroll from each; and some off it.
+/// Positions on the level, at random starts and along a walk from each, and some off the level.
 std::vector<Vec3> places(const Surface& s, std::uint64_t seed) {
   Random random(seed);
   std::vector<Vec3> out;
@@ -60,7 +60,7 @@ std::vector<Vec3> places(const Surface& s, std::uint64_t seed) {
   return out;
 }
 
-TEST(SurfaceContact, HostileSurfaces) {
+TEST(SurfaceContact, HostileSurfacesKeepTheContactValid) {
   Random random(32);
   std::vector<float> vectors;
   for (int i = 0; i < 3 * 21 * 21 * 21; ++i)
@@ -81,7 +81,7 @@ TEST(SurfaceContact, HostileSurfaces) {
       std::snprintf(level, sizeof level, "%.17g", s.level);
       Rig rig(build(R"({"name": "a", "surface": "s", "level": )" + std::string(level) + ", " + type + "}", fields));
       std::map<LinkStatus, int> seen;
-      int most = 0;
+      int maximum = 0;
       double off = 0, gap = 0;
       for (std::size_t i = 0; i < path.size(); ++i) {
         const LinkState before = rig.state;
@@ -93,7 +93,7 @@ TEST(SurfaceContact, HostileSurfaces) {
         }
         const LinkState& now = rig.state;
         ++seen[now.status];
-        most = std::max(most, now.evaluations);
+        maximum = std::max(maximum, now.evaluations);
         ASSERT_TRUE(is_finite(now.proxy) && std::isfinite(now.residual) && std::isfinite(now.limit)) << s.name << type << i;
         ASSERT_LE(now.evaluations, kMaxEvaluations) << s.name << type << i;
         if (now.status == LinkStatus::free || now.status == LinkStatus::no_surface) {
@@ -109,15 +109,15 @@ TEST(SurfaceContact, HostileSurfaces) {
       }
       std::printf("%-7s %-28.28s", s.name, type.c_str());
       for (const auto& [status, count] : seen) std::printf(" %s %d", to_string(status), count);
-      std::printf("; off %.1e, over tau %.1e, evaluations <= %d\n", off, gap, most);
+      std::printf("; off %.1e, over tau %.1e, evaluations <= %d\n", off, gap, maximum);
       EXPECT_LE(off, 1e-9) << s.name << type;
       EXPECT_GT(seen[LinkStatus::ok], 50) << s.name << type;
     }
   }
 }
 
-// where somebody else has moved the proxy it starts from the probe again
-TEST(SurfaceContact, AProxyMovedByOthersStartsAnew) {
+// after an external change of the proxy the contact restarts at the probe
+TEST(SurfaceContact, AnExternallyMovedProxyRestarts) {
   Fields fields;
   fields.named["s"].scalar = analytic_field("sphere");
   Rig rig(build(R"({"name": "a", "type": "drag", "threshold": 0.2, "surface": "s", "level": 1})", fields));
@@ -127,7 +127,7 @@ TEST(SurfaceContact, AProxyMovedByOthersStartsAnew) {
   EXPECT_LE(norm(rig.state.proxy - Vec3(0, 0.6, 0.8)), 1e-15);
 }
 
-// a field beyond its grid's edge is unknown: not on the surface
+// beyond the grid's boundary the field is unknown: the probe is not on the surface
 TEST(SurfaceContact, OutsideTheDomainIsOffTheSurface) {
   Fields fields;
   fields.named["s"].scalar = field::sample_on_grid(*analytic_field("plane"), 21, -2, 2);

@@ -6,7 +6,7 @@ namespace texture_test {
 
 std::string texture(const std::string& more) { return R"({"name": "a", "type": "texture", "threshold": 0.05)" + more + "}"; }
 
-/// |x - p| over a sweep along `way` from `from`, a thousandth of a unit a tick.
+/// |x - p| over a sweep along `way` from `from`, at 0.001 units per tick.
 std::vector<double> sweep(Rig& rig, const Vec3& from, const Vec3& way, int ticks) {
   std::vector<double> gaps;
   for (int k = 0; k < ticks; ++k) {
@@ -17,10 +17,10 @@ std::vector<double> sweep(Rig& rig, const Vec3& from, const Vec3& way, int ticks
   return gaps;
 }
 
-/// The lag within `lo..hi` at which the trace, after its first `skip` samples, differs least from itself.
+/// The lag within `lo..hi` with the minimum squared difference of the trace from itself, after its first `skip` samples.
 int period(const std::vector<double>& trace, std::size_t skip, int lo, int hi) {
   int best = 0;
-  double least = 1e300;
+  double minimum = 1e300;
   for (int lag = lo; lag <= hi; ++lag) {
     double sum = 0;
     const std::size_t count = trace.size() - skip - static_cast<std::size_t>(hi);
@@ -28,21 +28,21 @@ int period(const std::vector<double>& trace, std::size_t skip, int lo, int hi) {
       const double d = trace[skip + i] - trace[skip + i + static_cast<std::size_t>(lag)];
       sum += d * d;
     }
-    if (sum < least) least = sum, best = lag;
+    if (sum < minimum) minimum = sum, best = lag;
   }
   return best;
 }
 
 TEST(Texture, TheForceHasThePeriodOfTheWave) {
-  for (const int wavelength : {40, 100, 250}) {  // thousandths
+  for (const int wavelength : {40, 100, 250}) {  // in thousandths of a unit
     Rig rig(build(texture(R"(, "amplitude": 0.6, "wavelength": )" + std::to_string(wavelength * 1e-3))));
     const auto trace = sweep(rig, {-1, 0.013, 0.007}, {1, 0, 0}, 2000);
     EXPECT_EQ(period(trace, 400, wavelength / 2, wavelength * 3 / 2), wavelength);
-    // about the threshold, up and down
-    double least = 1, most = 0;
-    for (std::size_t i = 400; i < trace.size(); ++i) least = std::min(least, trace[i]), most = std::max(most, trace[i]);
-    EXPECT_GT(most - least, 0.01);
-    EXPECT_LE(most, 0.05 * 1.6 + 0.001);
+    // oscillates about the threshold
+    double minimum = 1, maximum = 0;
+    for (std::size_t i = 400; i < trace.size(); ++i) minimum = std::min(minimum, trace[i]), maximum = std::max(maximum, trace[i]);
+    EXPECT_GT(maximum - minimum, 0.01);
+    EXPECT_LE(maximum, 0.05 * 1.6 + 0.001);
   }
 }
 
@@ -60,7 +60,7 @@ TEST(Texture, TheThresholdIsATriangleWave) {
   EXPECT_TRUE(std::isfinite(at({1e300, -1e300, 1})));
 }
 
-TEST(Texture, WithoutAmplitudeItIsDrag) {
+TEST(Texture, WithoutAmplitudeItEqualsDrag) {
   Rig rig(build(texture(R"(, "amplitude": 0, "wavelength": 0.1)")));
   Rig drag(build(R"({"name": "a", "type": "drag", "threshold": 0.05})"));
   Random random(3);
@@ -72,7 +72,7 @@ TEST(Texture, WithoutAmplitudeItIsDrag) {
   }
 }
 
-// by data: the base follows a field, here with the wave on top
+// the base threshold follows a field, with the wave added
 TEST(Texture, TheBaseMayFollowAField) {
   Fields fields;
   fields.named["r"].scalar = analytic_field("sphere");
@@ -83,7 +83,7 @@ TEST(Texture, TheBaseMayFollowAField) {
   EXPECT_NEAR(rig.state.limit, 0.075 * (1 + 0.5 * (-1.0 / 3)), 1e-15);
 }
 
-TEST(Texture, OnASurfaceItStaysThere) {
+TEST(Texture, OnASurfaceTheProxyStaysOnIt) {
   const auto torus = sampled_field("torus", 48);
   Fields fields;
   fields.named["s"].scalar = torus;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A one-sided link holds a hand by the sheet by which it came in, until `release` and through no other door, whatever the body's thickness,
-// tilt and curvature, and whatever the hand's speed and the rate.
+// A one-sided link holds the hand on the sheet of entry until `release`, for any thickness, tilt and curvature of the body, any speed of
+// the hand and any rate.
 #include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
@@ -8,13 +8,13 @@ namespace thin_bodies_test {
 
 constexpr double kReleaseAt = 0.3;
 
-/// A part of a shell of a sphere, or where the radius is infinite of a plate: positive within half its thickness.
+/// A spherical shell, or a plate if the radius is infinite: positive within half its thickness.
 struct Shell {
-  Vec3 outward;  ///< of the middle of the front, which passes the origin
+  Vec3 outward;  ///< normal of the middle surface's front at the origin
   double thickness = 0, radius = std::numeric_limits<double>::infinity();
 
   double value(const Vec3& x) const { return 0.5 * thickness - std::fabs(height(x)); }
-  /// Above the middle of the body.
+  /// Signed height above the middle surface.
   double height(const Vec3& x) const { return std::isfinite(radius) ? norm(x + outward * radius) - radius : dot(outward, x); }
   Vec3 up(const Vec3& x) const { return std::isfinite(radius) ? direction(x + outward * radius) : outward; }
 };
@@ -34,8 +34,8 @@ class ShellFormula final : public field::ScalarField {
   Shell shell_;
 };
 
-/// Pushes from the front through the body: slowly about the body, then by steps of `fast` until it lets go. `is_inside`: of the body as it
-/// is sampled.
+/// Pushes from the front through the body: in steps of `slow` near the body, then of `fast` until release. `is_inside`: true inside the
+/// sampled body.
 template <class Inside>
 void push(const ConstraintPtr& link, const Shell& shell, const Vec3& way, double slow, double fast, double dt, const Inside& is_inside,
           const std::string& what) {
@@ -69,7 +69,7 @@ void push(const ConstraintPtr& link, const Shell& shell, const Vec3& way, double
 
 class ThinBodies : public testing::TestWithParam<int> {};
 
-TEST_P(ThinBodies, HoldByTheSheetOfTheirFront) {
+TEST_P(ThinBodies, HoldOnTheirFrontSheet) {
   Random random(static_cast<std::uint64_t>(100 + GetParam()));
   for (int i = 0; i < 40; ++i) {
     Shell shell{random.unit(), std::pow(10, random.uniform(-3, -1))};
@@ -90,7 +90,7 @@ TEST_P(ThinBodies, HoldByTheSheetOfTheirFront) {
       push(build(R"({"name": "a", "type": "isosurface", "field": "f", "level": 0, "free": "below")" + rules + "}", fields), shell, way,
            slow, fast, 1 / rate, in_shell, "formula " + what);
     } else if (GetParam() == 1) {
-      // a grid of its own axes, fine enough across the body for there to be one
+      // a grid along its own axes, fine enough across the body to contain it
       if (voxel < 0.012) continue;
       const auto half = static_cast<int>(std::min(0.7 / voxel, 40.0));
       const double edge = std::max(voxel, 0.7 / 40);
@@ -121,12 +121,12 @@ TEST_P(ThinBodies, HoldByTheSheetOfTheirFront) {
 
 INSTANTIATE_TEST_SUITE_P(Of, ThinBodies, testing::Values(0, 1, 2));
 
-// Below a voxel: two layers of samples above the level, and between them steps that pass both sheets.
-TEST(ThinBodies, AFastHandIsCaughtHoweverThinTheBodyIs) {
+// A body thinner than a voxel, and steps of the hand that pass both sheets.
+TEST(ThinBodies, AFastHandIsHeldByAnyThickness) {
   Random random(7);
   for (int i = 0; i < 300; ++i) {
     Fields fields;
-    const double peak = std::pow(10, random.uniform(-4, -0.5));  // the body is as thick as 2 peak voxels
+    const double peak = std::pow(10, random.uniform(-4, -0.5));  // the body's thickness is 2 peak voxels
     const auto mapping = field::Mapping::from_linear(Mat3(0.1), Vec3(-1.0));
     fields.named["f"].scalar = sample_scalar_grid(mapping, {21, 21, 21}, [&](const Vec3& x) { return peak - std::fabs(x.z) / 0.1; });
     Rig rig(build(R"({"name": "a", "type": "isosurface", "field": "f", "level": 0, "free": "below"})", fields));
@@ -141,8 +141,8 @@ TEST(ThinBodies, AFastHandIsCaughtHoweverThinTheBodyIs) {
   }
 }
 
-// The sheet lies one voxel before the end of what is known: the hand's step leads from in front of it to where nothing is known.
-TEST(ThinBodies, AFastHandIsCaughtBeforeMaskedCellsAndValuesThatAreNone) {
+// The sheet is one voxel before the end of the valid data: the hand's step leads from its front to invalid data.
+TEST(ThinBodies, AFastHandIsHeldBeforeMaskedCellsAndNonFiniteValues) {
   const auto mapping = field::Mapping::from_linear(Mat3(0.1), Vec3(-1.0));
   for (const bool masked : {true, false}) {
     std::vector<std::uint8_t> valid;
@@ -159,8 +159,8 @@ TEST(ThinBodies, AFastHandIsCaughtBeforeMaskedCellsAndValuesThatAreNone) {
   }
 }
 
-// Two balls with a gap: steps of a hand lead from one towards the other, and what is held stays.
-TEST(ThinBodies, AStepOfAHandNeverLeadsToAnotherBody) {
+// Two balls with a gap: steps of a hand lead from one towards the other, and the held ball stays held.
+TEST(ThinBodies, AHandsStepNeverJumpsToAnotherBody) {
   Random random(9);
   int stayed = 0;
   ConstraintPtr link;

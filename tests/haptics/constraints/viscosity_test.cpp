@@ -24,7 +24,7 @@ TEST(Viscosity, SteadyMotionLagsByVelocityTimesTime) {
     }
 }
 
-TEST(Viscosity, ACoefficientIsTheDampersOwn) {
+TEST(Viscosity, ACoefficientIsTheDampingOverTheStiffness) {
   // b = 6 N s/m at k = 200 N/m: T = 0.03 s; force k (x - p) = b v
   Rig rig = viscous("\"coefficient\": 6", 1e-3, 200);
   for (int i = 0; i <= 3000; ++i) rig.tick({0.5e-3 * i, 0, 0});
@@ -35,7 +35,7 @@ TEST(Viscosity, ACoefficientIsTheDampersOwn) {
   EXPECT_TRUE(bitwise_equal(limp.state.proxy, Vec3(1, 0, 0)));
 }
 
-TEST(Viscosity, ConvergesAndThenRestsOnTheProbeBitForBit) {
+TEST(Viscosity, ConvergesToTheProbeExactly) {
   for (const double dt : {1e-3, 1.0, 1e6}) {
     Rig rig = viscous("\"time\": 0.01", dt);
     rig.tick({0, 0, 0});
@@ -55,7 +55,7 @@ TEST(Viscosity, ConvergesAndThenRestsOnTheProbeBitForBit) {
   }
 }
 
-TEST(Viscosity, NoTimeStepHoldsTheProxyAndExtremesStayFinite) {
+TEST(Viscosity, AZeroTimeStepHoldsTheProxyAndExtremesStayFinite) {
   Rig rig = viscous("\"time\": 0.01", 0);
   rig.tick({0, 0, 0});
   rig.tick({1, 2, 3});
@@ -70,7 +70,7 @@ TEST(Viscosity, NoTimeStepHoldsTheProxyAndExtremesStayFinite) {
     }
 }
 
-TEST(Viscosity, ThickensWithAField) {
+TEST(Viscosity, TheTimeMayFollowAField) {
   Fields fields;
   fields.named["f"].scalar = analytic_field("plane");
   Rig rig = viscous(R"("time": {"field": "f", "map": [[0, 0.01], [1, 0.03]]})", 1e-3, 0, fields);

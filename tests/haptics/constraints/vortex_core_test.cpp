@@ -15,7 +15,7 @@ ConstraintPtr core_of(field::VectorFieldPtr field, const std::string& more = "")
 
 field::VectorFieldPtr formula(const char* name, double scale = 1) { return catena::test::analytic_vector(name, scale); }
 
-TEST(VortexCore, IsTheZAxisOfStraightVortices) {
+TEST(VortexCore, OfStraightVorticesIsTheZAxis) {
   Random random(1);
   for (const char* name : {"helix", "rankine", "lamb-oseen", "circle"})
     for (const double scale : {1.0, -1.0, 1e-300, 1e300}) {
@@ -31,7 +31,7 @@ TEST(VortexCore, IsTheZAxisOfStraightVortices) {
     }
 }
 
-TEST(VortexCore, TheTubeIsFreeInsideAndAWallOutside) {
+TEST(VortexCore, TheTubeIsFreeInsideAndHoldsOutside) {
   Rig rig(core_of(formula("helix"), R"(, "radius": 0.2)"));
   rig.tick({0.1, -0.1, 0.3});
   EXPECT_EQ(rig.state.status, LinkStatus::free);
@@ -65,8 +65,8 @@ TEST(VortexCore, OfHillsVortexIsARing) {
   }
 }
 
-TEST(VortexCore, OfASampledTiltedVortex) {
-  // a helical vortex about the line through c along w, on a rotated grid: linear, so that sampling is exact but for floats
+TEST(VortexCore, OfASampledTiltedVortexIsItsAxis) {
+  // a helical vortex about the line through c along w, on a rotated grid: linear, so that sampling is exact up to float rounding
   const Vec3 w = direction(Vec3(0.3, -0.2, 1)), c(0.2, 0.1, -0.05);
   const auto flow = [&](const Vec3& p) { return 2.0 * cross(w, p - c) + 0.5 * w; };
   Mat3 axes(Vec3(0.08, 0.06, 0) * 1.0, Vec3(-0.06, 0.08, 0), Vec3(0, 0.01, 0.11));
@@ -82,8 +82,8 @@ TEST(VortexCore, OfASampledTiltedVortex) {
   }
 }
 
-TEST(VortexCore, HoldsInMidFlowOnAGrid) {
-  // once around, along and about each core, with noise: no tick without a hold
+TEST(VortexCore, HoldsOnAGridInEveryTick) {
+  // around and along each core, with noise: held in every tick
   for (const catena::test::AnalyticCore& known : catena::test::analytic_cores())
     for (const bool cubic : {false, true})
       for (const double noise : {0.0, 0.02}) {
@@ -105,7 +105,7 @@ TEST(VortexCore, HoldsInMidFlowOnAGrid) {
 }
 
 TEST(VortexCore, IsConservative) {
-  // the work over closed loops of the probe about a core, by the trapezoidal rule, of K gap^2
+  // work over closed loops of the probe about a core, by the trapezoidal rule, as a fraction of K gap^2
   for (const catena::test::AnalyticCore& known : catena::test::analytic_cores())
     for (const bool cubic : {false, true}) {
       const auto grid = catena::test::sample_core_flow(known, 33, 0, 3);
@@ -129,7 +129,7 @@ TEST(VortexCore, IsConservative) {
     }
 }
 
-TEST(VortexCore, DoesNotPullWhereEveryPlaceIsACore) {
+TEST(VortexCore, GivesNoForceWhereEveryPointIsACore) {
   Rig rig(core_of(formula("abc"), R"(, "criterion": "vorticity", "search_radius": 2)"));
   for (int i = 0; i < 20; ++i) {
     const Vec3 x(0.1 * i - 1, 0.3, 0.2);
@@ -157,7 +157,7 @@ TEST(VortexCore, WithoutSwirlTheProbePassesThrough) {
       }
 }
 
-TEST(VortexCore, EndsAtTheWallOfTheDomain) {
+TEST(VortexCore, EndsAtTheDomainBoundary) {
   Rig rig(core_of(field::sample_on_grid(*formula("helix"), 17, -2, 2)));
   for (int i = 0; i <= 60; ++i) rig.tick({0.1, 0.05, 1.5 + 0.01 * i});
   EXPECT_EQ(rig.state.status, LinkStatus::boundary);
@@ -177,7 +177,7 @@ TEST(VortexCore, SnapsAndReleases) {
   EXPECT_EQ(rig.tick({0.31, 0, 0.2}).status, LinkStatus::released);
 }
 
-TEST(VortexCore, AnotherCoreTakesHoldAfterATickThatIsReleased) {
+TEST(VortexCore, AnotherCoreHoldsAfterOneReleasedTick) {
   // two vortices along z, at x = -0.6 and 0.6
   const auto turn = [](const Vec3& p, double x) {
     const Vec3 e(p.x - x, p.y, 0);
@@ -240,7 +240,7 @@ TEST(VortexCore, OnRealDataIsBoundedAndRests) {
   EXPECT_GT(held, ticks / 100);
 }
 
-TEST(VortexCore, StandsForALineInTheBaselines) {
+TEST(VortexCore, ThePrimitiveInTheBaselinesIsALine) {
   Rig rig(core_of(formula("helix")));
   rig.tick({0.1, 0.2, 0.3});
   Primitive line;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A tracker of few samples a second, late, lost and found, against a hand that is known at every tick.
+/// A tracker with sparse, late and lost samples, against a hand whose position is known at every tick.
 #include "haptics/device/controller.h"
 
 #include <gtest/gtest.h>
@@ -29,23 +29,23 @@ struct Rig {
   }
 };
 
-/// A hand that reaches out and back, at most 0.63 m/s.
+/// Position of an oscillating hand with a maximum speed of 0.63 m/s.
 Vec3 hand_at(std::int64_t t_ns) {
   const double t = 1e-9 * static_cast<double>(t_ns - 1'000'000'000'000);
   return {0.1 * std::sin(2 * M_PI * t), 0.02 * std::sin(7 * t), 0.3};
 }
 Quat turn_at(std::int64_t t_ns) { return rotation_from_vector({0, 10 * hand_at(t_ns).x, 0}); }
 
-TEST(Controller, MakesEvenTicksOfFewSamples) {
+TEST(Controller, InterpolatesSparseSamplesSmoothly) {
   for (const double hz : {60.0, 90.0, 120.0, 500.0}) {
     Rig rig;
     std::mt19937 random(3);
     std::uniform_real_distribution<double> late(0, 0.3), lost(0, 1);
-    double next = 0, most_m = 0, most_turn = 0, off_m = 0;
+    double next = 0, max_step_m = 0, max_turn = 0, off_m = 0;
     Vec3 last(0.0);
     Quat last_turn = kIdentityRotation;
     for (int k = 0; k < 4000; ++k) {
-      // samples come up to a third of their interval late, and each twentieth not at all
+      // samples are late by up to a third of their interval, and one in twenty is lost
       if (1e-3 * k >= next) {
         if (lost(random) > 0.05) rig.controller.push_pose({clock_ns, hand_at(clock_ns), turn_at(clock_ns)});
         next = (std::floor(next * hz + 1e-6) + 1 + late(random)) / hz;
@@ -53,9 +53,9 @@ TEST(Controller, MakesEvenTicksOfFewSamples) {
       const DeviceInput input = rig.tick();
       ASSERT_EQ(input.status, DeviceStatus::ready);
       if (k > 500) {
-        most_m = std::max(most_m, norm(input.position_m - last));
-        most_turn = std::max(most_turn, norm(rotation_vector(normalized(input.orientation * glm::conjugate(last_turn)))));
-        // the best of the last 100 ms: how far from the hand's way the place is
+        max_step_m = std::max(max_step_m, norm(input.position_m - last));
+        max_turn = std::max(max_turn, norm(rotation_vector(normalized(input.orientation * glm::conjugate(last_turn)))));
+        // distance from the hand's path: the minimum over the last 100 ms
         double off = 1;
         for (int back = 0; back < 100; ++back) off = std::min(off, norm(input.position_m - hand_at(clock_ns - back * kTick_ns)));
         off_m = std::max(off_m, off);
@@ -63,18 +63,18 @@ TEST(Controller, MakesEvenTicksOfFewSamples) {
       last = input.position_m;
       last_turn = input.orientation;
     }
-    // the hand's own ticks are 0.65 mm; the raw samples at 60 Hz step by 10 mm
-    EXPECT_LT(most_m, 1.25 * 0.66e-3) << hz << " Hz";
-    EXPECT_LT(most_turn, 1.25 * 6.4e-3) << hz << " Hz";
+    // the hand moves up to 0.65 mm per tick; raw samples at 60 Hz step by 10 mm
+    EXPECT_LT(max_step_m, 1.25 * 0.66e-3) << hz << " Hz";
+    EXPECT_LT(max_turn, 1.25 * 6.4e-3) << hz << " Hz";
     EXPECT_LT(off_m, hz < 100 ? 2e-3 : 1e-3) << hz << " Hz";
   }
 }
 
-/// A tracker that says nothing for 80 ms, now and then: the hand waits and catches up, at most a quarter faster than it moved.
-TEST(Controller, APauseOfTheTrackerIsNoJump) {
+/// In pauses of 80 ms of the tracker the position waits, then catches up at most a quarter faster than the hand moved.
+TEST(Controller, APauseOfTheTrackerCausesNoJump) {
   for (const double hz : {60.0, 120.0, 1000.0}) {
     Rig rig;
-    double next = 0, most_m = 0;
+    double next = 0, max_step_m = 0;
     Vec3 last(0.0);
     for (int k = 0; k < 3000; ++k) {
       if (1e-3 * k >= next) {
@@ -83,14 +83,14 @@ TEST(Controller, APauseOfTheTrackerIsNoJump) {
       }
       const DeviceInput input = rig.tick();
       ASSERT_EQ(input.status, DeviceStatus::ready);
-      if (k > 100) most_m = std::max(most_m, norm(input.position_m - last));
+      if (k > 100) max_step_m = std::max(max_step_m, norm(input.position_m - last));
       last = input.position_m;
     }
-    EXPECT_LT(most_m, 1.251 * 5e-4) << hz << " Hz";
+    EXPECT_LT(max_step_m, 1.251 * 5e-4) << hz << " Hz";
   }
 }
 
-TEST(Controller, AStillHandComesToRestToTheBit) {
+TEST(Controller, AStillHandComesToRestExactly) {
   Rig rig;
   for (int k = 0; k < 300; ++k) {
     if (k % 11 == 0) rig.controller.push_pose({clock_ns, Vec3(0.1, 0.2, 0.3), turn_at(clock_ns), TrackedController::kGrab});
@@ -101,7 +101,7 @@ TEST(Controller, AStillHandComesToRestToTheBit) {
   EXPECT_EQ(input.buttons, TrackedController::kGrab);
 }
 
-TEST(Controller, IsLostBySilenceOrWordAndFoundWhereItIs) {
+TEST(Controller, IsLostBySilenceOrStatusAndReturnsAtItsNewPosition) {
   Rig rig;
   EXPECT_EQ(rig.tick().status, DeviceStatus::starting);
   rig.controller.push_pose({clock_ns, Vec3(0.1)});
@@ -122,7 +122,7 @@ TEST(Controller, IsLostBySilenceOrWordAndFoundWhereItIs) {
   EXPECT_EQ(rig.tick().position_m, Vec3(0.9)) << "not a number, and older than what is known";
 }
 
-TEST(Controller, FoundAgainTheForceRisesAndNothingBuzzes) {
+TEST(Controller, AfterAReturnTheForceRampsInWithoutAVibration) {
   Rig rig;
   HapticProgram program;
   program.links = {test::hold_height("plane", 0)};
@@ -143,15 +143,15 @@ TEST(Controller, FoundAgainTheForceRisesAndNothingBuzzes) {
     EXPECT_TRUE(k <= 100 || force == Vec3(0.0)) << "silent for so long";
   }
   rig.controller.peaks().take_peaks();
-  // found deep below the plane: 5 N wait
-  double last = 0, most_step = 0;
+  // returned deep below the plane: the link's force is 5 N
+  double last = 0, max_step = 0;
   for (int k = 0; k < 600; ++k) {
     const double force = at({0, 0, -0.01}).force_n.z;
-    most_step = std::max(most_step, force - last);
+    max_step = std::max(max_step, force - last);
     last = force;
   }
   EXPECT_NEAR(last, 5, 1e-9);
-  EXPECT_LT(most_step, 5 / 500.0 * 1.01);
+  EXPECT_LT(max_step, 5 / 500.0 * 1.01);
   EXPECT_LT(rig.controller.peaks().take_peaks().change_n, 5 / 0.5 * PeakDetector::kTau_s * 1.01)
       << "the slope of the ramp, no contact of 5 N";
 }

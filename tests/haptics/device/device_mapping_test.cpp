@@ -10,7 +10,7 @@
 #include "haptics/device/registry.h"
 #include "tests/haptics/device/scripted_device.h"
 
-namespace hand_map_test {
+namespace device_mapping_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -51,7 +51,7 @@ void expect_near(const Vec3& a, const Vec3& b, double tolerance = 1e-15) {
   EXPECT_LE(norm(a - b), tolerance) << a.x << " " << a.y << " " << a.z << " is not " << b.x << " " << b.y << " " << b.z;
 }
 
-TEST(MappedDevice, SettingsThatSayNothingNeedNoMap) {
+TEST(MappedDevice, DefaultSettingsNeedNoMapping) {
   auto made = std::make_unique<test::ScriptedDevice>();
   EXPECT_TRUE(is_identity_mapping(made->caps, DeviceSettings{}));
   const Device* plain = made.get();
@@ -64,13 +64,13 @@ TEST(MappedDevice, SettingsThatSayNothingNeedNoMap) {
   EXPECT_FALSE(is_identity_mapping(encoded, DeviceSettings{}));
 }
 
-TEST(MappedDevice, WhatIsNotAskedForPassesToTheBit) {
+TEST(MappedDevice, UnmappedValuesPassUnchangedBitForBit) {
   DeviceSettings s;
   s.clutch_button = 1;
   Mapped run(s);
   const double tiny = std::numeric_limits<double>::denorm_min();
   const Vec3 p(-0.0, tiny, 1e300), f(-0.0, -tiny, 7.1), torque(0.1, -0.0, 3);
-  const Quat q(0.3, -0.0, 0.7, 0.1);  // not even a unit quaternion
+  const Quat q(0.3, -0.0, 0.7, 0.1);  // not a unit quaternion
   const DeviceInput in = run.at(p, 6, q);
   EXPECT_EQ(std::memcmp(&in.position_m, &p, sizeof p), 0);
   EXPECT_EQ(std::memcmp(&in.orientation, &q, sizeof q), 0);
@@ -80,7 +80,7 @@ TEST(MappedDevice, WhatIsNotAskedForPassesToTheBit) {
   EXPECT_EQ(std::memcmp(&run.device->output.torque_nm, &torque, sizeof torque), 0);
 }
 
-TEST(MappedDevice, AForceButtonThatIsHeldWhenTheDeviceComesBackIsNoPress) {
+TEST(MappedDevice, AForceButtonHeldWhenTheDeviceReturnsIsNotAPress) {
   DeviceSettings settings;
   settings.force_button = 1;
   Mapped run(settings);
@@ -95,7 +95,7 @@ TEST(MappedDevice, AForceButtonThatIsHeldWhenTheDeviceComesBackIsNoPress) {
   EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);
 }
 
-TEST(MappedDevice, AxesTurnThePoseThereAndTheForceBack) {
+TEST(MappedDevice, AxesRotateThePoseAndInverselyTheForce) {
   DeviceSettings s;
   s.workspace_from_device = axes();
   Mapped run(s);
@@ -111,7 +111,7 @@ TEST(MappedDevice, AxesTurnThePoseThereAndTheForceBack) {
   EXPECT_NEAR(dot(Vec3(1, 2, 3), in.position_m), dot(run.device->output.force_n, Vec3(1, 2, 3)), 1e-15);
 }
 
-TEST(MappedDevice, ADeviceWithoutOrientationKeepsNone) {
+TEST(MappedDevice, ADeviceWithoutOrientationStaysWithoutOne) {
   DeviceSettings s;
   s.workspace_from_device = axes();
   s.clutch_button = 1;
@@ -121,7 +121,7 @@ TEST(MappedDevice, ADeviceWithoutOrientationKeepsNone) {
   EXPECT_EQ(run.at({1, 2, 5}).orientation, kIdentityRotation);
 }
 
-TEST(MappedDevice, ScaleKeepsTheForceAndTellsTheReachInTheHandsMetres) {
+TEST(MappedDevice, ScaleKeepsTheForceAndScalesTheWorkspace) {
   DeviceSettings s;
   s.scale = 4;
   Mapped run(s);
@@ -130,7 +130,7 @@ TEST(MappedDevice, ScaleKeepsTheForceAndTellsTheReachInTheHandsMetres) {
   EXPECT_EQ(run.map->capabilities().workspace_m, 4 * run.device->caps.workspace_m);
 }
 
-TEST(MappedDevice, TheClutchRestsTheProbeAndKeepsTheOffset) {
+TEST(MappedDevice, TheClutchHoldsTheProbeAndKeepsTheOffset) {
   DeviceSettings s;
   s.clutch_button = 2;
   s.scale = 2;
@@ -142,9 +142,9 @@ TEST(MappedDevice, TheClutchRestsTheProbeAndKeepsTheOffset) {
     expect_near(in.position_m, {0.2, 0, 0});
     EXPECT_EQ(in.orientation, a);
     EXPECT_FALSE(in.forces_on);
-    EXPECT_EQ(in.buttons, 1u);  // its button is masked, the others pass
+    EXPECT_EQ(in.buttons, 1u);  // the clutch button is masked, the others pass
   }
-  // let go: no jump, then the probe goes on from there
+  // after the clutch there is no jump, and the probe moves on from its held position
   DeviceInput in = run.at({-0.2, 0, 0.01}, 0, b);
   expect_near(in.position_m, {0.2, 0, 0});
   expect_near(rotation_vector(in.orientation * glm::conjugate(a)), Vec3(0.0));
@@ -152,7 +152,7 @@ TEST(MappedDevice, TheClutchRestsTheProbeAndKeepsTheOffset) {
   in = run.at({-0.1, 0, 0.01}, 0, b);
   expect_near(in.position_m, {0.4, 0, 0}, 1e-15);
 
-  // the torque goes back through the turn that the clutch left: same work on both sides
+  // the torque is rotated back by the clutch's orientation offset, so that the work is equal on both sides
   const Vec3 torque(0.1, 0.2, 0.3), small(1e-6, -2e-6, 3e-6);
   run.map->write({Vec3(0.0), torque});
   const Quat before = run.at({-0.1, 0, 0.01}, 0, b).orientation,
@@ -160,7 +160,7 @@ TEST(MappedDevice, TheClutchRestsTheProbeAndKeepsTheOffset) {
   EXPECT_NEAR(dot(torque, rotation_vector(after * glm::conjugate(before))), dot(run.device->output.torque_nm, small), 1e-15);
 }
 
-TEST(MappedDevice, AClutchThatIsHeldAtTheStartRestsWhereItBegan) {
+TEST(MappedDevice, AClutchHeldAtTheStartHoldsTheFirstPosition) {
   DeviceSettings s;
   s.clutch_button = 1;
   Mapped run(s);
@@ -173,10 +173,10 @@ TEST(MappedDevice, TheForceSwitchIsOffAtTheStartAndAfterALoss) {
   DeviceSettings s;
   s.force_button = 1;
   Mapped run(s);
-  EXPECT_FALSE(run.at(Vec3(0.0), 1).forces_on);  // held from the start is no press
+  EXPECT_FALSE(run.at(Vec3(0.0), 1).forces_on);  // a button held from the start is not a press
   EXPECT_FALSE(run.at(Vec3(0.0), 0).forces_on);
   EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);
-  EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);  // an edge, not a level
+  EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);  // toggled by the edge, not the level
   EXPECT_TRUE(run.at(Vec3(0.0), 0).forces_on);
   EXPECT_EQ(run.at(Vec3(0.0), 2).buttons, 2u);
   EXPECT_FALSE(run.at(Vec3(0.0), 3).forces_on);
@@ -188,14 +188,14 @@ TEST(MappedDevice, TheForceSwitchIsOffAtTheStartAndAfterALoss) {
   run.device->input.status = DeviceStatus::ready;
   EXPECT_FALSE(run.at(Vec3(0.0), 0).forces_on);
   EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);
-  run.device->input.forces_on = false;  // the device's own switch counts, too
+  run.device->input.forces_on = false;  // the device's own switch also turns the forces off
   EXPECT_FALSE(run.at(Vec3(0.0), 0).forces_on);
 }
 
-TEST(MappedDevice, GravityRisesWithTheForcesAndIsGoneWithThem) {
+TEST(MappedDevice, GravityCompensationRampsInAndStopsWithTheForces) {
   DeviceSettings s;
   s.gravity_n = {0, 0.5, 0};
-  s.workspace_from_device = axes();  // gravity stays in device axes
+  s.workspace_from_device = axes();  // the gravity force is in device axes
   s.clutch_button = 1;
   Mapped run(s);
   double last = 0;
@@ -215,11 +215,11 @@ TEST(MappedDevice, GravityRisesWithTheForcesAndIsGoneWithThem) {
     }
     return run.device->output.force_n.y > 0.49;
   };
-  // the last zero on the way out, without a read before it
+  // the final zero at shutdown is written without a read before it
   EXPECT_EQ(run.force(Vec3(0.0)), Vec3(0.0));
   ASSERT_TRUE(carried());
   run.at(Vec3(0.0));
-  EXPECT_EQ(run.force(Vec3(0.0), Vec3(0.0), false), Vec3(0.0));  // off or stopped
+  EXPECT_EQ(run.force(Vec3(0.0), Vec3(0.0), false), Vec3(0.0));  // forces off or stopped
   ASSERT_TRUE(carried());
   run.at(Vec3(0.0), 1);
   EXPECT_EQ(run.force(Vec3(0.0)), Vec3(0.0));  // clutching
@@ -233,7 +233,7 @@ TEST(MappedDevice, GravityRisesWithTheForcesAndIsGoneWithThem) {
   EXPECT_EQ(run.force(Vec3(0.0)), Vec3(0.0));
 }
 
-TEST(MappedDevice, ARecordedPathKeepsItsPose) {
+TEST(MappedDevice, ARecordedPathIsNotMapped) {
   DeviceSettings s;
   s.scale = 3;
   s.workspace_from_device = axes();
@@ -265,7 +265,7 @@ TEST(MappedDevice, AllocatesNothing) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-TEST(Registry, OpensThroughTheMapWhereSettingsAskForIt) {
+TEST(Registry, OpensADeviceWithTheMappingOfItsSettings) {
   DeviceSettings s;
   s.scale = 2;
   const auto mapped = open_device("null", s);
@@ -273,7 +273,7 @@ TEST(Registry, OpensThroughTheMapWhereSettingsAskForIt) {
   EXPECT_EQ((*mapped)->capabilities().workspace_m, 0.4);
 }
 
-TEST(Registry, NamesWhatThereIs) {
+TEST(Registry, ListsTheDeviceTypes) {
   for (const char* type : {"null", "simulated", "simulated-6dof", "recorded", "mouse", "controller", "spacemouse"}) {
     EXPECT_TRUE(is_device_type(type)) << type;
     EXPECT_NE(device_type_names().find(type), std::string::npos);
@@ -292,4 +292,4 @@ TEST(Registry, NamesWhatThereIs) {
   EXPECT_NE(open_device("controller", {}).error().message.find("catena view SCENE --xr"), std::string::npos);
 }
 
-}  // namespace hand_map_test
+}  // namespace device_mapping_test

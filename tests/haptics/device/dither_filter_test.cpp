@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace still_pose_test {
+namespace dither_filter_test {
 
 using namespace catena;
 using haptics::DitherFilter;
@@ -14,7 +14,7 @@ constexpr double kStep = 5.5e-5;
 
 Vec3 encoded(const Vec3& x) { return {std::round(x.x / kStep) * kStep, std::round(x.y / kStep) * kStep, std::round(x.z / kStep) * kStep}; }
 
-TEST(DitherFilter, TakesTheDitherOffARestingHand) {
+TEST(DitherFilter, RemovesTheDitherOfARestingHand) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> noise(0, 0.15 * kStep);
   std::uniform_real_distribution<double> anywhere(-0.1, 0.1);
@@ -51,9 +51,9 @@ TEST(DitherFilter, PassesAMovingHandInTheSameTick) {
   }
 }
 
-TEST(DitherFilter, WithoutAStepNothingChanges) {
+TEST(DitherFilter, WithoutAnEncoderStepThePositionIsUnchanged) {
   DitherFilter pose(0, 1000);
   for (int i = 0; i < 100; ++i) EXPECT_EQ(pose.filter(Vec3(1e-9 * i)), Vec3(1e-9 * i));
 }
 
-}  // namespace still_pose_test
+}  // namespace dither_filter_test

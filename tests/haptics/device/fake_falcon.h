@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A Falcon in memory, played by a test: a boot loader, then firmware that answers each command by a frame. What it hears and
-/// how it fails is scripted. LockedRange, so that a test may turn its knobs while the driver's thread runs.
+/// A simulated Falcon in memory: a boot loader, then firmware that replies to each command with a frame. Tests set its faults and
+/// read the commands that it received; `mutex` lets them do so while the driver's thread runs.
 #pragma once
 #include <atomic>
 #include <chrono>
@@ -35,25 +35,25 @@ inline Bytes make_boot_image(int words = 200) {
 struct FakeFalcon {
   std::recursive_mutex mutex;
 
-  // knobs
+  // settings
   bool is_plugged = true;
   bool firmware_is_running = false;
-  bool ignores_commands = false;          ///< answers no command
-  FalconFrame frame;                      ///< what firmware says
-  Bytes garbage_before_frame;             ///< garbage in front of each
-  std::vector<std::size_t> packet_sizes;  ///< payload bytes of the packets to come, over and over; empty: as many as fit
+  bool ignores_commands = false;          ///< true: replies to no command
+  FalconFrame frame;                      ///< reply of the firmware
+  Bytes garbage_before_frame;             ///< bytes in front of each frame
+  std::vector<std::size_t> packet_sizes;  ///< payload sizes of the packets, used cyclically; empty: the maximum
   std::deque<UsbError> read_faults, write_faults, control_faults;
   Bytes handshake_reply{0x0A, 0x44, 0x2C, 0x0D};
-  int ignored_handshakes = 0;                               ///< so many go unanswered
-  int corrupt_uploads = 0;                                  ///< so many uploads have a wrong echo,
-  std::size_t corrupt_byte = 100;                           ///< at this byte
-  int failed_uploads = 0;                                   ///< so many leave the firmware dead
-  Bytes image;                                              ///< what starts the firmware
-  bool echoes_all = false;                                  ///< a loader that sends everything back
-  std::atomic<bool> block_reads{false}, is_blocked{false};  ///< the next read waits while `hang`; it says so
-  std::chrono::microseconds read_delay{0};                  ///< a read takes so long
+  int ignored_handshakes = 0;                               ///< number of handshakes without a reply
+  int corrupt_uploads = 0;                                  ///< number of uploads with a wrong echo
+  std::size_t corrupt_byte = 100;                           ///< index of the wrong byte of the echo
+  int failed_uploads = 0;                                   ///< number of uploads after which the firmware does not start
+  Bytes image;                                              ///< image that starts the firmware
+  bool echoes_all = false;                                  ///< true: the loader echoes every byte
+  std::atomic<bool> block_reads{false}, is_blocked{false};  ///< reads block while `block_reads`; `is_blocked` reports it
+  std::chrono::microseconds read_delay{0};                  ///< duration of a read
 
-  // what it heard
+  // received requests and commands
   std::vector<std::pair<int, int>> controls;
   std::vector<FalconCommand> commands;
   int handshake_count = 0, upload_count = 0, in_halt_clears = 0, out_halt_clears = 0, open_count = 0;
@@ -62,11 +62,11 @@ struct FakeFalcon {
     return commands.empty() ? FalconCommand{} : commands.back();
   }
 
-  // inside
+  // internal state
   std::deque<std::uint8_t> output_queue;
   Bytes pending, received;
   int baud = 0;
-  bool is_receiving_image = false;  ///< for an image
+  bool is_receiving_image = false;  ///< true: the loader waits for an image
   std::size_t packet_index = 0;
 
   template <class F>

@@ -40,38 +40,38 @@ std::vector<FalconFrame> all_of(FalconFramer& framer, std::span<const std::uint8
   return out;
 }
 
-TEST(FalconCodec, CommandsAreTheseBytes) {
+TEST(FalconCodec, CommandsEncodeToTheExpectedBytes) {
   EXPECT_EQ(encode_command({}), packet("<AAAAAAAAAAAAAA>"));
   // 0x1234 low nibble first: 4 3 2 1; -1447 = 0xFA59: 9 5 A F = J F K P; -1
   EXPECT_EQ(encode_command({{0x1234, -1447, -1}, kFalconHoming | kFalconRed}), packet("<EDCBJFKPPPPPJA>"));
   EXPECT_EQ(encode_command({{4095, -4095, 0}, kFalconGreen}), packet("<PPPABAAPAAAACA>"));
 }
 
-TEST(FalconCodec, FramesAreTheseValues) {
+TEST(FalconCodec, FramesDecodeToTheExpectedValues) {
   FalconFrame f;
   ASSERT_TRUE(decode_frame(packet("<JFKPAAAAEDCBAA>"), f));
   EXPECT_TRUE(same(f, frame(-1447, 0, 0x1234, 0, 0, 'A')));
-  // byte 13 up to 0xC0: every button, every axis homed
+  // byte 13: all buttons pressed and all axes homed
   ASSERT_TRUE(decode_frame(packet("<AAAAAAAAAAAA\xC0\x07>"), f));
   EXPECT_TRUE(same(f, frame(0, 0, 0, 15, 7, 7)));
   EXPECT_TRUE(f.all_homed());
 }
 
-TEST(FalconCodec, EveryCountGoesThereAndBack) {
+TEST(FalconCodec, EveryCountRoundTrips) {
   for (int v = -32768; v <= 32767; v += 7) {
     const FalconFrame f = frame(v, -(v + 1), v ^ 0x55, v & 15, v & 7, v & 0xFF);
     FalconFrame back;
     ASSERT_TRUE(decode_frame(encode_frame(f), back)) << v;
     ASSERT_TRUE(same(f, back)) << v;
     const FalconCommand c{f.encoders, static_cast<std::uint8_t>(v & 15)};
-    FalconCommand heard;
-    ASSERT_TRUE(decode_command(encode_command(c), heard)) << v;
-    ASSERT_EQ(heard.motors, c.motors);
-    ASSERT_EQ(heard.control, c.control);
+    FalconCommand decoded;
+    ASSERT_TRUE(decode_command(encode_command(c), decoded)) << v;
+    ASSERT_EQ(decoded.motors, c.motors);
+    ASSERT_EQ(decoded.control, c.control);
   }
 }
 
-TEST(FalconCodec, AByteThatCannotBeThereMakesItNoFrame) {
+TEST(FalconCodec, AnInvalidByteInvalidatesTheFrame) {
   const FalconPacket good = encode_frame(frame(-1447, 20, 300, 5));
   for (std::size_t at = 0; at < good.size(); ++at)
     for (int byte = 0; byte < 256; ++byte) {
@@ -104,7 +104,7 @@ TEST(FalconFramer, EverySplitOfAStreamGivesTheSameFrames) {
     }
 }
 
-TEST(FalconFramer, JoinedFramesGiveTheNewest) {
+TEST(FalconFramer, OfJoinedFramesTheNewestIsReturned) {
   std::vector<std::uint8_t> stream;
   for (int i = 0; i < 3; ++i) append(stream, frame(i, 0, 0));
   FalconFramer framer;
@@ -113,18 +113,18 @@ TEST(FalconFramer, JoinedFramesGiveTheNewest) {
   EXPECT_EQ(newest.encoders[0], 2);
 }
 
-TEST(FalconFramer, AFrameCutShortCostsOnlyItself) {
-  for (std::size_t kept = 0; kept < kFalconPacketBytes; ++kept) {
+TEST(FalconFramer, ATruncatedFrameLosesOnlyItself) {
+  for (std::size_t prefix = 0; prefix < kFalconPacketBytes; ++prefix) {
     std::vector<std::uint8_t> stream;
     append(stream, frame(1, 1, 1));
-    stream.resize(kept);
+    stream.resize(prefix);
     append(stream, frame(2, 2, 2));
     FalconFramer framer;
     const auto got = all_of(framer, stream);
-    ASSERT_EQ(got.size(), 1u) << kept;
+    ASSERT_EQ(got.size(), 1u) << prefix;
     EXPECT_EQ(got[0].encoders[0], 2);
-    EXPECT_EQ(framer.dropped_bytes(), kept);
-    EXPECT_EQ(framer.resyncs(), kept > 0 ? 1u : 0u);
+    EXPECT_EQ(framer.dropped_bytes(), prefix);
+    EXPECT_EQ(framer.resyncs(), prefix > 0 ? 1u : 0u);
   }
 }
 
@@ -150,8 +150,8 @@ TEST(FalconFramer, GarbageBetweenFramesIsDropped) {
   }
 }
 
-TEST(FalconFramer, AStartHiddenInByte14IsFound) {
-  // fourteen bytes of a frame, then at once another one: its '<' stands where the unknown byte would
+TEST(FalconFramer, AFrameStartInByte14IsFound) {
+  // fourteen bytes of a frame followed by another frame, whose '<' is in the place of the unknown byte
   std::vector<std::uint8_t> stream;
   append(stream, frame(1, 1, 1));
   stream.resize(14);
@@ -163,7 +163,7 @@ TEST(FalconFramer, AStartHiddenInByte14IsFound) {
   EXPECT_EQ(got[0].encoders[0], 2);
 }
 
-TEST(FalconFramer, ResetForgetsTheFrameBegun) {
+TEST(FalconFramer, ResetDiscardsThePartialFrame) {
   std::vector<std::uint8_t> stream;
   append(stream, frame(1, 1, 1));
   FalconFramer framer;

@@ -18,7 +18,7 @@ Vec3 forward_mm(const FalconCounts& counts) {
   return p * 1e3;
 }
 
-// every place of the workspace: 83 mm around the axis at z = 110 mm, 28 mm at 170 mm
+// calls f on a grid over the workspace: radius 83 mm up to z = 110 mm, 28 mm at 170 mm
 template <class F>
 void everywhere(F f) {
   for (double z = 0.075; z <= 0.1751; z += 0.005) {
@@ -29,8 +29,8 @@ void everywhere(F f) {
   }
 }
 
-TEST(FalconKinematics, ForwardGivesTheGoldenPlaces) {
-  constexpr double kRead = 1e-5;  // as many digits as are given, mm
+TEST(FalconKinematics, ForwardGivesTheGoldenPositions) {
+  constexpr double kRead = 1e-5;  // mm, the precision of the reference values
   EXPECT_LT(max_abs(forward_mm({0, 0, 0}) - Vec3(0, 0, 134.60243)), kRead);
   EXPECT_LT(max_abs(forward_mm({-500, -500, -500}) - Vec3(0, 0, 110.75447)), kRead);
   EXPECT_NEAR(forward_mm({-500, -500, -500}).z, 110.7545, 1e-4);
@@ -65,7 +65,7 @@ TEST(FalconKinematics, RoundTripsOverTheWholeWorkspace) {
   EXPECT_GT(places, 5000);
 }
 
-TEST(FalconKinematics, TheJacobianIsWhatSmallStepsShow) {
+TEST(FalconKinematics, TheJacobianMatchesFiniteDifferences) {
   everywhere([](const Vec3& p) {
     Vec3 angles;
     Mat3 j;
@@ -83,7 +83,7 @@ TEST(FalconKinematics, TheJacobianIsWhatSmallStepsShow) {
   });
 }
 
-TEST(FalconKinematics, TorqueDoesTheWorkOfTheForce) {
+TEST(FalconKinematics, TorqueAndForceDoTheSameWork) {
   const Vec3 p{0.015, -0.02, 0.12}, force{1.5, -2, 3};
   Vec3 angles, moved;
   Mat3 j;
@@ -94,7 +94,7 @@ TEST(FalconKinematics, TorqueDoesTheWorkOfTheForce) {
   EXPECT_NEAR(dot(falcon_torque(j, force), turn), dot(force, moved - p), 1e-11);
 }
 
-TEST(FalconKinematics, OutOfReachIsRefusedAndTouchesNothing) {
+TEST(FalconKinematics, OutOfReachIsRefusedAndLeavesTheResultUnchanged) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const Vec3& p : {Vec3{0.2, 0, 0.11}, Vec3{0, 0, 0.3}, Vec3{nan, 0, 0.1}, Vec3{0, inf, 0.1}}) {
     Vec3 angles(7.0);
@@ -111,7 +111,7 @@ TEST(FalconKinematics, OutOfReachIsRefusedAndTouchesNothing) {
   EXPECT_EQ(j, Mat3(7.0));
 }
 
-TEST(FalconKinematics, EveryCountEndsAndIsRightOrRefused) {
+TEST(FalconKinematics, EveryCountGivesAConsistentPositionOrIsRefused) {
   int found = 0, refused = 0;
   for (int a = -32768; a <= 32767; a += 2621)
     for (int b = -2400; b <= 2400; b += 240)
@@ -130,19 +130,19 @@ TEST(FalconKinematics, EveryCountEndsAndIsRightOrRefused) {
   EXPECT_GT(refused, 100);
 }
 
-TEST(FalconKinematics, MotorCountsAreTheTorqueTimesTheGain) {
-  // 24.18 mN m a newton: -241.8 counts
+TEST(FalconKinematics, MotorCountsAreTorqueTimesGain) {
+  // 24.18 mN m per newton: -241.8 counts
   EXPECT_EQ(falcon_motor_counts(Vec3(24.18e-3), 1e4), (FalconCounts{-242, -242, -242}));
   EXPECT_EQ(falcon_motor_counts({0.01, -0.02, 0}, 2e4), (FalconCounts{-200, 400, 0}));
 }
 
-TEST(FalconKinematics, TooMuchTorqueKeepsItsDirection) {
+TEST(FalconKinematics, ExcessiveTorqueIsScaledInItsDirection) {
   EXPECT_EQ(falcon_motor_counts({0.8190, -0.4095, 0.2048}, 1e4), (FalconCounts{-4095, 2048, -1024}));
   EXPECT_EQ(falcon_motor_counts({0.4095, 0, 0}, 1e4), (FalconCounts{-4095, 0, 0}));
   EXPECT_EQ(falcon_motor_counts({1e300, 1e300, -1e300}, 1e4), (FalconCounts{-4095, -4095, 4095}));
 }
 
-// what the motors have in the weakest direction: 1 / max_i |row i of (dp/dtheta)^T|, times full torque
+// maximum force in the weakest direction: full torque / max_i |row i of (dp/dtheta)^T|
 double weakest_force_n(const Vec3& p) {
   Vec3 angles;
   Mat3 j;
@@ -150,14 +150,14 @@ double weakest_force_n(const Vec3& p) {
   return kFalconFullTorque / kFalconForceGain / std::max({norm(j[0]), norm(j[1]), norm(j[2])});
 }
 
-TEST(FalconKinematics, TheMotorsHaveThisForceInEveryDirection) {
+TEST(FalconKinematics, MinimumForceOverAllDirections) {
   EXPECT_NEAR(weakest_force_n({0, 0, 0.125}), 6.1, 0.05);
   for (const double x : {-0.03, 0.0, 0.03})
     for (const double y : {-0.03, 0.0, 0.03})
       for (const double z : {0.095, 0.125, 0.155}) EXPECT_GT(weakest_force_n({x, y, z}), 4.3) << x << " " << y << " " << z;
 }
 
-TEST(FalconKinematics, ATorqueThatIsNoNumberIsZero) {
+TEST(FalconKinematics, ANonFiniteTorqueGivesZero) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const Vec3& torque : {Vec3{nan, 0, 0}, Vec3{0, inf, 0}, Vec3{0, 0, -inf}, Vec3{1e308, 0, 0}})
     EXPECT_EQ(falcon_motor_counts(torque, 1e4), (FalconCounts{}));

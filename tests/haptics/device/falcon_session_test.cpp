@@ -9,7 +9,7 @@ namespace catena::haptics::usb {
 namespace falcon_session_test {
 
 using Cycle = FalconSession::Cycle;
-constexpr FalconCounts kAt110{-516, -516, -516}, kAt175{1168, 1168, 1168};  // mm on the axis, about
+constexpr FalconCounts kAt110{-516, -516, -516}, kAt175{1168, 1168, 1168};  // approximate height on the axis in mm
 
 std::int64_t test_clock() {
   static std::int64_t now = 0;
@@ -27,28 +27,28 @@ struct FalconSessionTest : testing::Test {
     fake->firmware_is_running = true;
     fake->baud = 2;
   }
-  void say(const FalconCounts& encoders, int homed, int buttons = 0) {
+  void set_frame(const FalconCounts& encoders, int homed, int buttons = 0) {
     fake->frame = {encoders, static_cast<std::uint8_t>(buttons), static_cast<std::uint8_t>(homed), 'A'};
   }
-  Cycle go(int cycles = 1, const Vec3& force_n = Vec3(0.0), bool forces = true) {
+  Cycle run_cycles(int cycles = 1, const Vec3& force_n = Vec3(0.0), bool forces = true) {
     Cycle last = Cycle::no_frame;
     for (int i = 0; i < cycles; ++i) last = session.cycle(force_n, forces);
     return last;
   }
   void arm() {
-    say(kAt175, 7);
-    go(4);
+    set_frame(kAt175, 7);
+    run_cycles(4);
     ASSERT_EQ(session.pose().state, FalconState::ready);
-    say({400, 400, 400}, 7);
-    go();
-    say(kAt110, 7);
-    go();
+    set_frame({400, 400, 400}, 7);
+    run_cycles();
+    set_frame(kAt110, 7);
+    run_cycles();
   }
 };
 
 TEST_F(FalconSessionTest, HomingSetsItsBitInEveryPacketAndSendsNoForce) {
-  say(kAt110, 3);
-  EXPECT_EQ(go(5, {0, 0, 5}), Cycle::frame);
+  set_frame(kAt110, 3);
+  EXPECT_EQ(run_cycles(5, {0, 0, 5}), Cycle::frame);
   ASSERT_EQ(fake->commands.size(), 5u);
   for (const FalconCommand& c : fake->commands) {
     EXPECT_EQ(c.control, kFalconHoming | kFalconRed);
@@ -58,89 +58,89 @@ TEST_F(FalconSessionTest, HomingSetsItsBitInEveryPacketAndSendsNoForce) {
   EXPECT_EQ(session.homed(), 3);
 }
 
-TEST_F(FalconSessionTest, HomedIsBelievedInTheThirdFrame) {
-  say(kAt110, 7);
-  go(2);
+TEST_F(FalconSessionTest, HomedIsAcceptedAfterThreeFrames) {
+  set_frame(kAt110, 7);
+  run_cycles(2);
   EXPECT_EQ(session.pose().state, FalconState::homing);
-  go();
+  run_cycles();
   EXPECT_EQ(session.pose().state, FalconState::arming);
   EXPECT_TRUE(session.pose().valid);
   EXPECT_NEAR(session.pose().position_m.z, 0.110, 1e-4);
-  go();
+  run_cycles();
   EXPECT_EQ(fake->last().control, kFalconBlue);
 }
 
-TEST_F(FalconSessionTest, ForcesWaitUntilTheGripWasFullyOut) {
-  say(kAt110, 7);
-  go(10, {0, 0, 5});
+TEST_F(FalconSessionTest, ForcesStartOnlyAfterTheGripWasPulledOut) {
+  set_frame(kAt110, 7);
+  run_cycles(10, {0, 0, 5});
   EXPECT_EQ(session.pose().state, FalconState::arming);
   for (const FalconCommand& c : fake->commands) EXPECT_EQ(c.motors, FalconCounts{});
   // 169 mm is not enough
-  say({800, 800, 800}, 7);
-  go(2, {0, 0, 5});
+  set_frame({800, 800, 800}, 7);
+  run_cycles(2, {0, 0, 5});
   EXPECT_EQ(session.pose().state, FalconState::arming);
   EXPECT_EQ(fake->last().motors, FalconCounts{});
-  say(kAt175, 7);
-  go(2, {0, 0, 5});
+  set_frame(kAt175, 7);
+  run_cycles(2, {0, 0, 5});
   EXPECT_EQ(session.pose().state, FalconState::ready);
   EXPECT_EQ(fake->last().control, kFalconGreen);
   EXPECT_LT(fake->last().motors[0], 0);
 }
 
-TEST_F(FalconSessionTest, AForceIsTheTorqueOfThePose) {
+TEST_F(FalconSessionTest, AForceGivesTheMotorTorqueOfThePose) {
   arm();
-  go(1, {0, 0, 1});
-  // 24.18 mN m a newton at 110 mm
+  run_cycles(1, {0, 0, 1});
+  // 24.18 mN m per newton at 110 mm
   for (const std::int16_t motor : fake->last().motors) EXPECT_NEAR(motor, -242, 1);
-  go(1, {0, 0, 1}, false);
+  run_cycles(1, {0, 0, 1}, false);
   EXPECT_EQ(fake->last().motors, FalconCounts{});
   EXPECT_EQ(fake->last().control, kFalconBlue);
 }
 
 TEST_F(FalconSessionTest, AForceBeyondTheMotorsIsClampedAndCounted) {
   arm();
-  go(1, {0, 0, 16});
+  run_cycles(1, {0, 0, 16});
   EXPECT_EQ(counters.saturated, 0u);
-  go(1, {0, 0, 1000});
+  run_cycles(1, {0, 0, 1000});
   EXPECT_EQ(fake->last().motors, (FalconCounts{-4095, -4095, -4095}));
   EXPECT_EQ(counters.saturated, 1u);
 }
 
-TEST_F(FalconSessionTest, OneFrameThatIsNotHomedStopsTheForceForACycle) {
+TEST_F(FalconSessionTest, OneUnhomedFrameStopsTheForceForACycle) {
   arm();
-  say(kAt110, 5);
-  go(1, {0, 0, 1});
+  set_frame(kAt110, 5);
+  run_cycles(1, {0, 0, 1});
   EXPECT_EQ(session.pose().state, FalconState::homing);
-  say(kAt110, 7);
-  go(1, {0, 0, 1});
+  set_frame(kAt110, 7);
+  run_cycles(1, {0, 0, 1});
   EXPECT_EQ(fake->last().motors, FalconCounts{});
   EXPECT_EQ(session.pose().state, FalconState::ready);
-  go(1, {0, 0, 1});
+  run_cycles(1, {0, 0, 1});
   EXPECT_NE(fake->last().motors, FalconCounts{});
 }
 
 TEST_F(FalconSessionTest, HomingLostForThreeFramesMustBeArmedAgain) {
   arm();
-  say(kAt110, 5);
-  go(3);
-  say(kAt110, 7);
-  go(10, {0, 0, 1});
+  set_frame(kAt110, 5);
+  run_cycles(3);
+  set_frame(kAt110, 7);
+  run_cycles(10, {0, 0, 1});
   EXPECT_EQ(session.pose().state, FalconState::arming);
   EXPECT_EQ(fake->last().motors, FalconCounts{});
 }
 
-TEST_F(FalconSessionTest, AJumpIsBelievedOnlyWhenTheNextFrameAgrees) {
+TEST_F(FalconSessionTest, AJumpIsAcceptedOnlyIfTheNextFrameConfirmsIt) {
   arm();
   const Vec3 before = session.pose().position_m;
-  say({900, 900, 900}, 7);
-  go(1, {0, 0, 1});
+  set_frame({900, 900, 900}, 7);
+  run_cycles(1, {0, 0, 1});
   EXPECT_FALSE(session.pose().valid);
   EXPECT_EQ(session.pose().position_m, before);
   EXPECT_EQ(counters.jumps, 1u);
-  say(kAt110, 7);
-  go(1, {0, 0, 1});
-  EXPECT_EQ(fake->last().motors, FalconCounts{});  // no force at a place that is not believed
-  go();
+  set_frame(kAt110, 7);
+  run_cycles(1, {0, 0, 1});
+  EXPECT_EQ(fake->last().motors, FalconCounts{});  // no force at a position that is not accepted
+  run_cycles();
   EXPECT_TRUE(session.pose().valid);
   EXPECT_EQ(session.pose().position_m, before);
 }
@@ -150,11 +150,11 @@ TEST_F(FalconSessionTest, OutOfReachHoldsThePositionAndStopsTheForce) {
   const Vec3 before = session.pose().position_m;
   for (const int step : {-1500, -2400, -3300, -4200}) {
     const auto e = static_cast<std::int16_t>(step);
-    say({e, e, e}, 7);
-    go(1, {0, 0, 1});
+    set_frame({e, e, e}, 7);
+    run_cycles(1, {0, 0, 1});
   }
-  say({-4200, -4200, -4200}, 7);
-  go(2, {0, 0, 1});
+  set_frame({-4200, -4200, -4200}, 7);
+  run_cycles(2, {0, 0, 1});
   EXPECT_FALSE(session.pose().valid);
   EXPECT_GT(counters.out_of_reach, 0u);
   EXPECT_EQ(fake->last().motors, FalconCounts{});
@@ -169,8 +169,8 @@ TEST_F(FalconSessionTest, SplitJoinedAndGarbledFramesAreRead) {
   fake->garbage_before_frame = {'<', 'A', 0xFF};
   for (int i = 0; i < 200; ++i) {
     const auto e = static_cast<std::int16_t>(kAt110[0] + i);
-    say({e, e, e}, 7, i & 15);
-    ASSERT_EQ(go(), Cycle::frame) << i;
+    set_frame({e, e, e}, 7, i & 15);
+    ASSERT_EQ(run_cycles(), Cycle::frame) << i;
     ASSERT_EQ(session.pose().encoders[1], e);
     ASSERT_EQ(session.pose().buttons, static_cast<unsigned>(i & 15));
   }
@@ -179,38 +179,38 @@ TEST_F(FalconSessionTest, SplitJoinedAndGarbledFramesAreRead) {
   EXPECT_EQ(counters.bad_cycles, 0u);
 }
 
-TEST_F(FalconSessionTest, SilenceTimeOutsAndStallsAreNoFrameAndNoLoss) {
+TEST_F(FalconSessionTest, SilenceTimeoutsAndStallsGiveNoFrameAndNoLoss) {
   arm();
   fake->ignores_commands = true;
-  EXPECT_EQ(go(), Cycle::no_frame);
+  EXPECT_EQ(run_cycles(), Cycle::no_frame);
   fake->ignores_commands = false;
   fake->read_faults = {UsbError::timeout};
-  EXPECT_EQ(go(), Cycle::no_frame);
-  EXPECT_EQ(go(), Cycle::frame);
+  EXPECT_EQ(run_cycles(), Cycle::no_frame);
+  EXPECT_EQ(run_cycles(), Cycle::frame);
   fake->read_faults = {UsbError::stall};
   fake->write_faults = {UsbError::stall};
-  EXPECT_EQ(go(), Cycle::frame);
+  EXPECT_EQ(run_cycles(), Cycle::frame);
   EXPECT_EQ(fake->in_halt_clears, 1);
   EXPECT_EQ(fake->out_halt_clears, 1);
   fake->read_faults = {UsbError::stall, UsbError::stall};
-  EXPECT_EQ(go(), Cycle::no_frame);
-  EXPECT_EQ(go(), Cycle::frame);
+  EXPECT_EQ(run_cycles(), Cycle::no_frame);
+  EXPECT_EQ(run_cycles(), Cycle::frame);
   EXPECT_EQ(counters.bad_cycles, 3u);
   EXPECT_EQ(counters.ftdi.timeouts, 1u);
 }
 
-TEST_F(FalconSessionTest, UnplugIsGone) {
+TEST_F(FalconSessionTest, AnUnplugIsReportedAsGone) {
   arm();
   fake->is_plugged = false;
-  EXPECT_EQ(go(), Cycle::disconnected);
+  EXPECT_EQ(run_cycles(), Cycle::disconnected);
   fake->is_plugged = true;
   fake->read_faults = {UsbError::disconnected};
-  EXPECT_EQ(go(), Cycle::disconnected);
+  EXPECT_EQ(run_cycles(), Cycle::disconnected);
 }
 
-TEST_F(FalconSessionTest, LeavingSendsZeroWithTheLightsOff) {
+TEST_F(FalconSessionTest, ShutdownSendsZeroWithTheLightsOff) {
   arm();
-  go(1, {0, 0, 5});
+  run_cycles(1, {0, 0, 5});
   session.send_shutdown();
   EXPECT_EQ(fake->last().motors, FalconCounts{});
   EXPECT_EQ(fake->last().control, 0);

@@ -36,10 +36,10 @@ struct FalconDevice : testing::Test {
     falcon = std::move(*opened);
     return "";
   }
-  void say(const FalconCounts& encoders, int homed) {
+  void set_frame(const FalconCounts& encoders, int homed) {
     fake->with_lock([&](test::FakeFalcon& f) { f.frame = {encoders, 0, static_cast<std::uint8_t>(homed), 'A'}; });
   }
-  // until it holds; a test that waits a minute fails
+  // waits until `holds` returns true; false after a minute
   template <class F>
   bool eventually(F holds) {
     for (int i = 0; i < 60000; ++i) {
@@ -48,65 +48,65 @@ struct FalconDevice : testing::Test {
     }
     return false;
   }
-  bool cycles(std::uint64_t n) {
+  bool wait_for_cycles(std::uint64_t n) {
     const std::uint64_t from = falcon->stats().cycles;
     return eventually([&] { return falcon->stats().cycles >= from + n; });
   }
-  bool becomes(FalconState state) {
+  bool wait_for_state(FalconState state) {
     return eventually([&] { return falcon->state() == state; });
   }
   void arm() {
     ASSERT_EQ(open(), "");
-    say(kAt175, 7);
-    ASSERT_TRUE(becomes(FalconState::ready));
-    say({400, 400, 400}, 7);
-    ASSERT_TRUE(cycles(3));
-    say(kAt110, 7);
-    ASSERT_TRUE(cycles(3));
+    set_frame(kAt175, 7);
+    ASSERT_TRUE(wait_for_state(FalconState::ready));
+    set_frame({400, 400, 400}, 7);
+    ASSERT_TRUE(wait_for_cycles(3));
+    set_frame(kAt110, 7);
+    ASSERT_TRUE(wait_for_cycles(3));
   }
 };
 
-TEST_F(FalconDevice, HomesArmsAndTellsThePersonWhatToDo) {
-  say(kAt110, 1);
+TEST_F(FalconDevice, HomesArmsAndInstructsTheUser) {
+  set_frame(kAt110, 1);
   ASSERT_EQ(open(), "");
-  ASSERT_TRUE(cycles(3));
+  ASSERT_TRUE(wait_for_cycles(3));
   EXPECT_EQ(falcon->read().status, DeviceStatus::starting);
   EXPECT_FALSE(falcon->read().forces_on);
   EXPECT_EQ(falcon->status_text(), "Falcon: pull the grip fully out, then push it in (homed: 1 of 3 axes)");
-  say(kAt110, 7);
-  ASSERT_TRUE(becomes(FalconState::arming));
+  set_frame(kAt110, 7);
+  ASSERT_TRUE(wait_for_state(FalconState::arming));
   DeviceInput input = falcon->read();
   EXPECT_EQ(input.status, DeviceStatus::ready);
   EXPECT_FALSE(input.forces_on);
   EXPECT_NEAR(input.position_m.z, 0.110, 1e-4);
   EXPECT_NE(falcon->status_text().find("fully out once"), std::string::npos);
-  say(kAt175, 7);
-  ASSERT_TRUE(becomes(FalconState::ready));
-  ASSERT_TRUE(cycles(2));
+  set_frame(kAt175, 7);
+  ASSERT_TRUE(wait_for_state(FalconState::ready));
+  ASSERT_TRUE(wait_for_cycles(2));
   input = falcon->read();
   EXPECT_TRUE(input.forces_on);
   EXPECT_GT(input.position_m.z, 0.170);
   EXPECT_EQ(falcon->status_text(), "");
 }
 
-TEST_F(FalconDevice, ForceReachesTheMotorsAndStopsWithoutFreshOrders) {
+TEST_F(FalconDevice, ForceReachesTheMotorsAndStopsWithoutNewCommands) {
   arm();
   falcon->write({{0, 0, 1}, Vec3(0.0)});
   ASSERT_TRUE(eventually([&] { return fake->last().motors[0] == -242 || fake->last().motors[0] == -241; }));
   EXPECT_EQ(fake->last().control, kFalconGreen);
   EXPECT_EQ(falcon->stats().stale_commands, 0u);
-  // the servo's clock goes on by less, then by more than 20 ms
+  // the servo's clock advances by less, then by more than the timeout of 20 ms
   fake_now_ns += 19000000;
-  ASSERT_TRUE(cycles(3));
+  ASSERT_TRUE(wait_for_cycles(3));
   EXPECT_NE(fake->last().motors, FalconCounts{});
   fake_now_ns += 2000000;
-  ASSERT_TRUE(cycles(3));
+  ASSERT_TRUE(wait_for_cycles(3));
   EXPECT_EQ(fake->last().motors, FalconCounts{});
   EXPECT_EQ(fake->last().control, kFalconBlue);
   EXPECT_EQ(falcon->stats().stale_commands, 1u);
 }
 
-TEST_F(FalconDevice, AnOrderThatWasLetGoIsToldSoThatTheForceRampsIn) {
+TEST_F(FalconDevice, AnExpiredCommandIsReportedAsLostSoThatTheForceRampsIn) {
   arm();
   EXPECT_EQ(falcon->read().status, DeviceStatus::ready);
   falcon->write({{0, 0, 1}, Vec3(0.0)});
@@ -114,15 +114,15 @@ TEST_F(FalconDevice, AnOrderThatWasLetGoIsToldSoThatTheForceRampsIn) {
   EXPECT_EQ(falcon->read().status, DeviceStatus::ready) << "the motors still have it";
   falcon->write({{0, 0, 1}, Vec3(0.0)});
   fake_now_ns += 25000000;
-  ASSERT_TRUE(cycles(3));
+  ASSERT_TRUE(wait_for_cycles(3));
   EXPECT_EQ(fake->last().motors, FalconCounts{});
   EXPECT_EQ(falcon->read().status, DeviceStatus::lost) << "zero meanwhile: a force that comes back at once would be a kick";
   falcon->write({Vec3(0.0), Vec3(0.0)});
-  ASSERT_TRUE(cycles(3));
+  ASSERT_TRUE(wait_for_cycles(3));
   EXPECT_EQ(falcon->read().status, DeviceStatus::ready);
 }
 
-TEST_F(FalconDevice, ADeviceThatSaysNothingGetsZeroBeforeItsLineIsSetUpAgain) {
+TEST_F(FalconDevice, ASilentDeviceGetsZeroBeforeItsLineIsReset) {
   options.lost_after_cycles = 1000000;
   arm();
   falcon->write({{0, 0, 1}, Vec3(0.0)});
@@ -132,7 +132,7 @@ TEST_F(FalconDevice, ADeviceThatSaysNothingGetsZeroBeforeItsLineIsSetUpAgain) {
   ASSERT_TRUE(eventually([&] { return fake->with_lock([&](test::FakeFalcon& f) { return f.controls.size() > requests; }); }));
   EXPECT_EQ(fake->last().motors, FalconCounts{});
   EXPECT_EQ(falcon->read().status, DeviceStatus::lost) << "so that the force ramps in";
-  ASSERT_TRUE(cycles(5));
+  ASSERT_TRUE(wait_for_cycles(5));
   EXPECT_EQ(fake->last().motors, FalconCounts{}) << "no frame, no force";
   fake->with_lock([](test::FakeFalcon& f) { f.ignores_commands = false; });
   falcon->write({{0, 0, 1}, Vec3(0.0)});
@@ -144,7 +144,7 @@ TEST_F(FalconDevice, TheDestructorDoesNotWaitForADeviceThatDoesNotBoot) {
   options.firmware = fake->image;
   arm();
   fake->with_lock([](test::FakeFalcon& f) { f.is_plugged = false; });
-  ASSERT_TRUE(becomes(FalconState::absent));
+  ASSERT_TRUE(wait_for_state(FalconState::absent));
   fake->with_lock([](test::FakeFalcon& f) {
     f.firmware_is_running = false;
     f.ignored_handshakes = 1000000;
@@ -157,20 +157,20 @@ TEST_F(FalconDevice, TheDestructorDoesNotWaitForADeviceThatDoesNotBoot) {
   EXPECT_LE(fake->handshake_count, before + 10) << "of a hundred";
 }
 
-TEST_F(FalconDevice, StopIsZeroUntilResumeAndNothingOldComesBack) {
+TEST_F(FalconDevice, StopGivesZeroUntilANewCommandAfterResume) {
   arm();
   falcon->write({{0, 0, 1}, Vec3(0.0)});
   ASSERT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
   std::thread([&] { falcon->stop(); }).join();
-  ASSERT_TRUE(cycles(3));
+  ASSERT_TRUE(wait_for_cycles(3));
   EXPECT_EQ(fake->last().motors, FalconCounts{});
   falcon->write({{0, 0, 2}, Vec3(0.0)});
-  ASSERT_TRUE(cycles(3));
+  ASSERT_TRUE(wait_for_cycles(3));
   EXPECT_EQ(fake->last().motors, FalconCounts{});
   EXPECT_NE(falcon->status_text().find("stopped"), std::string::npos);
   const std::size_t before = fake->with_lock([](test::FakeFalcon& f) { return f.commands.size(); });
   falcon->resume();
-  ASSERT_TRUE(cycles(3));
+  ASSERT_TRUE(wait_for_cycles(3));
   fake->with_lock([&](test::FakeFalcon& f) {
     for (std::size_t i = before; i < f.commands.size(); ++i) EXPECT_EQ(f.commands[i].motors, FalconCounts{});
   });
@@ -178,16 +178,16 @@ TEST_F(FalconDevice, StopIsZeroUntilResumeAndNothingOldComesBack) {
   EXPECT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
 }
 
-TEST(FalconTimeout, ASlowServoIsNotASilentOne) {
+TEST(FalconTimeout, TheCommandTimeoutGrowsForASlowServo) {
   EXPECT_EQ(falcon_command_timeout_s(1000), 0.02);
   EXPECT_EQ(falcon_command_timeout_s(4000), 0.02);
   EXPECT_DOUBLE_EQ(falcon_command_timeout_s(100), 0.04);
 }
 
-TEST_F(FalconDevice, AForceThatIsNoNumberIsZero) {
+TEST_F(FalconDevice, ANonFiniteForceGivesZero) {
   arm();
   falcon->write({Vec3(std::numeric_limits<double>::quiet_NaN()), Vec3(0.0)});
-  ASSERT_TRUE(cycles(3));
+  ASSERT_TRUE(wait_for_cycles(3));
   EXPECT_EQ(fake->last().motors, FalconCounts{});
 }
 
@@ -200,50 +200,50 @@ TEST_F(FalconDevice, TheDestructorSendsZeroWithTheLightsOff) {
   EXPECT_EQ(fake->last().control, 0);
 }
 
-TEST_F(FalconDevice, UnpluggedIsLostAndComesBackThroughBootHomingAndArming) {
+TEST_F(FalconDevice, AnUnpluggedDeviceIsLostAndReturnsAfterBootHomingAndArming) {
   options.firmware = fake->image;
   arm();
   fake->with_lock([](test::FakeFalcon& f) { f.is_plugged = false; });
-  ASSERT_TRUE(becomes(FalconState::absent));
+  ASSERT_TRUE(wait_for_state(FalconState::absent));
   const DeviceInput held = falcon->read();
   EXPECT_EQ(held.status, DeviceStatus::lost);
   EXPECT_FALSE(held.forces_on);
   EXPECT_NEAR(held.position_m.z, 0.110, 1e-4);
   EXPECT_TRUE(eventually([&] { return falcon->status_text().find("not on the USB bus") != std::string::npos; }));
-  // power was gone: the firmware too
+  // the power was off, so that the firmware is lost
   fake->with_lock([](test::FakeFalcon& f) {
     f.firmware_is_running = false;
     f.frame = {kAt110, 0, 0, 'A'};
     f.is_plugged = true;
   });
-  ASSERT_TRUE(becomes(FalconState::homing));
-  ASSERT_TRUE(cycles(3));
+  ASSERT_TRUE(wait_for_state(FalconState::homing));
+  ASSERT_TRUE(wait_for_cycles(3));
   EXPECT_EQ(falcon->read().status, DeviceStatus::starting);
   EXPECT_EQ(falcon->stats().uploads, 1u);
   EXPECT_EQ(falcon->stats().disconnects, 1u);
   EXPECT_EQ(falcon->stats().reconnects, 1u);
-  say(kAt110, 7);
-  ASSERT_TRUE(becomes(FalconState::arming));
+  set_frame(kAt110, 7);
+  ASSERT_TRUE(wait_for_state(FalconState::arming));
   falcon->write({{0, 0, 1}, Vec3(0.0)});
-  ASSERT_TRUE(cycles(3));
+  ASSERT_TRUE(wait_for_cycles(3));
   EXPECT_EQ(fake->last().motors, FalconCounts{});
-  say(kAt175, 7);
-  ASSERT_TRUE(becomes(FalconState::ready));
+  set_frame(kAt175, 7);
+  ASSERT_TRUE(wait_for_state(FalconState::ready));
   falcon->write({{0, 0, 1}, Vec3(0.0)});
   EXPECT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
 }
 
-TEST_F(FalconDevice, ASilentDeviceIsLostAndOpenedAgain) {
+TEST_F(FalconDevice, ASilentDeviceIsLostAndReopened) {
   arm();
   fake->with_lock([](test::FakeFalcon& f) { f.ignores_commands = true; });
   ASSERT_TRUE(eventually([&] { return falcon->stats().disconnects == 1; }));
   EXPECT_GE(falcon->stats().bad_cycles, 10u);
   fake->with_lock([](test::FakeFalcon& f) { f.ignores_commands = false; });
-  ASSERT_TRUE(becomes(FalconState::arming));
+  ASSERT_TRUE(wait_for_state(FalconState::arming));
   EXPECT_GE(fake->with_lock([](test::FakeFalcon& f) { return f.open_count; }), 2);
 }
 
-TEST_F(FalconDevice, APoseThatGetsOldIsLost) {
+TEST_F(FalconDevice, AnOldPoseIsReportedAsLost) {
   arm();
   EXPECT_EQ(falcon->read().status, DeviceStatus::ready);
   fake->block_reads = true;
@@ -268,7 +268,7 @@ TEST_F(FalconDevice, ReadAndWriteNeverAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-TEST_F(FalconDevice, OpeningErrorsSayWhatToDo) {
+TEST_F(FalconDevice, OpeningErrorsNameTheRemedy) {
   fake->is_plugged = false;
   EXPECT_NE(open().find("not on the USB bus"), std::string::npos);
   fake->is_plugged = true;
@@ -279,7 +279,7 @@ TEST_F(FalconDevice, OpeningErrorsSayWhatToDo) {
   EXPECT_EQ(falcon->stats().uploads, 1u);
 }
 
-TEST_F(FalconDevice, ReadsAndOrdersFromAnotherThreadWhileItComesAndGoes) {
+TEST_F(FalconDevice, ConcurrentReadsAndWritesDuringUnplugsAndReturns) {
   options.clock = now_ns;
   arm();
   std::atomic<bool> end{false};
@@ -293,10 +293,10 @@ TEST_F(FalconDevice, ReadsAndOrdersFromAnotherThreadWhileItComesAndGoes) {
   });
   for (int round = 0; round < 5; ++round) {
     fake->with_lock([](test::FakeFalcon& f) { f.is_plugged = false; });
-    EXPECT_TRUE(becomes(FalconState::absent));
+    EXPECT_TRUE(wait_for_state(FalconState::absent));
     falcon->stop();
     fake->with_lock([](test::FakeFalcon& f) { f.is_plugged = true; });
-    EXPECT_TRUE(becomes(FalconState::arming));
+    EXPECT_TRUE(wait_for_state(FalconState::arming));
     falcon->status_text();
   }
   end = true;
@@ -304,7 +304,7 @@ TEST_F(FalconDevice, ReadsAndOrdersFromAnotherThreadWhileItComesAndGoes) {
   EXPECT_EQ(falcon->stats().reconnects, 5u);
 }
 
-TEST(FalconRegistry, IsKnownListedAndRefusedWithAReason) {
+TEST(FalconRegistry, IsListedAndRefusedWithAReason) {
   EXPECT_TRUE(is_device_type("falcon"));
   const DeviceCapabilities c = nominal_capabilities("falcon");
   EXPECT_EQ(c.name, "Novint Falcon");

@@ -9,7 +9,7 @@
 namespace catena::haptics {
 namespace mouse_test {
 
-TEST(Mouse, BeginsWhereItIsPut) {
+TEST(Mouse, StartsAtTheGivenPosition) {
   MouseDevice mouse({1.0, 2.0, 3.0});
   const DeviceInput input = mouse.read();
   EXPECT_EQ(input.position_m, Vec3(1.0, 2.0, 3.0));
@@ -18,7 +18,7 @@ TEST(Mouse, BeginsWhereItIsPut) {
   EXPECT_FALSE(input.is_recorded);
 }
 
-TEST(Mouse, WithoutSmoothingTheNewestPlaceCounts) {
+TEST(Mouse, WithoutSmoothingTheNewestPositionIsUsed) {
   MouseDevice mouse(Vec3(0.0), {0, 1000});
   mouse.move_to({1.0, 0.0, 0.0}, 1);
   mouse.move_to({2.0, 0.0, 0.0}, 3);
@@ -26,7 +26,7 @@ TEST(Mouse, WithoutSmoothingTheNewestPlaceCounts) {
   EXPECT_EQ(mouse.read().buttons, 3u);
 }
 
-TEST(Mouse, MotionIsEasedByTheTimeConstant) {
+TEST(Mouse, MotionIsSmoothedByTheTimeConstant) {
   MouseDevice mouse(Vec3(0.0), {0.02, 1000});
   mouse.move_to({1.0, 0.0, 0.0}, 0);
   double last = 0;
@@ -38,18 +38,18 @@ TEST(Mouse, MotionIsEasedByTheTimeConstant) {
   }
   EXPECT_NEAR(last, 1 - std::exp(-1), 1e-12);
 
-  // and comes to rest exactly
+  // the position comes to rest exactly
   for (int k = 0; k < 1000; ++k) mouse.read();
   EXPECT_EQ(mouse.read().position_m, Vec3(1.0, 0.0, 0.0));
 }
 
-TEST(Mouse, ANonFinitePlaceIsIgnored) {
+TEST(Mouse, ANonFinitePositionIsIgnored) {
   MouseDevice mouse(Vec3(0.0), {0, 1000});
   mouse.move_to({std::nan(""), 0.0, 0.0}, 1);
   EXPECT_EQ(mouse.read().position_m, Vec3(0.0));
 }
 
-TEST(Mouse, ATurnIsEasedTheShorterWayAndComesToRest) {
+TEST(Mouse, ARotationIsSmoothedAlongTheShorterArcAndComesToRest) {
   MouseDevice mouse(Vec3(0.0), {0.02, 1000});
   const Quat target = rotation_from_vector({0, 0, 1.0});
   mouse.move_to(Vec3(0.0), 0, Quat(-target.w, -target.x, -target.y, -target.z));  // the same rotation
@@ -66,7 +66,7 @@ TEST(Mouse, ATurnIsEasedTheShorterWayAndComesToRest) {
   for (int k = 0; k < 10; ++k) EXPECT_EQ(mouse.read().position_m, Vec3(0.0));
 }
 
-TEST(Mouse, PlacesAreNeverTornBetweenThreads) {
+TEST(Mouse, PositionsAreNeverTornBetweenThreads) {
   MouseDevice mouse(Vec3(0.0), {0, 1000});
   constexpr int kMoves = 20000;
   std::thread frame([&] {

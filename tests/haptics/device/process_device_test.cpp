@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A device in a process of its own: what becomes of the force when the program is killed, seen from outside.
+// A device in a separate process: the force after the program is killed or stopped, observed from outside.
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/mount.h>
@@ -48,8 +48,8 @@ Forces forces_in(const std::string& path) {
   return forces;
 }
 
-/// Waits at most half a minute.
-bool comes(const std::function<bool()>& condition) {
+/// Waits up to 30 s for a condition.
+bool wait_until(const std::function<bool()>& condition) {
   for (int k = 0; k < 3000; ++k) {
     if (condition()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -57,8 +57,8 @@ bool comes(const std::function<bool()>& condition) {
   return false;
 }
 
-/// Pushes with 1 N once the emulated hand has homed and armed the device; never ends by itself.
-[[noreturn]] void push_for_ever(const std::string& table) {
+/// Commands 1 N, effective once the emulated hand has homed and armed the device; never returns.
+[[noreturn]] void push_forever(const std::string& table) {
   auto device = open_in_process("emulated-falcon:still", table, {});
   if (!device) _exit(1);
   for (;;) {
@@ -75,12 +75,12 @@ TEST(ProcessDevice, TheForceIsZeroAfterTheProgramIsKilledOrStopped) {
     const test::TemporaryFolder folder;
     const std::string table = folder / "t.csv";
     const pid_t program = fork();
-    if (program == 0) push_for_ever(table);
-    ASSERT_TRUE(comes([&] { return test::exists(table) && forces_in(table).last_push_s > 0; })) << "the emulated hand arms in 3 s";
+    if (program == 0) push_forever(table);
+    ASSERT_TRUE(wait_until([&] { return test::exists(table) && forces_in(table).last_push_s > 0; })) << "the emulated hand arms in 3 s";
     const double before_s = forces_in(table).last_push_s;
     kill(program, signal_number);
-    // 10 rows of zero at least: the process goes on for 100 ms
-    EXPECT_TRUE(comes([&] {
+    // at least 10 rows of zero: the process runs on for 100 ms
+    EXPECT_TRUE(wait_until([&] {
       const Forces now = forces_in(table);
       return now.last_s > now.last_push_s + 0.05;
     }));
@@ -93,7 +93,7 @@ TEST(ProcessDevice, TheForceIsZeroAfterTheProgramIsKilledOrStopped) {
   }
 }
 
-TEST(ProcessDevice, ADeviceThatIsNoneAndATableThatCannotBeAreSaid) {
+TEST(ProcessDevice, AnUnknownDeviceAndAnUnwritableTableAreErrors) {
   const auto none = open_in_process("emulated-falcon:nonsense", "", {});
   ASSERT_FALSE(none);
   EXPECT_NE(none.error().message.find("emulated-falcon:still"), std::string::npos) << none.error().message;
@@ -110,7 +110,7 @@ TEST(ProcessDevice, ADeviceThatIsNoneAndATableThatCannotBeAreSaid) {
   }
 }
 
-/// The exit code of `work` in a process whose `folder` is a disk of so many KiB; 255: none can be made here.
+/// The exit code of `work` in a process whose `folder` is a disk of `kib` KiB; 255 if no such disk can be mounted.
 int on_small_disk(const std::string& folder, int kib, const std::function<int()>& work) {
   const pid_t child = fork();
   if (child == 0) {
@@ -123,7 +123,7 @@ int on_small_disk(const std::string& folder, int kib, const std::function<int()>
   return WIFEXITED(status) ? WEXITSTATUS(status) : 254;
 }
 
-TEST(ProcessDevice, AFullDiskIsSaidBeforeTheHandStartsAndLosesNoZero) {
+TEST(ProcessDevice, AFullDiskIsReportedAndTheFinalZerosAreWritten) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "t.csv";
   const int at_first = on_small_disk(folder.path(), 16, [&] {
@@ -133,7 +133,7 @@ TEST(ProcessDevice, AFullDiskIsSaidBeforeTheHandStartsAndLosesNoZero) {
   });
   if (at_first == 255) GTEST_SKIP() << "only root can make a small disk";
   EXPECT_EQ(at_first, 0);
-  // 1.2 MB of 2 MB of rows fit
+  // the disk holds 1.2 MB of the 2 MB of rows
   const int later = on_small_disk(folder.path(), 1200, [&] {
     std::atomic<int> error{0};
     {

@@ -11,7 +11,7 @@ namespace recorded_path_test {
 using namespace catena;
 using namespace catena::haptics;
 
-TEST(RecordedPath, PlaysItsFileAndStaysAtTheEnd) {
+TEST(RecordedPath, PlaysItsFileAndHoldsTheLastPose) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "p.csv", "t,x,y,z,buttons,qw,qx,qy,qz\n0,1,2,3,0,1,0,0,0\n0.5,4,5,6,3,0,0,0,1\n");
   auto opened = open_device("recorded:" + (folder / "p.csv"), {});
@@ -32,7 +32,7 @@ TEST(RecordedPath, PlaysItsFileAndStaysAtTheEnd) {
   }
 }
 
-TEST(RecordedPath, SaysWhatIsWrongWithItsFile) {
+TEST(RecordedPath, ReportsErrorsOfItsFile) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "p.csv", "t,x,y,z\n0,1,2,3\n0,1,2,3\n");
   EXPECT_NE(open_device("recorded:" + (folder / "p.csv"), {}).error().message.find("p.csv:3:"), std::string::npos);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A device that says what the test says and remembers what it was told.
+/// A device whose input is set by the test and whose last output is recorded.
 #pragma once
 #include "haptics/device/device.h"
 

@@ -9,7 +9,7 @@
 #include "haptics/device/registry.h"
 #include "tests/support/support.h"
 
-namespace simulated_hand_test {
+namespace simulated_device_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -20,7 +20,7 @@ SimulatedDeviceParameters bare() {
   return p;
 }
 
-TEST(Mechanism, OneStepIsTheClosedForm) {
+TEST(Mechanism, OneStepMatchesTheClosedForm) {
   // mass and damper
   const double m = 0.159, b = 0.7, t = 3e-3, e = std::exp(-b * t / m);
   LinearStep s = make_linear_step(m, b, 0, t);
@@ -32,14 +32,14 @@ TEST(Mechanism, OneStepIsTheClosedForm) {
   s = make_linear_step(m, 0, 0, t);
   EXPECT_DOUBLE_EQ(s.x_from_u, 0.5 * t * t / m);
   EXPECT_DOUBLE_EQ(s.v_from_u, t / m);
-  // with a spring, many periods long
+  // with a spring, over many periods
   const double k = 800, w = std::sqrt(k / m - b * b / (4 * m * m)), d = std::exp(-b * 0.5 / (2 * m));
   s = make_linear_step(m, b, k, 0.5);
   EXPECT_NEAR(s.x_from_v, d * std::sin(w * 0.5) / w, 1e-12);
   EXPECT_NEAR(s.x_from_u, (1 - d * (std::cos(w * 0.5) + b / (2 * m * w) * std::sin(w * 0.5))) / k, 1e-12);
 }
 
-TEST(Mechanism, FrictionHoldsAMassAtRestToTheBit) {
+TEST(Mechanism, FrictionHoldsAMassAtRestExactly) {
   const LinearStep s = make_linear_step(0.15, 0.5, 300, 1e-3);
   MassState state{{0.1, 0.2, 0.3}, Vec3(0.0)};
   for (int i = 0; i < 1000; ++i) advance_mass(s, {0.06, 0.05, -0.06}, 0.1, state);
@@ -49,7 +49,7 @@ TEST(Mechanism, FrictionHoldsAMassAtRestToTheBit) {
   EXPECT_GT(norm(state.velocity_m_per_s), 0);
 }
 
-TEST(Mechanism, FrictionStopsASlidingMassWhereItShould) {
+TEST(Mechanism, FrictionStopsASlidingMassAtTheExactDistance) {
   // m v^2 / 2 = f_c x, in any direction
   for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0.6, 0, -0.8)}) {
     const LinearStep s = make_linear_step(0.2, 0, 0, 1e-4);
@@ -73,7 +73,7 @@ TEST(SimulatedDevice, AHeldForceGivesTheExactSampledSystem) {
   }
 }
 
-TEST(SimulatedDevice, ADelayOfWholePeriodsAndPartsOfOne) {
+TEST(SimulatedDevice, ADelayMayBeFractionalPeriods) {
   for (const double delay : {0.0, 0.4, 1.0, 2.7, 62.0}) {
     SimulatedDeviceParameters p = bare();
     p.delay_s = delay * 1e-3;
@@ -105,9 +105,9 @@ TEST(SimulatedDevice, MotorsSaturateAndEncodersRound) {
   EXPECT_GT(steps, 10);
 }
 
-TEST(SimulatedDevice, TremorHasTheStatedSizeAndTheSameBitsAgain) {
+TEST(SimulatedDevice, TremorHasTheStatedAmplitudeAndIsRepeatable) {
   SimulatedDeviceParameters p;
-  p.grip_stiffness_n_per_m = 1e6;  // a grip so tight that the pose is the wish
+  p.grip_stiffness_n_per_m = 1e6;  // a stiff grip, so that the pose equals the target
   p.grip_damping_ns_per_m = 800;
   p.tremor_m = 3e-4;
   SimulatedDevice a({{}}, p), b({{}}, p);
@@ -122,8 +122,8 @@ TEST(SimulatedDevice, TremorHasTheStatedSizeAndTheSameBitsAgain) {
   EXPECT_NEAR(std::sqrt(sum / 20000), 3e-4, 1e-5);
 }
 
-TEST(SimulatedDevice, StickSlipNeedsMoreThanTheFriction) {
-  // the grip's spring pulls slowly: the mass stays until k_h x = f_c
+TEST(SimulatedDevice, AMassSticksUntilTheForceExceedsTheFriction) {
+  // the grip's spring force rises slowly: the mass sticks until k_h x = f_c
   SimulatedDeviceParameters p;
   p.grip_stiffness_n_per_m = 200;
   p.grip_damping_ns_per_m = 0;
@@ -174,7 +174,7 @@ TEST(SimulatedDevice, FollowsAPathByName) {
   EXPECT_EQ((*opened)->capabilities().mechanics.damping_ns_per_m, 0.5);
 }
 
-TEST(SimulatedDevice, WhatIsWrongWithItsNameOrDelayIsSaid) {
+TEST(SimulatedDevice, AMissingPathAndATooLongDelayAreErrors) {
   DeviceSettings settings;
   const auto missing = open_device("simulated:no/such.csv", settings);
   ASSERT_FALSE(missing);
@@ -185,4 +185,4 @@ TEST(SimulatedDevice, WhatIsWrongWithItsNameOrDelayIsSaid) {
   EXPECT_NE(slow.error().message.find("delay"), std::string::npos);
 }
 
-}  // namespace simulated_hand_test
+}  // namespace simulated_device_test

@@ -23,7 +23,7 @@ SimulatedToolParameters alone() {
   return p;
 }
 
-/// The tick without a thread: what the servo does between a device and a program.
+/// The closed loop of device and program without the servo's thread.
 struct Loop {
   SimulatedTool tool;
   HapticProgram program;
@@ -31,7 +31,7 @@ struct Loop {
   ChainScratch scratch;
   HapticState out;
   std::uint64_t k = 0;
-  Loop(const SimulatedToolParameters& parameters, const Quat& wish) : tool(std::make_unique<NullDevice>(), {{0, wish}}, parameters) {}
+  Loop(const SimulatedToolParameters& parameters, const Quat& target) : tool(std::make_unique<NullDevice>(), {{0, target}}, parameters) {}
   void step() {
     const DeviceInput in = tool.read();
     tick(program, {1e-3 * static_cast<double>(k++), in.position_m, in.buttons, in.orientation}, state, scratch, out);
@@ -40,8 +40,8 @@ struct Loop {
   double energy(double inertia) const { return 0.5 * inertia * dot(tool.rate_rad_per_s(), tool.rate_rad_per_s()); }
 };
 
-TEST(SimulatedTool, FollowsItsPathTheShorterWay) {
-  const Quat a = rotation_from_vector({0, 0, 3.0}), b = rotation_from_vector({0, 0, -3.0});  // 0.28 rad apart through half a turn
+TEST(SimulatedTool, FollowsItsPathAlongTheShorterArc) {
+  const Quat a = rotation_from_vector({0, 0, 3.0}), b = rotation_from_vector({0, 0, -3.0});  // 0.28 rad apart across the angle pi
   SimulatedTool tool(std::make_unique<NullDevice>(), {{0, a}, {1, b}}, {});
   EXPECT_TRUE(tool.capabilities().has_orientation);
   double furthest = 0;
@@ -54,7 +54,7 @@ TEST(SimulatedTool, FollowsItsPathTheShorterWay) {
 }
 
 TEST(SimulatedTool, SettlesWhereTheGripBalancesTheAlignment) {
-  // the hand wants the tool's z turned by 0.6 away from the normal: k_h (0.6 - a) = kappa a
+  // the hand's target is rotated by 0.6 rad from the normal: k_h (0.6 - a) = kappa a
   Loop loop({}, rotation_from_vector({0.6, 0, 0}));
   loop.program.links = {test::axis_link("a", {0, 0, 1}, 0.25)};
   for (int k = 0; k < 4000; ++k) loop.step();
@@ -63,7 +63,7 @@ TEST(SimulatedTool, SettlesWhereTheGripBalancesTheAlignment) {
   EXPECT_LE(norm(loop.tool.rate_rad_per_s()), 1e-9);
 }
 
-TEST(SimulatedTool, AKickDiesOutBelowTheDerivedLimitAndGrowsAboveIt) {
+TEST(SimulatedTool, AKickDecaysBelowTheDerivedLimitAndGrowsAboveIt) {
   const SimulatedToolParameters parameters = alone();
   const double limit =
       safe_rotational_stiffness(SimulatedTool(std::make_unique<NullDevice>(), {{}}, parameters).capabilities().mechanics, 1e-3);
@@ -84,10 +84,10 @@ TEST(SimulatedTool, AKickDiesOutBelowTheDerivedLimitAndGrowsAboveIt) {
   };
   EXPECT_LT(growth(0.95 * limit, false), 0.7);
   EXPECT_GT(growth(1.1 * limit, false), 1.5);
-  EXPECT_LT(growth(10 * limit, true), 0.7);  // as the device's limit caps it
+  EXPECT_LT(growth(10 * limit, true), 0.7);  // the device's limit caps the stiffness
 }
 
-TEST(SimulatedTool, GivesNoMoreTorqueThanItCan) {
+TEST(SimulatedTool, LimitsItsTorque) {
   SimulatedToolParameters p = alone();
   p.max_torque_nm = 0.01;
   p.damping_nms_per_rad = 0;
@@ -103,8 +103,8 @@ TEST(SimulatedTool, GivesNoMoreTorqueThanItCan) {
   EXPECT_EQ(tool.rate_rad_per_s(), before);
 }
 
-TEST(SimulatedTool, TheServoTurnsOrientationAndTorqueWithTheWorkspace) {
-  // the same closed loop in a turned workspace: the tool ends in the same place of its own axes
+TEST(SimulatedTool, TheServoRotatesOrientationAndTorqueWithTheWorkspace) {
+  // the closed loop in a rotated workspace: the tool ends at the same orientation in device axes
   const auto end = [](const Quat& r) {
     auto program = std::make_shared<HapticProgram>();
     program->links = {test::axis_link("a", rotate(r, {0, 0, 1}), 0.25)};
@@ -124,7 +124,7 @@ TEST(SimulatedTool, TheServoTurnsOrientationAndTorqueWithTheWorkspace) {
   EXPECT_GT(norm(rotation_vector(plain)), 0.3);
 }
 
-TEST(SimulatedTool, RepeatsToTheBit) {
+TEST(SimulatedTool, IsRepeatableBitForBit) {
   const auto run = [] {
     Loop loop({}, rotation_from_vector({0.6, -0.2, 0.1}));
     loop.program.links = {test::axis_link("a", {0.1, 0, 1}, 0.25)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// spacenavd as libspnav sees it: an AF_UNIX stream of eight 32-bit words an event, after a greeting that newer daemons answer.
+/// An emulated spacenavd: an AF_UNIX stream of eight 32-bit words per event, after a greeting to which newer daemons reply.
 #pragma once
 #include <poll.h>
 #include <sys/socket.h>
@@ -34,7 +34,7 @@ class SpaceMouseDaemon {
   }
   bool is_listening() const { return is_listening_; }
 
-  /// Takes one connection; answers the greeting where it speaks the newer protocol. False: nobody came within 3 s.
+  /// Accepts one connection; replies to the greeting if `answers` (newer protocol). False: no connection within 3 s.
   bool accept_client(bool answers) {
     pollfd waiting{listener_, POLLIN, 0};
     if (poll(&waiting, 1, 3000) <= 0) return false;
@@ -42,7 +42,7 @@ class SpaceMouseDaemon {
     std::int32_t greeting = 0;
     if (recv(client_, &greeting, sizeof greeting, MSG_WAITALL) != sizeof greeting) return false;
     if (answers) return send(client_, &greeting, sizeof greeting, MSG_NOSIGNAL) == sizeof greeting;
-    float sensitivity = 0;  // an old one hears nothing but sensitivities
+    float sensitivity = 0;  // the old protocol accepts only sensitivities
     return recv(client_, &sensitivity, sizeof sensitivity, MSG_WAITALL) == sizeof sensitivity && sensitivity == 1.0f;
   }
   bool send_packet(const std::array<std::int32_t, 8>& packet, std::size_t first = 0, std::size_t bytes = 32) {

@@ -18,7 +18,7 @@ using namespace catena;
 using namespace catena::haptics;
 using test::SpaceMouseDaemon;
 
-// The tick reads until it sees what it waits for; at most 5 s.
+// Reads until `seen` returns true, for up to 5 s.
 template <class F>
 bool eventually(Device& device, const F& seen) {
   for (int k = 0; k < 5000; ++k) {
@@ -52,10 +52,10 @@ TEST(SpaceMouse, RatesHaveADeadZoneAndEndAtFullDeflection) {
   EXPECT_DOUBLE_EQ(rates.velocity_m_per_s.z, -parameters.speed_m_per_s);
   EXPECT_EQ(rates.turn_rad_per_s.x, 0);
   EXPECT_DOUBLE_EQ(rates.turn_rad_per_s.y, parameters.turn_rad_per_s / 300);
-  EXPECT_DOUBLE_EQ(rates.turn_rad_per_s.z, parameters.turn_rad_per_s);  // clamped, and turned to right-handed axes
+  EXPECT_DOUBLE_EQ(rates.turn_rad_per_s.z, parameters.turn_rad_per_s);  // clamped, and converted to right-handed axes
 }
 
-TEST(SpaceMouse, AxesAreThoseOfTheLibrarysOwnObjectMotion) {
+TEST(SpaceMouse, AxesMatchTheLibrarysObjectMotion) {
   SpaceMouseParameters parameters;
   parameters.dead_zone_counts = 0;
   for (int axis = 0; axis < 6; ++axis) {
@@ -76,7 +76,7 @@ TEST(SpaceMouse, AxesAreThoseOfTheLibrarysOwnObjectMotion) {
   }
 }
 
-TEST(SpaceMouse, WithoutADaemonItSaysWhatToDo) {
+TEST(SpaceMouse, WithoutADaemonTheErrorNamesTheRemedy) {
   unsetenv("SPNAV_SOCKET");
   if (SpaceMouse::is_daemon_available()) GTEST_SKIP() << "a spacenavd runs on this machine";
   const auto opened = open_device("spacemouse", {});
@@ -84,7 +84,7 @@ TEST(SpaceMouse, WithoutADaemonItSaysWhatToDo) {
   EXPECT_EQ(opened.error().message, "spacenavd is not running: install and start it (apt install spacenavd)");
 }
 
-TEST(SpaceMouse, SteersRatesThroughTheLibrary) {
+TEST(SpaceMouse, ControlsRatesThroughTheLibrary) {
   for (const bool newer : {true, false}) {
     Rig rig(newer);
     ASSERT_TRUE(rig.device);
@@ -92,12 +92,12 @@ TEST(SpaceMouse, SteersRatesThroughTheLibrary) {
     ASSERT_TRUE(rig.daemon->send_packet({SpaceMouseDaemon::motion, 350, 0, 0, 0, 0, 350, 16}));
     ASSERT_TRUE(rig.daemon->send_packet({SpaceMouseDaemon::press, 1, 0, 0, 0, 0, 0, 0}));
     ASSERT_TRUE(eventually(*rig.device, [](const DeviceInput& in) { return in.buttons == 2; }));
-    // full deflection: 0.1 m/s and -1.5 rad/s about z, a tick at a time
+    // full deflection: 0.1 m/s and -1.5 rad/s about z, per tick
     const DeviceInput a = rig.device->read(), b = rig.device->read();
     EXPECT_NEAR(b.position_m.x - a.position_m.x, 1e-4, 1e-15);
     const Vec3 turn = rotation_vector(b.orientation * glm::conjugate(a.orientation));
     EXPECT_NEAR(turn.z, -1.5e-3, 1e-12);
-    // the workspace ends
+    // the position is clamped to the workspace
     for (int k = 0; k < 3000; ++k) rig.device->read();
     EXPECT_EQ(rig.device->read().position_m, Vec3(0.1, 0, 0));
     ASSERT_TRUE(rig.daemon->send_packet({SpaceMouseDaemon::motion, 0, 0, 0, 0, 0, 0, 16}));
@@ -108,7 +108,7 @@ TEST(SpaceMouse, SteersRatesThroughTheLibrary) {
   }
 }
 
-TEST(SpaceMouse, APacketInPiecesIsOnePacketAndAStrangeOneIsNone) {
+TEST(SpaceMouse, ASplitPacketIsReassembledAndAnUnknownOneIgnored) {
   Rig rig;
   ASSERT_TRUE(rig.device);
   ASSERT_TRUE(rig.daemon->send_packet({77, 1, 2, 3, 4, 5, 6, 7}));
@@ -118,13 +118,13 @@ TEST(SpaceMouse, APacketInPiecesIsOnePacketAndAStrangeOneIsNone) {
   EXPECT_EQ(rig.device->read().position_m, Vec3(0.0));
   ASSERT_TRUE(rig.daemon->send_packet(right, 9, 23));
   EXPECT_TRUE(eventually(*rig.device, [](const DeviceInput& in) { return in.position_m.x > 1e-4; }));
-  // unplugged behind the daemon: what it held no longer counts
+  // the device is unplugged from the daemon: its last deflection is reset
   ASSERT_TRUE(rig.daemon->send_packet({SpaceMouseDaemon::device, 1, 0, 0, 0, 0, 0, 0}));
   double last = -1;
   EXPECT_TRUE(eventually(*rig.device, [&](const DeviceInput& in) { return std::exchange(last, in.position_m.x) == in.position_m.x; }));
 }
 
-TEST(SpaceMouse, ALostDaemonIsSaidAndComesBack) {
+TEST(SpaceMouse, ALostDaemonIsReportedAndReconnected) {
   Rig rig;
   ASSERT_TRUE(rig.device);
   ASSERT_TRUE(rig.daemon->send_packet({SpaceMouseDaemon::motion, 350, 0, 0, 0, 0, 0, 16}));
@@ -139,15 +139,15 @@ TEST(SpaceMouse, ALostDaemonIsSaidAndComesBack) {
   ASSERT_TRUE(rig.daemon->is_listening());
   ASSERT_TRUE(rig.daemon->accept_client(true));
   ASSERT_TRUE(eventually(*rig.device, [](const DeviceInput& in) { return in.status == DeviceStatus::ready; }));
-  EXPECT_EQ(rig.device->read().position_m, rest);  // no deflection is remembered
+  EXPECT_EQ(rig.device->read().position_m, rest);  // the last deflection is reset
   ASSERT_TRUE(rig.daemon->send_packet({SpaceMouseDaemon::motion, -350, 0, 0, 0, 0, 0, 16}));
   EXPECT_TRUE(eventually(*rig.device, [&](const DeviceInput& in) { return in.position_m.x < rest.x; }));
 }
 
-TEST(SpaceMouse, OneAtATime) {
+TEST(SpaceMouse, ASecondDeviceIsRefused) {
   Rig rig;
   ASSERT_TRUE(rig.device);
-  EXPECT_NE(open_device("spacemouse", {}).error().message.find("open already"), std::string::npos);
+  EXPECT_NE(open_device("spacemouse", {}).error().message.find("already in use"), std::string::npos);
 }
 
 }  // namespace spacemouse_test

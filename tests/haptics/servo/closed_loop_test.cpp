@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The loop closed through a simulated mechanism: the derived linear limits, the passive limit, and what the controller
-// makes of springs above it. Unpaced and deterministic.
+// The closed loop of tick and simulated mechanism: the derived linear stability limits, the passive limit, and the passivity
+// controller's effect on stiffer springs. Unpaced and deterministic.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -45,18 +45,18 @@ void control(HapticProgram& p, double delay_s = 0) {
   p.limits.max_added_damping_ns_per_m = 0.25 * kMass / (kPeriod + delay_s);
 }
 
-// ---- an independent answer: the sampled-data system's characteristic polynomial and its Schur-Cohn test ----
+// ---- an independent result: the sampled-data system's characteristic polynomial and its Schur-Cohn test ----
 
-constexpr int kMost = 4;
-using Matrix = std::array<std::array<double, kMost>, kMost>;
+constexpr int kMaxStates = 4;
+using Matrix = std::array<std::array<double, kMaxStates>, kMaxStates>;
 
-/// States: x, v, the last x and, with a sample of delay, the force in waiting. Mass and damper under a held force are exact.
+/// States: x, v, the previous x and, with a delay of one sample, the pending force. Mass and damper under a held force are exact.
 bool is_stable(double stiffness, double damping, bool delayed) {
   const int n = delayed ? 4 : 3;
   const double rate = kDamping / kMass, e = std::exp(-rate * kPeriod), p = (1 - e) / rate;
   const double to_x = (kPeriod - p) / kDamping, to_v = p / kMass;
-  const std::array<double, kMost> law{-stiffness - damping / kPeriod, 0, damping / kPeriod, 0};
-  const std::array<double, kMost> waiting{0, 0, 0, 1};
+  const std::array<double, kMaxStates> law{-stiffness - damping / kPeriod, 0, damping / kPeriod, 0};
+  const std::array<double, kMaxStates> waiting{0, 0, 0, 1};
   const auto& acts = delayed ? waiting : law;
   Matrix a{};
   for (std::size_t j = 0; j < 4; ++j) {
@@ -66,7 +66,7 @@ bool is_stable(double stiffness, double damping, bool delayed) {
   }
   a[2][0] = 1;
 
-  // Faddeev and Leverrier
+  // Faddeev-LeVerrier algorithm
   std::vector<double> c{1};
   Matrix m{};
   for (int k = 1; k <= n; ++k) {
@@ -91,26 +91,26 @@ bool is_stable(double stiffness, double damping, bool delayed) {
   return true;
 }
 
-/// The tick and the simulated mechanism: does a push die away?
+/// True if an initial displacement decays in the closed loop of tick and simulated mechanism.
 bool settles(double stiffness, double damping, double delay_s) {
   const HapticProgram p = spring(stiffness, damping);
   ClosedLoop loop(p, bare(delay_s), {{0, {0, 0, 1e-3}}});
   const auto energy = [&] { return loop.kinetic_j() + 0.5 * stiffness * loop.device.position_m().z * loop.device.position_m().z; };
-  const auto most_of = [&](int ticks) {
-    double most = 0;
+  const auto max_energy_over = [&](int ticks) {
+    double max_j = 0;
     for (int i = 0; i < ticks; ++i) {
       loop.step();
       const double now = energy();
       if (!(now < 1e6 * stiffness * 1e-6)) return std::numeric_limits<double>::infinity();
-      most = std::max(most, now);
+      max_j = std::max(max_j, now);
     }
-    return most;
+    return max_j;
   };
   loop.run(300);
-  const double before = most_of(300);
+  const double before = max_energy_over(300);
   for (int i = 0; i < 20; ++i)
-    if (!(most_of(300) < 1e3 * before)) return false;
-  return most_of(300) < before;
+    if (!(max_energy_over(300) < 1e3 * before)) return false;
+  return max_energy_over(300) < before;
 }
 
 template <class F>
@@ -126,7 +126,7 @@ struct Limit {
   double damping, without_delay, with_delay;  ///< derived
 };
 
-TEST(ClosedLoopTest, TheLargestStableStiffnessIsTheOneOfTheTable) {
+TEST(ClosedLoopTest, TheLargestStableStiffnessMatchesTheTable) {
   for (const Limit& row : {Limit{0, 994, 332}, Limit{5, 10585, 3535}, Limit{20, 36061, 11660}, Limit{50, 73324, 21522}})
     for (const bool delayed : {false, true}) {
       const double expected = delayed ? row.with_delay : row.without_delay;
@@ -142,26 +142,26 @@ TEST(ClosedLoopTest, TheLargestStableStiffnessIsTheOneOfTheTable) {
   EXPECT_FALSE(settles(1, 200, kPeriod));
 }
 
-/// min(E + int b v^2) / E0 of a spring let go from rest, 4 s.
-double least_energy(const HapticProgram& p, double stiffness, double delay_s = 0) {
+/// min(E + int b v^2) / E0 over 4 s of a spring that is released from rest.
+double min_relative_energy(const HapticProgram& p, double stiffness, double delay_s = 0) {
   ClosedLoop loop(p, bare(delay_s), {{0, {0, 0, 0.01}}});
-  double most_kinetic = 0;
+  double max_kinetic_j = 0;
   for (int i = 0; i < 4000; ++i) {
     loop.step();
-    most_kinetic = std::max(most_kinetic, loop.kinetic_j());
+    max_kinetic_j = std::max(max_kinetic_j, loop.kinetic_j());
   }
-  // by the mass itself: what was given out and not taken by the damping moves it
-  return -most_kinetic / (0.5 * stiffness * 1e-4);
+  // measured on the mass: energy that the spring gave and the damping did not dissipate is kinetic
+  return -max_kinetic_j / (0.5 * stiffness * 1e-4);
 }
 
-TEST(ClosedLoopTest, TheEnergyTestSeparates990From1010) {
-  EXPECT_NEAR(least_energy(spring(990), 990), -0.9993, 5e-4);
-  EXPECT_LT(least_energy(spring(1010), 1010), -1.1);
-  EXPECT_GT(least_energy(spring(1010), 1010), -1.15);
+TEST(ClosedLoopTest, TheEnergyCriterionSeparates990From1010NewtonsPerMetre) {
+  EXPECT_NEAR(min_relative_energy(spring(990), 990), -0.9993, 5e-4);
+  EXPECT_LT(min_relative_energy(spring(1010), 1010), -1.1);
+  EXPECT_GT(min_relative_energy(spring(1010), 1010), -1.15);
 }
 
-TEST(ClosedLoopTest, TheObserverSeesTheSameLimit) {
-  // E + int b v^2 by the work alone, the test's account, and the observer's
+TEST(ClosedLoopTest, ThePassivityObserverFindsTheSameLimit) {
+  // E + int b v^2: the test's own sum of the work, and the observer's balance
   for (const double k : {990.0, 999.0, 1001.0, 1010.0}) {
     HapticProgram p = spring(k);
     p.limits.damping_ns_per_m = kDamping;
@@ -174,13 +174,13 @@ TEST(ClosedLoopTest, TheObserverSeesTheSameLimit) {
   }
 }
 
-TEST(ClosedLoopTest, TheLedgerIsTheWorkDone) {
+TEST(ClosedLoopTest, TheLedgerEqualsTheWorkDone) {
   const HapticProgram p = spring(800, 1);
   ClosedLoop loop(p, bare(), {{0, {0, 0, 0.01}}});
   for (int i = 0; i < 500; ++i) {
     loop.step();
     const PassivityState& ledger = loop.state->passivity;
-    // one link and the coupling's damping: the link's share is the spring's alone
+    // one link and the coupling's damping: the link's ledger has only the spring's energy
     const double stored = loop.out.links[0].energy_j(1);
     ASSERT_NEAR(ledger.stored_j[0], stored, 1e-15);
     ASSERT_NEAR(loop.out.links[0].accounted_j, ledger.work_j[0] + stored, 1e-15);
@@ -188,7 +188,7 @@ TEST(ClosedLoopTest, TheLedgerIsTheWorkDone) {
   EXPECT_GT(loop.state->passivity.work_j[0], loop.energy_to_device_j) << "the damping has taken some of it";
 }
 
-TEST(ClosedLoopTest, BelowTheLimitTheControllerLeavesTheForceAlone) {
+TEST(ClosedLoopTest, BelowThePassiveLimitTheControllerLeavesTheForceUnchanged) {
   HapticProgram with = spring(990), without = spring(990);
   control(with);
   ClosedLoop a(with, bare(), {{0, {0, 0, 0.01}}}), b(without, bare(), {{0, {0, 0, 0.01}}});
@@ -200,16 +200,16 @@ TEST(ClosedLoopTest, BelowTheLimitTheControllerLeavesTheForceAlone) {
   EXPECT_EQ(a.out.dissipated_j, 0);
 }
 
-TEST(ClosedLoopTest, AboveTheLimitTheControllerKeepsThePeace) {
+TEST(ClosedLoopTest, AboveThePassiveLimitTheControllerStopsEnergyGrowth) {
   for (const double delay_s : {0.0, 1e-3, 1.5e-3})
     for (const double times : {1.1, 2.0, 5.0, 10.0}) {
       const double limit = 2 * kDamping / (kPeriod + 2 * delay_s), k = times * limit;
       HapticProgram without = spring(k), with = spring(k);
       control(with, delay_s);
-      EXPECT_LT(least_energy(without, k, delay_s), times > 2 ? -1000 : -2) << k << " " << delay_s;
-      EXPECT_GT(least_energy(with, k, delay_s), -1.05) << k << " " << delay_s;
+      EXPECT_LT(min_relative_energy(without, k, delay_s), times > 2 ? -1000 : -2) << k << " " << delay_s;
+      EXPECT_GT(min_relative_energy(with, k, delay_s), -1.05) << k << " " << delay_s;
 
-      // and it dies away, slowly near the limit
+      // the oscillation decays, slowly near the limit
       ClosedLoop loop(with, bare(delay_s), {{0, {0, 0, 0.01}}});
       loop.run(20000);
       EXPECT_LT(loop.kinetic_j(), (times >= 2 ? 0.5 : 1) * 0.5 * k * 1e-4) << k << " " << delay_s;
@@ -238,23 +238,23 @@ HapticProgram wall(double stiffness) {
   return p;
 }
 
-/// A hand that pushes 10 mm into a wall, and trembles: the most kinetic energy in the last half second of four.
+/// Maximum kinetic energy in the last 0.5 s of 4 s, of a trembling hand that pushes 10 mm into a wall.
 double unrest_j(const HapticProgram& p, SimulatedDeviceParameters hand) {
   hand.grip_stiffness_n_per_m = 500;
   hand.grip_damping_ns_per_m = 0.2;
   hand.tremor_m = 2e-5;
   ClosedLoop loop(p, hand, {{0, {0, 0, 0.01}}, {0.1, {0, 0, -0.01}}});
   loop.run(3500);
-  double most = 0;
+  double max_j = 0;
   for (int i = 0; i < 500; ++i) {
     loop.step();
-    most = std::max(most, loop.kinetic_j());
+    max_j = std::max(max_j, loop.kinetic_j());
   }
-  return most;
+  return max_j;
 }
 
-TEST(ClosedLoopTest, AWallIsStillWithDelayAndEncodersToo) {
-  const double push_j = 0.5 * 500 * 1e-4;  // what the hand has to spend on it
+TEST(ClosedLoopTest, AWallIsStableWithDelayAndEncoders) {
+  const double push_j = 0.5 * 500 * 1e-4;  // the energy of the hand's grip spring
   for (const double delay_s : {0.0, 1e-3, 1.5e-3})
     for (const double step_m : {0.0, 4e-5}) {
       SimulatedDeviceParameters hand = bare(delay_s);
@@ -270,7 +270,7 @@ TEST(ClosedLoopTest, AWallIsStillWithDelayAndEncodersToo) {
     }
 }
 
-TEST(ClosedLoopTest, TheCapBringsAStiffWallBackBelowTheLimit) {
+TEST(ClosedLoopTest, TheStiffnessCapMakesAStiffWallStable) {
   SimulatedDeviceParameters hand = bare();
   HapticProgram p = wall(20000);
   EXPECT_GT(unrest_j(p, hand), 1);

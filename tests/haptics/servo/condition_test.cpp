@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Late, stuck, lost, NaN: from the device to what it is sent, through the running thread.
+// Late, stuck and lost devices and NaN poses: tick conditions and forces sent by the running servo thread.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ std::shared_ptr<HapticProgram> program() {
 
 void nap_ms(double ms) { std::this_thread::sleep_for(std::chrono::nanoseconds(static_cast<std::int64_t>(1e6 * ms))); }
 
-/// Rests at the origin; a script says what else happens in a read. Remembers every force that got out.
+/// Rests at the origin; a script may alter each read. Records every force that is sent.
 class Scripted final : public Device {
  public:
   explicit Scripted(std::function<void(int, DeviceInput&)> script) : script_(std::move(script)) { capabilities_.max_force_n = 10; }
@@ -71,7 +71,7 @@ struct Seen final : TickSink {
   std::vector<HapticState> outputs;
 };
 
-/// Runs so many ticks; the watchdog and real time only where a case asks.
+/// Runs `ticks` ticks, by default without a watchdog.
 ServoStats run(Device& device, std::uint64_t ticks, Seen& seen, ServoOptions options = {.watchdog_s = 0}) {
   options.max_ticks = ticks;
   options.sink = &seen;
@@ -84,8 +84,8 @@ ServoStats run(Device& device, std::uint64_t ticks, Seen& seen, ServoOptions opt
   return servo.stats();
 }
 
-TEST(Condition, LateIsATickMoreThanTwoPeriodsAfterTheLast) {
-  // every 20th read sleeps for so many periods of 2 ms
+TEST(TickConditions, ATickIsLateMoreThanTwoPeriodsAfterTheLast) {
+  // every 20th read sleeps for `periods` periods of 2 ms
   for (const double periods : {1.4, 3.4}) {
     Scripted device([&](int k, DeviceInput&) {
       if (k % 20 == 10) nap_ms(2 * periods);
@@ -110,7 +110,7 @@ TEST(Condition, LateIsATickMoreThanTwoPeriodsAfterTheLast) {
   }
 }
 
-TEST(Condition, ThePeriodAfterAMissIsTheRealOne) {
+TEST(TickConditions, ThePeriodAfterAMissIsTheMeasuredOne) {
   Scripted device([](int k, DeviceInput&) {
     if (k == 10) nap_ms(17);
   });
@@ -123,14 +123,14 @@ TEST(Condition, ThePeriodAfterAMissIsTheRealOne) {
   EXPECT_LE(seen.outputs[10].device_us + seen.outputs[10].compute_us, seen.outputs[11].period_us) << "apart";
 }
 
-TEST(Condition, AStuckDeviceIsStoppedByTheWatchdogAndComesBack) {
+TEST(TickConditions, TheWatchdogStopsAStuckDeviceWhichThenResumes) {
   Scripted* self = nullptr;
   bool stopped_meanwhile = false;
   Scripted device([&](int k, DeviceInput&) {
     if (k != 30) return;
     for (int i = 0; i < 2000 && !self->stopped(); ++i) nap_ms(1);
     stopped_meanwhile = self->stopped();
-    nap_ms(20);  // the watchdog has set its flag, too
+    nap_ms(20);  // until the watchdog has also set its flag
   });
   self = &device;
   Seen seen;
@@ -148,7 +148,7 @@ TEST(Condition, AStuckDeviceIsStoppedByTheWatchdogAndComesBack) {
   EXPECT_EQ(device.sent.back(), Vec3(0.0));
 }
 
-TEST(Condition, AStuckTickWithoutAWatchdogIsOnlyLate) {
+TEST(TickConditions, AStuckTickWithoutAWatchdogIsLate) {
   Scripted device([](int k, DeviceInput&) {
     if (k == 10) nap_ms(40);
   });
@@ -159,7 +159,7 @@ TEST(Condition, AStuckTickWithoutAWatchdogIsOnlyLate) {
   EXPECT_EQ(seen.inputs[11].condition, TickCondition::late);
 }
 
-TEST(Condition, UnpacedTicksAreNeverLateNorWatched) {
+TEST(TickConditions, UnpacedTicksAreNeverLateOrWatched) {
   Scripted device([](int k, DeviceInput&) {
     if (k == 10) nap_ms(150);
   });
@@ -171,7 +171,7 @@ TEST(Condition, UnpacedTicksAreNeverLateNorWatched) {
   EXPECT_EQ(seen.inputs[19].t_s, 0.019);
 }
 
-TEST(Condition, ALostDeviceGetsNothingUntilItIsBack) {
+TEST(TickConditions, ALostDeviceGetsNoForceUntilItReturns) {
   Scripted device([](int k, DeviceInput& input) {
     if (k >= 10 && k < 20) input.status = k < 15 ? DeviceStatus::lost : DeviceStatus::starting;
   });
@@ -190,7 +190,7 @@ TEST(Condition, ALostDeviceGetsNothingUntilItIsBack) {
   EXPECT_EQ(report.lost_ticks, 10u);
 }
 
-TEST(Condition, AForceComesBackByTheRampHoweverLongTheDeviceWasAway) {
+TEST(TickConditions, TheForceRampsInHoweverLongTheDeviceWasLost) {
   Scripted device([](int k, DeviceInput& input) {
     if (k >= 1000 && k < 2000) input.status = DeviceStatus::lost;
   });
@@ -212,8 +212,8 @@ TEST(Condition, AForceComesBackByTheRampHoweverLongTheDeviceWasAway) {
   EXPECT_NEAR(norm(device.sent[2599]), 2, 1e-12);
 }
 
-TEST(Condition, AStallBetweenTicksDoesNotShortenTheRamp) {
-  // the tick after the stall is the watchdog's, the one after it is in time again
+TEST(TickConditions, AStallBetweenTicksDoesNotShortenTheRamp) {
+  // the tick after the stall has the watchdog's condition, the next one is on time
   ChainState state;
   ChainScratch scratch;
   HapticState out;
@@ -236,7 +236,7 @@ TEST(Condition, AStallBetweenTicksDoesNotShortenTheRamp) {
   EXPECT_NEAR(norm(out.force_n), 2 * 1e-3 / 0.5, 1e-9);
 }
 
-TEST(Condition, AServoThatStartsAgainRampsInAgain) {
+TEST(TickConditions, ARestartedServoRampsIn) {
   Scripted device([](int, DeviceInput&) {});
   auto ramped = program();
   ramped->limits.ramp_in_s = 0.1;
@@ -252,7 +252,7 @@ TEST(Condition, AServoThatStartsAgainRampsInAgain) {
   }
 }
 
-TEST(Condition, APoseThatIsNoNumberGetsNoForceInThatTick) {
+TEST(TickConditions, ANonFinitePoseGetsNoForceInThatTick) {
   Scripted device([](int k, DeviceInput& input) {
     if (k == 10) input.position_m.y = std::numeric_limits<double>::quiet_NaN();
     if (k == 20) input.orientation.x = std::numeric_limits<double>::infinity();
@@ -267,7 +267,7 @@ TEST(Condition, APoseThatIsNoNumberGetsNoForceInThatTick) {
   EXPECT_GT(norm(device.sent[39]), 0);
 }
 
-TEST(Condition, TheForcesAreThePersonsAndTheDevicesChoice) {
+TEST(TickConditions, ForcesNeedBothTheUsersAndTheDevicesConsent) {
   Scripted device([](int k, DeviceInput& input) { input.forces_on = k < 20; });
   Seen seen;
   seen.inputs.reserve(60);
@@ -292,7 +292,7 @@ TEST(Condition, TheForcesAreThePersonsAndTheDevicesChoice) {
   EXPECT_TRUE(servo.forces_enabled());
   for (std::size_t k = 0; k < 60; ++k) {
     EXPECT_EQ(seen.inputs[k].forces_on, k >= 10 && k < 20) << k;
-    // switched off, a force leaves by a ramp of 20 ms: ticks 20 to 39
+    // after the switch-off the force ramps out over 20 ms: ticks 20 to 39
     if (k < 10 || k > 41) {
       EXPECT_FALSE(device.live[k]) << k;
     }

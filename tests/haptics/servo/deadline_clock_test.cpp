@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace catena::haptics {
-namespace pace_test {
+namespace deadline_clock_test {
 
 constexpr std::int64_t kMs = 1'000'000, kFirst = 77 * kMs;
 
@@ -22,8 +22,8 @@ TEST(DeadlineClock, TicksOnTimeFollowTheGrid) {
   }
 }
 
-TEST(DeadlineClock, AnOverrunSkipsToTheNextDeadlineAndCountsWhatItMissed) {
-  // a tick that takes this many periods -> deadlines missed, and whether the next tick is late
+TEST(DeadlineClock, AnOverrunSkipsToTheNextDeadlineAndCountsTheMissedOnes) {
+  // duration of a tick in periods, the missed deadlines, and whether the next tick is late
   const struct {
     double takes;
     std::int64_t missed;
@@ -41,10 +41,10 @@ TEST(DeadlineClock, AnOverrunSkipsToTheNextDeadlineAndCountsWhatItMissed) {
   }
 }
 
-TEST(DeadlineClock, TwoPeriodsAreNotLateAndOneNanosecondMoreIs) {
+TEST(DeadlineClock, ATickIsLateOnlyAfterMoreThanTwoPeriods) {
   for (const std::int64_t more : {0, 1}) {
     DeadlineClock pace(kMs, kFirst);
-    pace.begin_tick(at(0.5));  // its time is its begin: 0.5
+    pace.begin_tick(at(0.5));  // the time of a late tick is its actual start: 0.5
     pace.end_tick(at(1.0));
     const TickTiming beat = pace.begin_tick(at(2.5) + more);
     EXPECT_EQ(beat.time_ns, at(2.5) + more - kFirst);
@@ -53,7 +53,7 @@ TEST(DeadlineClock, TwoPeriodsAreNotLateAndOneNanosecondMoreIs) {
   }
 }
 
-TEST(DeadlineClock, ALateWakeUpTellsItsOwnTimeAndTheNextStepIsNotSmall) {
+TEST(DeadlineClock, ALateWakeUpHasItsActualTimeAndSkipsATooNearDeadline) {
   DeadlineClock pace(kMs, kFirst);
   pace.begin_tick(at(0));
   pace.end_tick(at(0.1));
@@ -65,7 +65,7 @@ TEST(DeadlineClock, ALateWakeUpTellsItsOwnTimeAndTheNextStepIsNotSmall) {
   EXPECT_EQ(pace.begin_tick(at(3)).missed, 1);
 }
 
-TEST(DeadlineClock, TicksAndMissedDeadlinesAddUpAndTimeRises) {
+TEST(DeadlineClock, TicksPlusMissedDeadlinesCountAllPeriods) {
   DeadlineClock pace(kMs, kFirst);
   std::uint64_t seed = 1;
   const auto random = [&] { return static_cast<double>((seed = seed * 6364136223846793005u + 1442695040888963407u) >> 40) / (1 << 24); };
@@ -86,7 +86,7 @@ TEST(DeadlineClock, TicksAndMissedDeadlinesAddUpAndTimeRises) {
   EXPECT_GT(missed, 1000);
 }
 
-TEST(DeadlineClock, AGapLongerThanTheLimitIsAStallOfTheTickAfterIt) {
+TEST(DeadlineClock, AGapLongerThanTheLimitMarksTheNextTickAsStalled) {
   for (const double gap : {1.0, 49.0, 51.0, 5000.0}) {
     DeadlineClock pace(kMs, kFirst, 50 * kMs);
     EXPECT_FALSE(pace.begin_tick(at(0)).stalled);
@@ -100,5 +100,5 @@ TEST(DeadlineClock, AGapLongerThanTheLimitIsAStallOfTheTickAfterIt) {
   EXPECT_FALSE(pace.begin_tick(at(1e9)).stalled) << "without a limit";
 }
 
-}  // namespace pace_test
+}  // namespace deadline_clock_test
 }  // namespace catena::haptics

@@ -5,12 +5,12 @@
 
 #include "haptics/device/registry.h"
 
-namespace limits_for_test {
+namespace device_limits_test {
 
 using namespace catena;
 using namespace catena::haptics;
 
-TEST(DeviceLimits, ADeviceWithoutForceOutputHasNone) {
+TEST(DeviceLimits, ADeviceWithoutForceOutputHasNoLimits) {
   const DeviceLimits limits = compute_device_limits(nominal_capabilities("null"), {});
   EXPECT_EQ(limits.max_stiffness_n_per_m, DeviceLimits::kUnlimited);
   EXPECT_EQ(limits.max_force_n, DeviceLimits::kUnlimited);
@@ -33,7 +33,7 @@ TEST(DeviceLimits, TheSimulatedDeviceGetsTheSafeDefaults) {
   EXPECT_DOUBLE_EQ(limits.max_stiffness_n_per_m, 2500) << "f_c / step";
 }
 
-TEST(DeviceLimits, WhatThePersonSaysHolds) {
+TEST(DeviceLimits, TheUsersSettingsOverrideTheDefaults) {
   DeviceSettings s;
   s.damping_ns_per_m = 2;
   s.delay_s = 1.5e-3;
@@ -57,7 +57,7 @@ TEST(DeviceLimits, WhatThePersonSaysHolds) {
   EXPECT_EQ(compute_device_limits(nominal_capabilities("null"), s).max_stiffness_n_per_m, 77) << "though it has no force of its own";
 }
 
-TEST(DeviceLimits, AScaleChangesTheHandsMechanismAndNotTheDevicesLimit) {
+TEST(DeviceLimits, AScaleChangesTheMechanismAndNotTheDevicesLimit) {
   DeviceSettings s;
   s.scale = 4;
   const Mechanics device = resolve_mechanics(nominal_capabilities("simulated"), {}),
@@ -66,10 +66,10 @@ TEST(DeviceLimits, AScaleChangesTheHandsMechanismAndNotTheDevicesLimit) {
   EXPECT_DOUBLE_EQ(hand.damping_ns_per_m, device.damping_ns_per_m / 4);
   EXPECT_DOUBLE_EQ(hand.encoder_step_m, 4 * device.encoder_step_m);
   EXPECT_EQ(hand.friction_n, device.friction_n);
-  // a spring K of the hand's metres is 4 K at the device
+  // stiffness K in scaled metres is 4 K at the device
   EXPECT_DOUBLE_EQ(4 * compute_device_limits(nominal_capabilities("simulated"), s).max_stiffness_n_per_m,
                    compute_device_limits(nominal_capabilities("simulated"), {}).max_stiffness_n_per_m);
-  // whatever the settings say of the mechanism is said of the device
+  // settings of the mechanism are in the device's metres
   s.damping_ns_per_m = 2;
   EXPECT_DOUBLE_EQ(resolve_mechanics(nominal_capabilities("simulated"), s).damping_ns_per_m, 0.5);
 }
@@ -85,4 +85,4 @@ TEST(DeviceLimits, ADeviceWithTorqueGetsASafeRotationalSpring) {
   EXPECT_EQ(compute_device_limits(device, s).max_rotational_stiffness_nm_per_rad, DeviceLimits::kUnlimited);
 }
 
-}  // namespace limits_for_test
+}  // namespace device_limits_test

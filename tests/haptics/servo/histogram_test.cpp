@@ -12,14 +12,14 @@
 namespace catena::haptics {
 namespace histogram_test {
 
-TEST(Histogram, OfNothingIsNothing) {
+TEST(Histogram, AnEmptyHistogramIsAllZero) {
   const HistogramSummary f = Histogram().summarize();
   EXPECT_EQ(f.count, 0u);
   EXPECT_EQ(f.p50_us, 0);
   EXPECT_EQ(f.max_us, 0);
 }
 
-TEST(Histogram, OneValueIsEveryQuantileWithinABucket) {
+TEST(Histogram, OfOneValueEveryQuantileIsThatValueWithinABucket) {
   for (std::int64_t ns = 1; ns < (std::int64_t{1} << 39); ns = ns * 5 / 4 + 1) {
     Histogram h;
     h.add(ns);
@@ -30,14 +30,14 @@ TEST(Histogram, OneValueIsEveryQuantileWithinABucket) {
   }
 }
 
-TEST(Histogram, QuantilesAreWithinHalfAPercentOfTheExactOnes) {
+TEST(Histogram, QuantilesAreWithinHalfAPercent) {
   Histogram h;
   std::vector<double> exact;
   std::uint64_t seed = 7;
   for (int k = 0; k < 50000; ++k) {
     seed = seed * 6364136223846793005u + 1442695040888963407u;
     const double u = static_cast<double>(seed >> 11) * 0x1p-53;
-    // a long tail, like that of a period
+    // a long-tailed distribution, like that of periods
     const auto ns = static_cast<std::int64_t>(3000 + 500 * u + 200 * std::pow(1 - u, -1.2));
     h.add(ns);
     exact.push_back(1e-3 * static_cast<double>(ns));
@@ -50,7 +50,7 @@ TEST(Histogram, QuantilesAreWithinHalfAPercentOfTheExactOnes) {
   EXPECT_EQ(f.max_us, quantile(exact, 1.0));
 }
 
-TEST(Histogram, BinsHoldEveryValueOnce) {
+TEST(Histogram, EveryValueIsInExactlyOneBin) {
   Histogram h;
   for (const std::int64_t ns : {5, 15, 16, 1000, 1023, 1024, 1151, 1152, 1000000}) h.add(ns);
   const std::vector<HistogramSummary::Bin> bins = h.summarize().bins;
@@ -62,7 +62,7 @@ TEST(Histogram, BinsHoldEveryValueOnce) {
   }
 }
 
-TEST(Histogram, TimesOutOfRangeAreCountedAtTheEnds) {
+TEST(Histogram, OutOfRangeTimesAreCountedInTheEndBins) {
   Histogram h;
   h.add(-5);
   h.add(0);
@@ -73,7 +73,7 @@ TEST(Histogram, TimesOutOfRangeAreCountedAtTheEnds) {
   EXPECT_EQ(f.max_us, 1e-3 * std::ldexp(1.0, 62));
 }
 
-TEST(Histogram, IsReadableWhileItIsFilled) {
+TEST(Histogram, CanBeReadWhileItIsFilled) {
   Histogram h;
   constexpr std::uint64_t kCount = 200000;
   std::thread writer([&] {

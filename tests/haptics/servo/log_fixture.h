@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the tests of the recording share: a log read to its end, a servo that is as fast as its log.
+/// Shared helpers of the recording tests: a fully read log, and a device that limits the servo to the log's speed.
 #pragma once
 #include <gtest/gtest.h>
 #include <atomic>
@@ -47,7 +47,7 @@ inline bool rising_from_one(const std::vector<std::uint64_t>& ticks) {
   return true;
 }
 
-// A device that lets the servo run as fast as the log is written, and no faster.
+// A device that limits the servo to the speed at which the log is written.
 class ThrottledDevice final : public Device {
  public:
   ThrottledDevice(const LogWriter& writer, std::vector<ProbeSample> path) : writer_(writer), path_(std::move(path)) {}
@@ -65,7 +65,7 @@ class ThrottledDevice final : public Device {
     return input;
   }
   void write(const DeviceOutput&) noexcept override {}
-  void allow(std::uint64_t ticks) { allowed_.store(ticks, std::memory_order_release); }  ///< since the start
+  void allow(std::uint64_t ticks) { allowed_.store(ticks, std::memory_order_release); }  ///< counted from the start
 
  private:
   const LogWriter& writer_;

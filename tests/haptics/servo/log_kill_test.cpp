@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A recording whose process is killed at any moment opens, has no hole, and repeats to the bit.
+/// A recording whose process is killed at any moment opens, has no gap, and replays bit for bit.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -16,14 +16,14 @@ using namespace catena::haptics;
 using namespace catena::haptics::log;
 using namespace catena::test;
 
-// The child of the next test: records until it is killed. Runs only when it is told where.
+// Child process of the next test: records until it is killed. Skipped without a path in CATENA_LOG_OF_THE_CHILD.
 TEST(LogKill, DISABLED_RecordsUntilItIsKilled) {
   const std::string path = test::child_variable("CATENA_LOG_OF_THE_CHILD");
-  if (path.empty()) GTEST_SKIP() << "the child of LogKill.EveryKilledRecordingOpensAndRepeats";
+  if (path.empty()) GTEST_SKIP() << "the child of LogKill.EveryKilledRecordingOpensAndReplaysExactly";
   auto writer = LogWriter::open(path, {}, {}, fast_flush());
   ASSERT_TRUE(writer);
   ThrottledDevice device(**writer, test::adversarial_path(1000));
-  // a program for 200 ticks each, however the threads are scheduled
+  // one program per 200 ticks, independent of thread scheduling
   constexpr std::uint64_t kTicks = 200;
   const auto first = make_numbered_program(1);
   (*writer)->add_program(*first);
@@ -43,13 +43,13 @@ TEST(LogKill, DISABLED_RecordsUntilItIsKilled) {
   }
 }
 
-TEST(LogKill, EveryKilledRecordingOpensAndRepeats) {
+TEST(LogKill, EveryKilledRecordingOpensAndReplaysExactly) {
   const test::TemporaryFolder folder;
   std::uint64_t all = 0, programs = 0;
   for (int moment = 0; moment < 24; ++moment) {
     const std::string path = folder / ("k" + std::to_string(moment) + ".catlog");
     const pid_t child = test::start_case("LogKill.DISABLED_*", {.environment = {"CATENA_LOG_OF_THE_CHILD=" + path}});
-    // the moment: so many bytes, then a little more
+    // kill after `enough` bytes and a short delay
     const auto enough = static_cast<std::uintmax_t>(4000 + 12000 * moment);
     std::error_code code;
     int status = 0;
@@ -69,7 +69,7 @@ TEST(LogKill, EveryKilledRecordingOpensAndRepeats) {
     EXPECT_FALSE(reader->end().has_value());
     EXPECT_FALSE(reader->damaged()) << reader->end_summary();
     EXPECT_EQ(result->stats.ticks, reader->last_tick());
-    // a first block of 200 ticks may be cut off within
+    // the first block of 200 ticks may be truncated
     if (moment > 4) {
       EXPECT_GE(result->stats.ticks, 1u) << moment;
     }

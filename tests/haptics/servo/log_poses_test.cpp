@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Head, hands and gaze in a recording: to bytes and back, beside ticks, and damaged.
+/// Poses of head, hands and gaze in a recording: round trip, beside ticks, and damaged.
 #include "haptics/servo/log/poses.h"
 #include "tests/haptics/servo/log_fixture.h"
 
@@ -20,7 +20,7 @@ LogPoses some(int k) {
   return out;
 }
 
-TEST(LogPoses, BytesLeadBack) {
+TEST(LogPoses, RoundTripThroughBytes) {
   std::vector<LogPoses> all;
   EXPECT_EQ(parse_poses(to_bytes(all)), all);
   for (int k = 0; k < 16; ++k) all.push_back(some(k));
@@ -35,10 +35,10 @@ TEST(LogPoses, BytesLeadBack) {
   EXPECT_FALSE(parse_poses(parts)) << "a fifth part";
 }
 
-TEST(LogPoses, GoWithTheTicksAndChangeNothingOfThem) {
+TEST(LogPoses, AreRecordedBesideTicksWithoutChangingThem) {
   const test::TemporaryFolder folder;
   const std::vector<ProgramChange> changes{{1, test::make_level_program(1, {"a"}), {}}};
-  std::vector<LogPoses> said;
+  std::vector<LogPoses> recorded;
   for (const bool with : {false, true}) {
     auto writer = LogWriter::open(folder / (with ? "with" : "without"), {}, {}, fast_flush());
     for (const ProgramChange& change : changes) (*writer)->add_program(*change.program, {});
@@ -46,8 +46,8 @@ TEST(LogPoses, GoWithTheTicksAndChangeNothingOfThem) {
     test::run_ticks(changes, test::adversarial_path(3000), [&](const ProbeSample& input, const HapticState& output) {
       (*writer)->put(input, output);
       if (!with || ++k % 11 != 0) return;
-      said.push_back(some(k));
-      EXPECT_TRUE((*writer)->add_poses(said.back()));
+      recorded.push_back(some(k));
+      EXPECT_TRUE((*writer)->add_poses(recorded.back()));
     });
     ASSERT_TRUE((*writer)->finish());
     EXPECT_FALSE((*writer)->add_poses({})) << "nothing is written any more";
@@ -61,11 +61,11 @@ TEST(LogPoses, GoWithTheTicksAndChangeNothingOfThem) {
     if (e == LogEvent::poses) found.insert(found.end(), reader->poses().begin(), reader->poses().end());
   }
   EXPECT_EQ(ticks, 3000u);
-  EXPECT_EQ(found, said);
+  EXPECT_EQ(found, recorded);
   EXPECT_FALSE(reader->damaged());
   ASSERT_TRUE(reader->end());
 
-  // the same ticks, and a replay that is equal to the bit
+  // both recordings have the same ticks, and the replay is bit-identical
   auto without = LogReader::open(folder / "without");
   while (without->next() != LogEvent::done) {
   }
@@ -76,9 +76,9 @@ TEST(LogPoses, GoWithTheTicksAndChangeNothingOfThem) {
   EXPECT_EQ(replayed->differing, 0u);
 }
 
-TEST(LogPoses, AreATable) {
+TEST(LogPoses, AreWrittenAsCsv) {
   std::string line;
-  append_poses_csv(line, some(13));  // 1101: only the left hand
+  append_poses_csv(line, some(13));  // mask 1101: only the left hand is present
   EXPECT_TRUE(line.starts_with("130,13000000086,,,,,,,,1.3,-0,1.8,")) << line;
   const auto columns = [](const std::string& row) { return std::count(row.begin(), row.end(), ','); };
   EXPECT_EQ(columns(line), columns(poses_csv_header()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The recording: what is written is what was, whole, cut off, damaged, or killed.
+/// Recordings: complete, truncated and damaged files, and their replay.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -21,13 +21,13 @@ std::uint64_t fnv(const std::string& bytes, std::size_t at, std::size_t size) {
 }
 
 struct Block {
-  std::size_t at = 0;  ///< of its head
+  std::size_t at = 0;  ///< offset of the block's header
   BlockHeader head;
   std::size_t payload() const { return at + sizeof(BlockHeader); }
   std::size_t after() const { return payload() + head.length; }
 };
 
-// Read by the format's description, not by the reader.
+// Parses the blocks by the format's description, independent of LogReader.
 std::vector<Block> blocks_of(const std::string& bytes) {
   std::vector<Block> blocks;
   for (std::size_t at = kPreambleBytes; at < bytes.size();) {
@@ -54,7 +54,7 @@ void seal(std::string& bytes, const Block& block) {
 
 BlockType type_of(const Block& block) { return static_cast<BlockType>(block.head.type); }
 
-TEST(Log, HoldsEveryBitOfEveryTick) {
+TEST(Log, RecordsEveryTickBitForBit) {
   const test::TemporaryFolder folder;
   const std::vector<ProgramChange> changes{{1, test::make_level_program(7, {"a", "b"}), {}},
                                            {301, test::make_level_program(9, {"b", "c", "a"}), "text"}};
@@ -125,8 +125,8 @@ TEST(Log, HoldsEveryBitOfEveryTick) {
   EXPECT_EQ(reader->end_summary(), "ends cleanly with tick 900");
 }
 
-TEST(Log, EveryFieldOfARecordComesBack) {
-  // every word is different, so that two that are swapped show
+TEST(Log, EveryFieldOfARecordRoundTrips) {
+  // all words differ, so that swapped fields are detected
   LogTick tick;
   HapticState& out = tick.output;
   double next = 1;
@@ -222,7 +222,7 @@ TEST(Log, EveryFieldOfARecordComesBack) {
   }
 }
 
-TEST(Log, ProgramsComeBackWithAllTheirNumbers) {
+TEST(Log, ProgramsRoundTripWithAllTheirNumbers) {
   HapticProgram program = *test::make_level_program(42, {"a", "bee"});
   double next = 1;
   for (double* v : {&program.limits.max_stiffness_n_per_m, &program.limits.max_rotational_stiffness_nm_per_rad, &program.limits.max_force_n,
@@ -257,12 +257,12 @@ TEST(Log, ProgramsComeBackWithAllTheirNumbers) {
   for (std::size_t n = 0; n < bytes.size(); ++n) EXPECT_FALSE(parse_program(std::string_view(bytes).substr(0, n))) << n;
 }
 
-TEST(Log, CutAtEveryByteItKeepsAllCompleteBlocks) {
+TEST(Log, TruncatedAtAnyByteItKeepsAllCompleteBlocks) {
   const std::string bytes = test::make_small_log();
   const std::vector<Block> blocks = blocks_of(bytes);
   ASSERT_EQ(type_of(blocks.back()), BlockType::end);
   ASSERT_EQ(blocks.size(), 12u);
-  // ticks known by the description of the format: count at byte 16 of the payload
+  // tick count by the format's description: at byte 16 of the payload
   const auto ticks_up_to = [&](std::size_t size) {
     std::uint64_t ticks = 0;
     for (const Block& block : blocks) {
@@ -275,13 +275,13 @@ TEST(Log, CutAtEveryByteItKeepsAllCompleteBlocks) {
   ASSERT_EQ(ticks_up_to(bytes.size()), 60u);
   std::size_t last_block_cuts = 0;
   for (std::size_t size = 0; size <= bytes.size(); ++size) {
-    // a copy of its own, so that a read past the end is seen
+    // a separate copy, so that sanitizers detect reads past the end
     const std::vector<char> cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
     const LogContents read = read_all({cut.data(), cut.size()});
     ASSERT_EQ(read.opened, size >= blocks[0].after()) << size;
     if (!read.opened) {
       EXPECT_NE(read.ending.find("x.catlog: "), std::string::npos);
-      EXPECT_NE(read.ending.find("cut off"), std::string::npos) << read.ending;
+      EXPECT_NE(read.ending.find("truncated"), std::string::npos) << read.ending;
       continue;
     }
     ASSERT_EQ(read.ticks.size(), ticks_up_to(size)) << size;
@@ -294,7 +294,7 @@ TEST(Log, CutAtEveryByteItKeepsAllCompleteBlocks) {
   EXPECT_EQ(last_block_cuts, bytes.size() - blocks[10].at);
 }
 
-TEST(Log, ADamagedBlockCostsItsOwnTicksAndSaysWhich) {
+TEST(Log, ADamagedBlockLosesOnlyItsOwnTicksAndNamesThem) {
   const std::string bytes = test::make_small_log();
   for (const Block& block : blocks_of(bytes)) {
     if (type_of(block) != BlockType::ticks) continue;
@@ -302,7 +302,7 @@ TEST(Log, ADamagedBlockCostsItsOwnTicksAndSaysWhich) {
     std::uint32_t count = 0;
     std::memcpy(&first, bytes.data() + block.payload() + 8, 8);
     std::memcpy(&count, bytes.data() + block.payload() + 16, 4);
-    // in the payload, in the length, in the mark, in the type
+    // damage in the payload, the length, the magic number and the type
     for (const std::size_t at : {block.payload() + 30, block.at + 16, block.at, block.at + 4}) {
       std::string broken = bytes;
       broken[at] = static_cast<char>(broken[at] ^ 0x20);
@@ -319,7 +319,7 @@ TEST(Log, ADamagedBlockCostsItsOwnTicksAndSaysWhich) {
   }
 }
 
-TEST(Log, ADamagedProgramIsUnknownAndReplayStopsThere) {
+TEST(Log, ADamagedProgramIsUnknownAndStopsReplay) {
   std::string bytes = test::make_small_log();
   const std::vector<Block> blocks = blocks_of(bytes);
   const Block& second = blocks[3];
@@ -337,27 +337,27 @@ TEST(Log, ADamagedProgramIsUnknownAndReplayStopsThere) {
   EXPECT_NE(result->stop_reason.find("tick 11"), std::string::npos) << result->stop_reason;
 }
 
-TEST(Log, FilesThatAreNoneSayWhatWasExpected) {
+TEST(Log, InvalidFilesAreRefusedWithWhatWasExpected) {
   std::string bytes = test::make_small_log();
   const auto message = [](const std::string& text) { return read_all(text).ending; };
-  EXPECT_NE(message("").find("no recording"), std::string::npos);
+  EXPECT_NE(message("").find("not a recording"), std::string::npos);
   EXPECT_NE(message("{\"chain\": []} and more").find(".catlog file was expected"), std::string::npos);
   std::string other = bytes;
   for (const int version : {1, 3}) {
     other[8] = static_cast<char>(version);
-    EXPECT_NE(message(other).find("version " + std::to_string(version) + "; this program reads version 2"), std::string::npos);
+    EXPECT_NE(message(other).find("version " + std::to_string(version) + ", expected version 2"), std::string::npos);
   }
   other = bytes;
   std::swap(other[12], other[15]);
   EXPECT_NE(message(other).find("byte order"), std::string::npos);
   other = bytes;
   other[kPreambleBytes + sizeof(BlockHeader) + 5] ^= 1;
-  EXPECT_NE(message(other).find("header is damaged"), std::string::npos);
+  EXPECT_NE(message(other).find("header of the recording is damaged"), std::string::npos);
   EXPECT_FALSE(LogReader::open("/nowhere/none.catlog"));
   EXPECT_FALSE(LogReader::open("/tmp"));
 }
 
-TEST(Log, ReplayIsExactOverEveryKindOfTickAndChange) {
+TEST(Log, ReplayIsExactOverEveryTickConditionAndProgramChange) {
   const test::TemporaryFolder folder;
   const std::vector<ProgramChange> changes{{1, test::make_level_program(1, {"a", "b"}), {}},
                                            {300, test::make_level_program(2, {"b", "a"}), {}},
@@ -376,7 +376,7 @@ TEST(Log, ReplayIsExactOverEveryKindOfTickAndChange) {
   EXPECT_EQ(result->stats.state_hash, hash);
 }
 
-TEST(Log, OneBitOfOneForceIsFoundAtItsTick) {
+TEST(Log, AFlippedForceBitIsReportedAtItsTick) {
   const test::TemporaryFolder folder;
   auto program = test::make_level_program(1, {"a"});
   const std::vector<ProgramChange> changes{{1, program, {}}};
@@ -401,8 +401,8 @@ TEST(Log, OneBitOfOneForceIsFoundAtItsTick) {
   EXPECT_EQ(result->stats.ticks, 500u);
 }
 
-TEST(Log, AnyBitOfTheLastRecordThatIsFlippedIsFound) {
-  // in the file itself, with the hashes made good: what the tick gave must differ, what the servo measured need not
+TEST(Log, AnyFlippedBitOfTheLastRecordIsDetected) {
+  // bits are flipped in the file and the hashes recomputed: replay must report changed outputs, but not changed measured times
   const std::vector<ProgramChange> changes{{1, test::make_level_program(1, {"a"}), {}}};
   const test::TemporaryFolder folder;
   auto writer = LogWriter::open(folder / "l.catlog", {});
@@ -412,7 +412,7 @@ TEST(Log, AnyBitOfTheLastRecordThatIsFlippedIsFound) {
   const std::vector<Block> blocks = blocks_of(bytes);
   const Block ticks = blocks[2];
   ASSERT_EQ(type_of(ticks), BlockType::ticks);
-  // the first record: a mask of 6 bytes, then the words whose bit is set
+  // the first record: a mask of 6 bytes, then the words with a set bit
   const std::size_t mask_at = ticks.payload() + 28;
   std::size_t word_at = mask_at + 6;
   int found = 0, words = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The writing side of the recording: what happens when the disk is slow or full, and with all its threads at once.
+/// LogWriter with a slow or full disk, and with all its threads running.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -17,7 +17,7 @@ using namespace catena::haptics;
 using namespace catena::haptics::log;
 using namespace catena::test;
 
-TEST(LogWriter, AFullRingLeavesAGapThatIsToldAndStopsTheReplay) {
+TEST(LogWriter, AFullRingLeavesAReportedGapThatStopsReplay) {
   const test::TemporaryFolder folder;
   const std::vector<ProgramChange> changes{{1, test::make_level_program(1, {"a"}), {}}};
   LogOptions options;
@@ -39,10 +39,10 @@ TEST(LogWriter, AFullRingLeavesAGapThatIsToldAndStopsTheReplay) {
   const auto result = replay_log(*reader, test::make_replay_hooks(changes));
   EXPECT_EQ(result->stats.ticks, 87u);
   EXPECT_EQ(result->differing, 0u);
-  EXPECT_EQ(result->stop_reason, "ticks 88 to 1000 are lost: the disk did not keep up");
+  EXPECT_EQ(result->stop_reason, "ticks 88 to 1000 are lost: the disk was too slow");
 }
 
-// The limit on the size of a file stands for a full disk.
+// Simulates a full disk by a limit on the file size.
 class SmallDisk {
  public:
   explicit SmallDisk(rlim_t bytes) : ignored_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -62,7 +62,7 @@ class SmallDisk {
   void (*ignored_)(int);
 };
 
-TEST(LogWriter, AFullDiskIsAStatusAndOneLine) {
+TEST(LogWriter, AFullDiskIsReportedInTheStatusAndOneErrorLine) {
   EXPECT_FALSE(LogWriter::open("/dev/full", {})) << "the header cannot be written";
   EXPECT_FALSE(LogWriter::open("/nowhere/at/all.catlog", {}));
   EXPECT_FALSE(LogWriter::open("", {}));
@@ -88,7 +88,7 @@ TEST(LogWriter, AFullDiskIsAStatusAndOneLine) {
                                     "; the recording ends with tick " + std::to_string(status.ticks) + " of 400"})
       EXPECT_NE(done.error().message.find(part), std::string::npos) << done.error().message;
   }
-  // what was complete is there
+  // complete blocks can be read
   const LogContents read = read_all(test::read_file(folder / "l.catlog"));
   EXPECT_GE(read.ticks.size(), 20u);
   EXPECT_LT(read.ticks.size(), 400u);
@@ -96,7 +96,7 @@ TEST(LogWriter, AFullDiskIsAStatusAndOneLine) {
   EXPECT_FALSE(read.clean);
 }
 
-TEST(LogWriter, WhatHasNotEvenRoomForItsHeaderLeavesNoFile) {
+TEST(LogWriter, WithoutRoomForTheHeaderNoFileIsLeft) {
   const test::TemporaryFolder folder;
   for (const rlim_t bytes : {rlim_t{0}, rlim_t{8}, rlim_t{16}, rlim_t{60}}) {
     const SmallDisk disk(bytes);
@@ -106,7 +106,7 @@ TEST(LogWriter, WhatHasNotEvenRoomForItsHeaderLeavesNoFile) {
   EXPECT_TRUE(test::exists("/dev/full")) << "a device is not removed";
 }
 
-TEST(LogWriter, ReplacesAFileButNotAnInputAndNotOneThatIsBeingWritten) {
+TEST(LogWriter, ReplacesAFileUnlessItIsAnInputOrBeingRecorded) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "l.catlog", std::string(100000, 'x'));
   auto first = LogWriter::open(folder / "l.catlog", {});
@@ -136,7 +136,7 @@ TEST(LogWriter, PutAllocatesNothing) {
   EXPECT_EQ(allocations, 0u);
 }
 
-TEST(LogWriter, AProgramThatNobodyAddedIsSaidToBeUnknown) {
+TEST(LogWriter, AProgramThatWasNotAddedIsReportedAsUnknown) {
   const test::TemporaryFolder folder;
   {
     auto writer = LogWriter::open(folder / "l.catlog", {});
@@ -177,8 +177,8 @@ TEST(LogRing, PassesMessagesBetweenTwoThreadsInOrder) {
   EXPECT_EQ(ring.available(), 0u);
 }
 
-// Three threads for a while: programs change, the status is read, ticks are recorded and written.
-TEST(LogSoak, ServoProgramsAndWriterTogether) {
+// Three threads change programs, read the status, and record and write ticks.
+TEST(LogSoak, ServoProgramChangesAndWriterRunTogether) {
   const test::TemporaryFolder folder;
 #ifdef CATENA_THREAD_SANITIZER
   constexpr std::uint64_t kTicks = 40000;

@@ -23,7 +23,7 @@
 namespace catena::haptics {
 namespace realtime_test {
 
-/// The calling thread, and only it, loses every privilege.
+/// Drops every privilege of the calling thread only.
 bool drop_privileges() {
   __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
   __user_cap_data_struct none[_LINUX_CAPABILITY_U32S_3] = {};
@@ -35,7 +35,7 @@ bool limited(int what) {
   return getrlimit(static_cast<__rlimit_resource>(what), &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
 }
 
-TEST(Realtime, WithoutPrivilegesItSaysWhatItDidWithoutAndHowToHaveIt) {
+TEST(Realtime, WithoutPrivilegesTheNotesNameWhatIsMissingAndTheRemedy) {
   rlimit priority{};
   if (getrlimit(RLIMIT_RTPRIO, &priority) != 0 || priority.rlim_cur > 0 || !limited(RLIMIT_MEMLOCK))
     GTEST_SKIP() << "everybody may do it here";
@@ -52,12 +52,14 @@ TEST(Realtime, WithoutPrivilegesItSaysWhatItDidWithoutAndHowToHaveIt) {
   EXPECT_EQ(report.cpu, -1) << "a normal thread stays free to move";
   ASSERT_EQ(report.notes.size(), 2u);
   EXPECT_EQ(report.notes[0].find("real-time scheduling was not permitted"), 0u) << report.notes[0];
-  for (const std::string& note : report.notes) EXPECT_NE(note.find(": join the group catena and log in again"), std::string::npos) << note;
+  for (const std::string& note : report.notes)
+    EXPECT_NE(note.find(": join the group catena of the Debian package (`adduser YOU catena`) and log in again"), std::string::npos)
+        << note;
   EXPECT_NE(report.notes[0].find("or raise rtprio in /etc/security/limits.d"), std::string::npos) << report.notes[0];
   EXPECT_NE(report.notes[1].find("or raise memlock in /etc/security/limits.d"), std::string::npos) << report.notes[1];
 }
 
-TEST(Realtime, ACoreThatIsNotThereIsSaidAndTheServoGoesOn) {
+TEST(Realtime, AMissingCoreIsReportedAndTheServoRuns) {
   NullDevice device;
   Servo servo(device, std::make_shared<HapticProgram>(),
               {.max_ticks = 5, .realtime = {.fifo = false, .lock_memory = false, .cpu = 100000}});
@@ -71,7 +73,7 @@ TEST(Realtime, ACoreThatIsNotThereIsSaidAndTheServoGoesOn) {
   EXPECT_NE(r.realtime.notes[0].find("core 100000"), std::string::npos);
 }
 
-TEST(Realtime, EveryWishIsEitherGrantedOrHasItsSentence) {
+TEST(Realtime, EveryRequestIsGrantedOrHasANote) {
   NullDevice device;
   Servo servo(device, std::make_shared<HapticProgram>(), {.max_ticks = 5});
   EXPECT_TRUE(servo.start());
@@ -85,7 +87,7 @@ TEST(Realtime, EveryWishIsEitherGrantedOrHasItsSentence) {
   }
 }
 
-/// Its bus takes more than a period at 10 kHz.
+/// A device whose read takes longer than a period at 10 kHz.
 class Slow final : public Device {
  public:
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
@@ -99,7 +101,7 @@ class Slow final : public Device {
   DeviceCapabilities capabilities_;
 };
 
-TEST(Realtime, AFixedPriorityIsGivenBackWhereTheTicksNeverFitIntoTheirPeriod) {
+TEST(Realtime, FixedPriorityIsDroppedWhenTicksNeverFitThePeriod) {
   Slow device;
   Servo servo(device, std::make_shared<HapticProgram>(), {.rate_hz = 10000, .max_ticks = 1010});
   EXPECT_TRUE(servo.start());
@@ -111,10 +113,10 @@ TEST(Realtime, AFixedPriorityIsGivenBackWhereTheTicksNeverFitIntoTheirPeriod) {
   EXPECT_GE(r.missed_deadlines, 1009u);
   EXPECT_FALSE(r.realtime.fifo);
   ASSERT_FALSE(r.realtime.notes.empty());
-  EXPECT_NE(r.realtime.notes.back().find("given back"), std::string::npos);
+  EXPECT_NE(r.realtime.notes.back().find("given up"), std::string::npos);
 }
 
-/// Hangs in one read until it is stopped; notes how many cores its watchdog may run on.
+/// Hangs in one read until it is stopped; records the number of cores that its watchdog may run on.
 class Stuck final : public Device {
  public:
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
@@ -133,7 +135,7 @@ class Stuck final : public Device {
   DeviceCapabilities capabilities_;
 };
 
-TEST(Realtime, TheWatchdogIsNotBoundToTheCoreOfTheThreadThatItWatches) {
+TEST(Realtime, TheWatchdogIsNotPinnedToTheServosCore) {
   cpu_set_t allowed;
   ASSERT_EQ(sched_getaffinity(0, sizeof allowed, &allowed), 0);
   if (CPU_COUNT(&allowed) < 2) GTEST_SKIP() << "one core";
@@ -149,7 +151,7 @@ TEST(Realtime, TheWatchdogIsNotBoundToTheCoreOfTheThreadThatItWatches) {
   EXPECT_EQ(device.cores, CPU_COUNT(&allowed));
 }
 
-TEST(Realtime, AFixedPriorityIsTheThreadsOwnAndIsGivenBack) {
+TEST(Realtime, FixedPriorityIsPerThreadAndRestored) {
   std::vector<std::string> notes;
   const int before = sched_getscheduler(0);
   RealtimeReport report;
@@ -166,7 +168,7 @@ TEST(Realtime, AFixedPriorityIsTheThreadsOwnAndIsGivenBack) {
   EXPECT_EQ(report.notes.empty(), report.fifo);
 }
 
-TEST(Realtime, DISABLED_RunsAtAFixedPriorityForEver) {
+TEST(Realtime, DISABLED_LoopsForeverAtFixedPriority) {
   std::vector<std::string> notes;
   if (!acquire_fifo_priority(1, notes)) _exit(77);
   limit_realtime_run(0.05, 0.2);
@@ -175,10 +177,9 @@ TEST(Realtime, DISABLED_RunsAtAFixedPriorityForEver) {
   }
 }
 
-// before, only the kernel's share for others kept a machine of one core usable
-TEST(Realtime, ATickThatNeverEndsIsEnded) {
+TEST(Realtime, AnEndlessTickIsKilledByTheRealtimeLimit) {
   for (const bool ignores : {false, true}) {
-    const pid_t child = test::start_case("Realtime.DISABLED_RunsAtAFixedPriorityForEver",
+    const pid_t child = test::start_case("Realtime.DISABLED_LoopsForeverAtFixedPriority",
                                          {.environment = {ignores ? "CATENA_IGNORES_XCPU=1" : "CATENA_OTHER=1"}});
     int status = 0;
     ASSERT_EQ(waitpid(child, &status, 0), child);
@@ -188,7 +189,7 @@ TEST(Realtime, ATickThatNeverEndsIsEnded) {
   }
 }
 
-TEST(Realtime, AServoWithAFixedPriorityLimitsItsRun) {
+TEST(Realtime, AServoWithFixedPrioritySetsTheRealtimeLimit) {
   NullDevice device;
   Servo servo(device, std::make_shared<HapticProgram>(), {.max_ticks = 5});
   ASSERT_TRUE(servo.start());

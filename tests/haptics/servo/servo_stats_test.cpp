@@ -10,7 +10,7 @@
 #include "haptics/servo/servo.h"
 
 namespace catena::haptics {
-namespace report_test {
+namespace servo_stats_test {
 
 json::Node parsed(const std::string& text) {
   auto node = json::parse(text, "stats");
@@ -18,7 +18,7 @@ json::Node parsed(const std::string& text) {
   return node ? *node : json::Node{};
 }
 
-TEST(ServoStats, IsReadableByOtherThreadsWhileTheServoRuns) {
+TEST(ServoStats, CanBeReadByOtherThreadsWhileTheServoRuns) {
   NullDevice device;
   Servo servo(device, std::make_shared<HapticProgram>(), {.rate_hz = 4000});
   EXPECT_TRUE(servo.start());
@@ -45,7 +45,7 @@ TEST(ServoStats, IsReadableByOtherThreadsWhileTheServoRuns) {
   EXPECT_LE(state.period_us, r.period.max_us);
   EXPECT_LE(state.compute_us, r.compute.max_us);
   EXPECT_LE(state.device_us, r.device.max_us);
-  // ticks and misses are the deadlines so far: nothing is lost
+  // ticks plus missed deadlines equal all deadlines so far
   EXPECT_NEAR(static_cast<double>(r.ticks + r.missed_deadlines), state.t_s * 4000 + 1, 1);
 }
 
@@ -88,5 +88,5 @@ TEST(ServoStats, JsonHasEveryFigure) {
   EXPECT_EQ(root.find("state_hash")->string, "0000000000000abc");
 }
 
-}  // namespace report_test
+}  // namespace servo_stats_test
 }  // namespace catena::haptics

@@ -23,7 +23,7 @@ std::shared_ptr<HapticProgram> program_at(double height, std::uint64_t epoch) {
   return program;
 }
 
-TEST(Servo, ThreadAndReplayGiveOneHash) {
+TEST(Servo, ThreadAndReplayGiveTheSameHash) {
   std::vector<RecordedPath::Sample> samples;
   std::vector<ProbeSample> path;
   for (int k = 0; k < 5000; ++k) {
@@ -46,7 +46,7 @@ TEST(Servo, ThreadAndReplayGiveOneHash) {
   EXPECT_EQ(device.forces_written(), 5001u) << "one a tick, and a last zero";
 }
 
-TEST(ServoDeathTest, TwoProgramsOfOneEpochAreABug) {
+TEST(ServoDeathTest, TwoProgramsWithOneEpochFailAnAssertion) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   SimulatedDevice hand({{0, {0, 0, 0.4}}}, {});
   Servo servo(hand, program_at(0.5, 1));
@@ -54,7 +54,7 @@ TEST(ServoDeathTest, TwoProgramsOfOneEpochAreABug) {
   EXPECT_DEATH(servo.set_program(program_at(0.6, 2)), "epoch") << "the frame side would free the one that runs";
 }
 
-TEST(Servo, NewProgramsTakeOverAndOldOnesAreFreedByTheFrameSide) {
+TEST(Servo, NewProgramsTakeOverAndTheFrameSideFreesOldOnes) {
   SimulatedDevice hand({{0, {0, 0, 0.4}}}, {});
   Servo servo(hand, program_at(0.5, 1), {.rate_hz = 1000, .paced = false});
   EXPECT_TRUE(servo.start());
@@ -69,7 +69,7 @@ TEST(Servo, NewProgramsTakeOverAndOldOnesAreFreedByTheFrameSide) {
 }
 
 TEST(Servo, ASimulatedHandSettlesWhereItsGripBalancesTheForce) {
-  // grip 500 N/m toward z = 0, link 500 N/m toward z = 0.01: they meet in the middle
+  // grip 500 N/m toward z = 0, link 500 N/m toward z = 0.01: the equilibrium is in the middle
   auto program = program_at(0.01, 1);
   program->coupling.damping_ns_per_m = 0;
   SimulatedDevice hand({{0, {0, 0, 0}}}, {.mass_kg = 0.15, .grip_stiffness_n_per_m = 500, .grip_damping_ns_per_m = 5, .period_s = 1e-3});
@@ -80,7 +80,7 @@ TEST(Servo, ASimulatedHandSettlesWhereItsGripBalancesTheForce) {
   EXPECT_NEAR(hand.position_m().z, 0.005, 1e-6);
 }
 
-TEST(Servo, PacedLoopKeepsCountOfItsTicks) {
+TEST(Servo, APacedLoopCountsItsTicks) {
   SimulatedDevice hand({{0, {0, 0, 0}}}, {});
   Servo servo(hand, program_at(0.5, 1), {.rate_hz = 2000, .paced = true, .max_ticks = 200});
   EXPECT_TRUE(servo.start());
@@ -113,7 +113,7 @@ class Unplugged final : public Device {
   int reads_ = 0;
 };
 
-TEST(Servo, ALostDeviceGetsZeroForceInThatTick) {
+TEST(Servo, ALostDeviceGetsZeroForceInTheSameTick) {
   Unplugged device;
   Servo servo(device, program_at(0.5, 1), {.rate_hz = 1000, .paced = false, .max_ticks = 50});
   EXPECT_TRUE(servo.start());

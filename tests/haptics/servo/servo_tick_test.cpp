@@ -6,7 +6,7 @@
 #include "haptics/device/simulated_device.h"
 #include "tests/support/simple_links.h"
 
-namespace step_test {
+namespace servo_tick_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -22,7 +22,7 @@ std::shared_ptr<HapticProgram> turned_program() {
   return program;
 }
 
-TEST(ServoTick, GivesTheBitsOfTheServo) {
+TEST(ServoTick, MatchesTheServoBitForBit) {
   const auto program = turned_program();
   std::vector<SimulatedDevice::Waypoint> path;
   for (int k = 0; k < 40; ++k) path.push_back({0.05 * k, {0.01 * (k % 5), 0.002 * k, 0.01 * (k % 3)}, 0});
@@ -34,18 +34,18 @@ TEST(ServoTick, GivesTheBitsOfTheServo) {
 
   StateHash hash;
   ServoStepper stepper(other, *program, 1000);
-  double most_n = 0;
+  double max_force_n = 0;
   for (int k = 0; k < 2000; ++k) {
     EXPECT_EQ(stepper.t_s(), k / 1000.0);
     const HapticState& state = stepper.step();
     hash.add(state);
-    most_n = std::max(most_n, norm(state.force_n));
+    max_force_n = std::max(max_force_n, norm(state.force_n));
   }
   EXPECT_EQ(hash.value(), servo.state_hash());
-  EXPECT_GT(most_n, 0.5) << "the hand was pushed";
+  EXPECT_GT(max_force_n, 0.5) << "the hand was pushed";
 }
 
-TEST(ServoTick, WorldAndDeviceLeadBack) {
+TEST(ServoTick, WorldAndDeviceTransformsRoundTrip) {
   const auto program = turned_program();
   const Vec3 world(0.3, 0.7, -1.1), device = device_from_world(*program, world);
   EXPECT_LT(norm(world_from_device(*program, device) - world), 1e-15);
@@ -54,4 +54,4 @@ TEST(ServoTick, WorldAndDeviceLeadBack) {
       << "the hand's z goes along the world's -y";
 }
 
-}  // namespace step_test
+}  // namespace servo_tick_test

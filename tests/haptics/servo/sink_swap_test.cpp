@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A recording that begins and ends while the servo runs.
+// Recordings that begin and end while the servo runs.
 #include <algorithm>
 
 #include "tests/haptics/servo/log_fixture.h"
@@ -7,10 +7,10 @@
 namespace catena::test {
 namespace sink_swap_test {
 
-// A device that lets the servo run as far as it may.
-class Led final : public Device {
+// A device whose reads block after `allowed` ticks.
+class GatedDevice final : public Device {
  public:
-  explicit Led(std::vector<ProbeSample> path) : path_(std::move(path)) {}
+  explicit GatedDevice(std::vector<ProbeSample> path) : path_(std::move(path)) {}
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
   DeviceInput read() noexcept override {
     while (reads_ >= allowed.load(std::memory_order_acquire)) std::this_thread::yield();
@@ -35,13 +35,13 @@ class Led final : public Device {
 
 std::uint64_t ticks_of(const Servo& servo) { return servo.stats().ticks; }
 
-void run_to(Led& device, const Servo& servo, std::uint64_t ticks) {
+void run_to(GatedDevice& device, const Servo& servo, std::uint64_t ticks) {
   device.allowed = ticks;
   while (ticks_of(servo) < ticks) std::this_thread::yield();
 }
 
-/// Attaches, while the servo goes on as far as that takes.
-bool swap(Led& device, Servo& servo, TickSink* sink) {
+/// Swaps the sink while the servo runs on until the swap is done.
+bool swap(GatedDevice& device, Servo& servo, TickSink* sink) {
   std::atomic<bool> done{false};
   std::thread leader([&] {
     while (!done) {
@@ -55,9 +55,9 @@ bool swap(Led& device, Servo& servo, TickSink* sink) {
   return free;
 }
 
-TEST(SinkSwap, ARecordingThatBeginsInTheMiddleRunsAgainToTheBit) {
+TEST(SinkSwap, ARecordingStartedMidRunReplaysExactly) {
   const test::TemporaryFolder folder;
-  Led device(test::adversarial_path(1000));
+  GatedDevice device(test::adversarial_path(1000));
   std::uint64_t epoch = 1;
   std::shared_ptr<const HapticProgram> program = make_numbered_program(epoch);
   Servo servo(device, program, {.paced = false});
@@ -70,7 +70,7 @@ TEST(SinkSwap, ARecordingThatBeginsInTheMiddleRunsAgainToTheBit) {
       ASSERT_TRUE(writer) << writer.error().message;
       (*writer)->add_program(*program);
       ASSERT_TRUE(swap(device, servo, writer->get()));
-      // programs change while it records
+      // program changes during the recording
       for (int k = 0; k < 3; ++k) {
         run_to(device, servo, ticks_of(servo) + 300);
         program = make_numbered_program(++epoch);
@@ -81,7 +81,7 @@ TEST(SinkSwap, ARecordingThatBeginsInTheMiddleRunsAgainToTheBit) {
       ASSERT_TRUE(swap(device, servo, nullptr));
       ASSERT_TRUE((*writer)->finish());
       EXPECT_EQ((*writer)->status().lost, 0u);
-    }  // the writer is gone, and the servo runs on
+    }  // the writer is destroyed while the servo runs
     auto reader = LogReader::open(path);
     ASSERT_TRUE(reader) << reader.error().message;
     const auto result = replay_numbered(*reader);
@@ -96,16 +96,16 @@ TEST(SinkSwap, ARecordingThatBeginsInTheMiddleRunsAgainToTheBit) {
   servo.stop();
 }
 
-TEST(SinkSwap, AServoThatStandsStillIsNotWaitedForForEver) {
+TEST(SinkSwap, SwappingTimesOutWhenTheServoStandsStill) {
   struct Count final : TickSink {
     void put(const ProbeSample&, const HapticState&) noexcept override { ++ticks; }
     std::atomic<int> ticks{0};
   } first, second;
-  Led device(test::adversarial_path(10));
+  GatedDevice device(test::adversarial_path(10));
   Servo servo(device, make_numbered_program(1), {.paced = false, .sink = &first});
   EXPECT_TRUE(servo.start());
   run_to(device, servo, 5);
-  // held in its device, the servo may have looked already: a first swap can still go through, a second one cannot
+  // the servo blocks in its device after it may have checked the sink: one swap can succeed, a second one cannot
   EXPECT_FALSE(servo.set_sink(&second, 0.01) && servo.set_sink(&first, 0.01));
   device.allowed = 50;
   while (ticks_of(servo) < 50) std::this_thread::yield();
@@ -118,7 +118,7 @@ TEST(SinkSwap, AServoThatStandsStillIsNotWaitedForForEver) {
   EXPECT_TRUE(servo.set_sink(&first)) << "nothing runs: at once";
 }
 
-TEST(SinkSwap, AStateOfAnotherLayoutIsSaidAndACutOneIsDamage) {
+TEST(SinkSwap, AStateOfAnotherLayoutIsReportedAndATruncatedOneIsDamaged) {
   ChainState state;
   state.ticks = 12;
   const std::string good = to_bytes(state);
@@ -126,7 +126,7 @@ TEST(SinkSwap, AStateOfAnotherLayoutIsSaidAndACutOneIsDamage) {
   EXPECT_EQ(parse_state(good)->tick, 12u);
   EXPECT_TRUE(parse_state(good)->chain);
   std::string other = good;
-  other[9] = static_cast<char>(other[9] ^ 1);  // in the layout
+  other[9] = static_cast<char>(other[9] ^ 1);  // in the layout hash
   ASSERT_TRUE(parse_state(other));
   EXPECT_FALSE(parse_state(other)->chain);
   EXPECT_FALSE(parse_state(good.substr(0, good.size() - 1)));
@@ -134,8 +134,8 @@ TEST(SinkSwap, AStateOfAnotherLayoutIsSaidAndACutOneIsDamage) {
   EXPECT_FALSE(parse_state(to_bytes(state))) << "the servo's beginning has no block";
 }
 
-TEST(SinkSwap, AnotherServoGoesOnWithWhatTheChainRemembers) {
-  Led device(test::adversarial_path(1000));
+TEST(SinkSwap, AnotherServoResumesFromTheChainState) {
+  GatedDevice device(test::adversarial_path(1000));
   const auto program = make_numbered_program(1), next = make_numbered_program(4);
   Servo first(device, program, {.paced = false, .max_ticks = 100});
   device.allowed = 100;

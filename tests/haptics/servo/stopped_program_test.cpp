@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A program that is stopped (SIGSTOP) and goes on: the motors get zero in the first packet, and then the ramp.
+/// A program that is stopped (SIGSTOP) and continued: the first packet to the motors is zero, then the force ramps in.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -28,7 +28,7 @@ constexpr double kRampS = 0.05;
 constexpr std::int64_t kRampNs = 50000000;
 constexpr std::int64_t kStopMs = 75;  // the watchdog trips after 50 ms
 
-/// What the motors were sent, and when.
+/// Time and force of one packet to the motors.
 struct Packet {
   std::int64_t ns = 0;
   double force_n = 0;
@@ -38,10 +38,10 @@ void nap_ms(std::int64_t ms) { std::this_thread::sleep_for(std::chrono::millisec
 
 constexpr std::size_t kMaxPackets = 200000;
 
-/// A device that does nothing by itself: what it is told is what the motors have. It rests 10 mm deep in the ball.
-class Plain final : public Device {
+/// A device without logic of its own: each write is one packet to the motors. It rests 10 mm deep in the ball.
+class PlainDevice final : public Device {
  public:
-  explicit Plain(std::vector<Packet>& packets) : packets_(packets) { capabilities_.max_force_n = 10; }
+  explicit PlainDevice(std::vector<Packet>& packets) : packets_(packets) { capabilities_.max_force_n = 10; }
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
   DeviceInput read() noexcept override { return {.position_m = {0, 0, 0.13}}; }
   void write(const DeviceOutput& output) noexcept override {
@@ -50,7 +50,7 @@ class Plain final : public Device {
   }
   void stop() noexcept override { stopped_ = true; }
   void resume() noexcept override { stopped_ = false; }
-  /// From now on it stops the program itself so many times, at the end of a write.
+  /// Makes the next writes stop the program, `times` times, at the end of a write.
   void stop_the_program(int times) { stops_left_ = times; }
 
  private:
@@ -74,16 +74,16 @@ std::unique_ptr<Device> emulated_falcon(const std::shared_ptr<SharedEmulatedFalc
   return std::move(*falcon);
 }
 
-// The child of the tests below: holds a hand that presses into a ball, and is stopped again and again.
-TEST(SuspendedProcess, DISABLED_HoldsAHandAndIsStopped) {
+// Child process of the tests below: runs a servo with a hand that presses into a ball, and is stopped repeatedly.
+TEST(SuspendedProcess, DISABLED_PressesIntoABallAndIsStopped) {
   const std::string path = test::child_variable("CATENA_PACKETS_OF_THE_CHILD");
   if (path.empty()) GTEST_SKIP() << "the child of this suite";
   std::vector<Packet> packets;
   packets.reserve(kMaxPackets);
   auto shared = std::make_shared<SharedEmulatedFalcon>(EmulatedFalconOptions{.homed = true});
   const std::string kind = test::child_variable("CATENA_DEVICE_OF_THE_CHILD");
-  auto plain = std::make_unique<Plain>(packets);
-  Plain* stops = kind == "stops in write" ? plain.get() : nullptr;
+  auto plain = std::make_unique<PlainDevice>(packets);
+  PlainDevice* stops = kind == "stops in write" ? plain.get() : nullptr;
   std::unique_ptr<Device> device = std::move(plain);
   if (kind == "falcon") device = emulated_falcon(shared, packets);
   auto program = std::make_shared<HapticProgram>(*tests::ball_link_program());
@@ -106,13 +106,13 @@ TEST(SuspendedProcess, DISABLED_HoldsAHandAndIsStopped) {
   ASSERT_EQ(std::rename((path + ".part").c_str(), path.c_str()), 0);
 }
 
-/// From when the program stood still, until it was told to go on.
+/// Interval from the program's stop to its SIGCONT.
 struct Stop {
   std::int64_t from_ns = 0, to_ns = 0;
 };
 
-/// Stops the child so many times; what its motors got.
-void stop_and_go(const std::string& device, std::vector<Packet>& packets, std::vector<Stop>& stops) {
+/// Stops and continues the child kStops times; returns the packets that its motors received.
+void stop_and_continue(const std::string& device, std::vector<Packet>& packets, std::vector<Stop>& stops) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "packets";
   const pid_t child = test::start_case("SuspendedProcess.DISABLED_*",
@@ -129,7 +129,7 @@ void stop_and_go(const std::string& device, std::vector<Packet>& packets, std::v
     kill(child, SIGCONT);
     stops.push_back(stop);
     nap_ms(kStopMs + 35);
-    // at another moment of the period each time
+    // at a different phase of the period each time
     std::this_thread::sleep_for(std::chrono::microseconds(83 * i));
   }
   test::write_file(path + ".enough", "1");
@@ -148,51 +148,51 @@ std::string around(const std::vector<Packet>& packets, std::size_t at) {
   return text;
 }
 
-/// `on_its_way`: packets that may have been on their way to the motors at the moment of the stop, and arrive after it.
-void check(const std::vector<Packet>& packets, const std::vector<Stop>& stops, std::size_t on_its_way) {
-  double most = 0;
-  for (const Packet& packet : packets) most = std::max(most, packet.force_n);
-  ASSERT_GT(most, 2) << "the hand was held";
+/// `in_flight`: number of packets that may have been in flight at the stop and arrive after it.
+void check(const std::vector<Packet>& packets, const std::vector<Stop>& stops, std::size_t in_flight) {
+  double max_sent_n = 0;
+  for (const Packet& packet : packets) max_sent_n = std::max(max_sent_n, packet.force_n);
+  ASSERT_GT(max_sent_n, 2) << "the hand was held";
   int with_force = 0;
   for (const Stop& stop : stops) {
-    // the first packet after it
+    // first packet after the stop
     std::size_t i = 1;
     while (i + 1 < packets.size() && packets[i].ns < stop.from_ns) ++i;
     EXPECT_GE(packets[i].ns, stop.to_ns);
     with_force += packets[i - 1].force_n > 1;
-    const std::size_t first = i + on_its_way;
+    const std::size_t first = i + in_flight;
     ASSERT_LT(first, packets.size());
-    // what has its own thread may send the tick after the zero: the ramp's first
-    if (on_its_way == 0) {
+    // a driver with its own thread may skip the zero and send the ramp's first tick
+    if (in_flight == 0) {
       EXPECT_EQ(packets[first].force_n, 0) << around(packets, i);
     }
-    // the ramp: never more than its share of the time since; a motor count, and two ticks of what a packet shows late
+    // the force stays below the ramp; tolerance: a motor count, and two ticks of latency of a packet
     for (std::size_t k = first; k < packets.size() && packets[k].ns < stop.to_ns + kRampNs; ++k) {
       const double share = (1e-9 * static_cast<double>(packets[k].ns - stop.to_ns) + 2e-3) / kRampS;
-      ASSERT_LE(packets[k].force_n, most * share + 0.02) << around(packets, i);
+      ASSERT_LE(packets[k].force_n, max_sent_n * share + 0.02) << around(packets, i);
     }
   }
   EXPECT_GE(with_force, kStops / 4);
 }
 
-TEST(SuspendedProcess, AStopWithinTheWriteIsSeenToo) {
+TEST(SuspendedProcess, AStopDuringAWriteIsDetected) {
   std::vector<Packet> packets;
   std::vector<Stop> stops;
-  stop_and_go("stops in write", packets, stops);
+  stop_and_continue("stops in write", packets, stops);
   check(packets, stops, 0);
 }
 
-TEST(SuspendedProcess, TheFirstTickAfterAStopIsZeroAndThenTheRamp) {
+TEST(SuspendedProcess, TheFirstTickAfterAStopIsZeroThenForceRampsIn) {
   std::vector<Packet> packets;
   std::vector<Stop> stops;
-  stop_and_go("plain", packets, stops);
+  stop_and_continue("plain", packets, stops);
   check(packets, stops, 0);
 }
 
-TEST(SuspendedProcess, TheMotorsOfAFalconGetTheRamp) {
+TEST(SuspendedProcess, AFalconsMotorsRampInAfterAStop) {
   std::vector<Packet> packets;
   std::vector<Stop> stops;
-  stop_and_go("falcon", packets, stops);
+  stop_and_continue("falcon", packets, stops);
   check(packets, stops, 1);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The stated map, and what the sender asks of the runtime in which order. CATENA_PLOT=FILE.png draws the map with gnuplot.
+/// The vibration mapping, and the sender's calls to the runtime in order. CATENA_PLOT=FILE.png draws the map with gnuplot.
 #include "haptics/vibration/vibration.h"
 
 #include <gtest/gtest.h>
@@ -17,14 +17,14 @@ using What = VibrationSender::Action;
 
 constexpr std::int64_t kCall_ns = 11'111'111;
 
-/// One tick's step of force, so that the next take has that change.
+/// Adds a force step of one tick, so that the next take_peaks() has that change.
 void step(PeakDetector& peaks, double newtons) {
   peaks.add({.is_live = false});
   peaks.add({});
   peaks.add({.requested_force_n = Vec3(newtons, 0, 0)});
 }
 
-/// So much friction at 0.1 m/s.
+/// Adds friction of `newtons` at 0.1 m/s.
 void rub(PeakDetector& peaks, double newtons) {
   peaks.add({.is_live = false});
   for (int k = 0; k < 60; ++k) peaks.add({Vec3(newtons, 0, 0), Vec3(1e-4 * k, 0, 0), -newtons * 1e-4 * k});
@@ -49,7 +49,7 @@ TEST(VibrationSender, FrictionLastsUntilTheNextCall) {
   }
 }
 
-TEST(Vibration, TheMapIsLinearUpToItsEnds) {
+TEST(Vibration, TheMapIsLinearBetweenItsLimits) {
   const VibrationMapping map;
   EXPECT_EQ(compute_vibration({}, 0.01), Vibration{});
   EXPECT_EQ(compute_vibration({.change_n = 0.75}, 0.01), (Vibration{0.5, map.pulse_hz, 20'000'000, true}));
@@ -62,7 +62,7 @@ TEST(Vibration, TheMapIsLinearUpToItsEnds) {
   EXPECT_FALSE(compute_vibration({0.3, 1, 0.05}, 0.01).is_pulse);
 }
 
-TEST(Vibration, AWeakerOneDoesNotCutAPulseShortButAStrongerOneReplacesIt) {
+TEST(Vibration, OnlyAStrongerVibrationReplacesAPulse) {
   PeakDetector peaks;
   VibrationSender sender;
   std::int64_t now = 0;
@@ -78,7 +78,7 @@ TEST(Vibration, AWeakerOneDoesNotCutAPulseShortButAStrongerOneReplacesIt) {
   EXPECT_EQ(sender.next(peaks, now += 10 * kCall_ns, true).action, What::nothing) << "silence needs no call: a vibration ends by itself";
 }
 
-TEST(Vibration, FrictionGoesOnWithoutAGapAndFollowsTheForceDown) {
+TEST(Vibration, FrictionContinuesWithoutGapsAndFollowsADecreasingForce) {
   PeakDetector peaks;
   VibrationSender sender;
   std::int64_t now = 0, ends = 0;
@@ -96,7 +96,7 @@ TEST(Vibration, FrictionGoesOnWithoutAGapAndFollowsTheForceDown) {
   }
 }
 
-TEST(Vibration, ItStopsOnceWhereItIsNotAllowedAndForgetsWhatWasFeltThere) {
+TEST(Vibration, WhenDisallowedItStopsOnceAndDropsPendingPeaks) {
   PeakDetector peaks;
   VibrationSender sender;
   EXPECT_EQ(sender.next(peaks, 0, false).action, What::nothing) << "nothing was begun";
@@ -113,7 +113,7 @@ TEST(Vibration, ItStopsOnceWhereItIsNotAllowedAndForgetsWhatWasFeltThere) {
   EXPECT_EQ(sender.next(peaks, 6, true).action, What::vibrate) << "the pulse of before does not last";
 }
 
-// Not a test of its own: the plot of docs/user/headset.md.
+// Draws the plot of docs/user/headset.md.
 TEST(Vibration, Plot) {
   const char* file = std::getenv("CATENA_PLOT");
   if (file == nullptr) GTEST_SKIP() << "CATENA_PLOT=FILE.png draws the map";
@@ -125,9 +125,9 @@ TEST(Vibration, Plot) {
     step(peaks, newtons);
     contact += fmt::format("{} {}\n", newtons, compute_vibration(peaks.take_peaks(), 1e-9 * kCall_ns).amplitude);
     rub(peaks, newtons);
-    ForcePeaks felt = peaks.take_peaks();
-    felt.change_n = 0;
-    friction += fmt::format("{} {}\n", newtons, compute_vibration(felt, 1e-9 * kCall_ns).amplitude);
+    ForcePeaks found = peaks.take_peaks();
+    found.change_n = 0;
+    friction += fmt::format("{} {}\n", newtons, compute_vibration(found, 1e-9 * kCall_ns).amplitude);
   }
   test::write_file(folder / "plot",
                    "set terminal png size 520,320 background 'white'\nset output '" + std::string(file) +

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-/// Projections, colours by another field and jitter on their way into the packet.
+/// Projections, colours by another field, and jitter in the packet.
 #include <gtest/gtest.h>
 
 #include "render/extract/extract.h"
 
 namespace catena::render {
-namespace look_test {
+namespace appearance_test {
 
 const std::string kFields = R"({"fields": {"s": {"analytic": "sphere", "resolution": 9}, "t": {"analytic": "torus", "resolution": 9},
                                            "v": {"analytic": "circle"}},)";
 
-TEST(ExtractAppearance, TheyReachThePacket) {
+TEST(ExtractAppearance, AppearanceKeysReachThePacket) {
   auto scene = scene::parse_scene(kFields + R"("jitter": false,
     "volumes": [{"field": "s", "projection": "minimum", "opacity": [[0, 0], [1, 0.5]], "opacity_unit": 0.25}],
     "isosurfaces": [{"field": "s", "level": 1, "color_by": {"field": "t", "color": [[0, 1, 0, 0], [0.5, 0, 0, 1]]}},
@@ -29,14 +29,14 @@ TEST(ExtractAppearance, TheyReachThePacket) {
   ASSERT_TRUE(stated.color_by);
   EXPECT_NE(stated.color_by->grid, stated.grid);
   EXPECT_EQ(stated.color_by->colors[1], (std::array<double, 4>{0.5, 0, 0, 1}));
-  // unstated: viridis over all values of the other field
+  // default: viridis over all values of the other field
   const IsosurfaceItem& unstated = packet->isosurfaces[1];
   ASSERT_TRUE(unstated.color_by);
   EXPECT_DOUBLE_EQ(unstated.color_by->colors.front()[0], unstated.color_by->grid->min_value());
   EXPECT_DOUBLE_EQ(unstated.color_by->colors.back()[0], unstated.color_by->grid->max_value());
 }
 
-TEST(ExtractAppearance, AVectorFieldCannotColour) {
+TEST(ExtractAppearance, AVectorFieldForColorsIsRefused) {
   auto scene = scene::parse_scene(kFields + "\n" + R"("volumes": [{"field": "s", "color_by": {"field": "v"}}]})", "s.json");
   ASSERT_TRUE(scene) << scene.error().message;
   const auto packet = make_frame(*scene, 32, 32);
@@ -45,5 +45,5 @@ TEST(ExtractAppearance, AVectorFieldCannotColour) {
   EXPECT_EQ(packet.error().message.find("s.json:"), 0u);
 }
 
-}  // namespace look_test
+}  // namespace appearance_test
 }  // namespace catena::render

@@ -10,7 +10,7 @@
 #include "tests/support/support.h"
 
 namespace catena::render {
-namespace first_view_test {
+namespace auto_camera_test {
 
 const std::string kBall = R"("fields": {"s": {"analytic": "sphere", "resolution": 64, "box": [-8, 8]}})";
 
@@ -22,12 +22,12 @@ FramePacket packet_of(const std::string& text, std::uint32_t width = 400, std::u
   return std::move(*packet);
 }
 
-/// The shares of width and height that the ball of radius r about `centre` takes, and where its middle is, 0.5 in the middle.
-struct Taken {
+/// Extent and centre of the projected ball of radius r about `centre`, as fractions of the image's width and height.
+struct Extent {
   double width = 0, height = 0, x = 0, y = 0;
 };
 
-Taken taken_by(const FramePacket& packet, double r, const Vec3& centre = Vec3(0.0)) {
+Extent extent_of(const FramePacket& packet, double r, const Vec3& centre = Vec3(0.0)) {
   const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
   Bounds seen;
   for (int i = 0; i < 64; ++i)
@@ -41,33 +41,33 @@ Taken taken_by(const FramePacket& packet, double r, const Vec3& centre = Vec3(0.
   return {size.x, size.y, middle.x, middle.y};
 }
 
-TEST(AutoCamera, ASurfaceFillsTheHeightHoweverLargeItsBoxIs) {
+TEST(AutoCamera, ASurfaceFillsTheHeightForAnySizeOfItsBox) {
   for (const double level : {1.0, 3.0, 7.0}) {
     const FramePacket packet = packet_of("{" + kBall + R"(, "isosurfaces": [{"field": "s", "level": )" + std::to_string(level) + "}]}");
-    const Taken taken = taken_by(packet, level);
-    EXPECT_NEAR(taken.height, 0.8, level < 2 ? 0.05 : 0.02) << level;  // a ball of four voxels is a rough one
-    EXPECT_NEAR(taken.x, 0.5, 0.01);
-    EXPECT_NEAR(taken.y, 0.5, 0.01);
+    const Extent extent = extent_of(packet, level);
+    EXPECT_NEAR(extent.height, 0.8, level < 2 ? 0.05 : 0.02) << level;  // a ball with a radius of four voxels is rough
+    EXPECT_NEAR(extent.x, 0.5, 0.01);
+    EXPECT_NEAR(extent.y, 0.5, 0.01);
   }
-  // a narrow picture is filled across
+  // a narrow image is filled horizontally
   const FramePacket narrow = packet_of("{" + kBall + R"(, "isosurfaces": [{"field": "s", "level": 3}]})", 200, 600);
-  EXPECT_NEAR(taken_by(narrow, 3).width, 0.9, 0.02);
+  EXPECT_NEAR(extent_of(narrow, 3).width, 0.9, 0.02);
 }
 
-TEST(AutoCamera, OfAVolumeWhatIsOpaqueCounts) {
-  // opaque within 2; faint outside, a hundredth of what can be seen
+TEST(AutoCamera, FitsTheOpaquePartsOfAVolume) {
+  // opaque within radius 2, nearly invisible outside
   const std::string volume = R"(, "volumes": [{"field": "s", "extinction": [[0, 5], [2, 5], [2.01, 0.0005]]}]})";
-  EXPECT_NEAR(taken_by(packet_of("{" + kBall + volume), 2).height, 0.8, 0.1);
+  EXPECT_NEAR(extent_of(packet_of("{" + kBall + volume), 2).height, 0.8, 0.1);
 }
 
-TEST(AutoCamera, WhatIsClippedAwayDoesNotCount) {
+TEST(AutoCamera, IgnoresClippedParts) {
   const FramePacket packet = packet_of("{" + kBall + R"(, "isosurfaces": [{"field": "s", "level": 4}],
     "clip": [{"plane": {"point": [0, 0, 3.5], "normal": [0, 0, 1]}}]})");
   EXPECT_GT(packet.view.target.z, 3.4);
   EXPECT_LT(norm(packet.view.position - packet.view.target), 15);
 }
 
-TEST(AutoCamera, ABarTakesRoomAndTheMiddleStays) {
+TEST(AutoCamera, LeavesSpaceForAScalarBar) {
   const std::string slice = R"(, "slices": [{"field": "s", "axis": "y", "at": 0}])";
   const auto distance = [](const FramePacket& packet) { return norm(packet.view.position - packet.view.target); };
   const FramePacket plain = packet_of("{" + kBall + slice + "}", 300, 300);
@@ -76,7 +76,7 @@ TEST(AutoCamera, ABarTakesRoomAndTheMiddleStays) {
   EXPECT_NEAR(norm(bar.view.target - plain.view.target), 0, 0.5);
 }
 
-TEST(AutoCamera, ALegendOfLongNamesLiesBesideTheData) {
+TEST(AutoCamera, LeavesSpaceForALegendWithLongNames) {
   const test::TemporaryFolder folder;
   std::string bytes, values, names;
   for (int z = 0; z < 24; ++z)
@@ -97,14 +97,14 @@ TEST(AutoCamera, ALegendOfLongNamesLiesBesideTheData) {
     const Canvas canvas(packet, typesetter);
     const auto places = layout_scalar_bars(canvas, packet.overlay);
     ASSERT_EQ(places.size(), 1u);
-    const Taken taken = taken_by(packet, 10.5, Vec3(11.5));
-    EXPECT_LT((taken.x + 0.5 * taken.width) * width, places[0].ramp.x) << width;
-    EXPECT_GT((taken.x - 0.5 * taken.width) * width, 0.03 * width);
-    EXPECT_GT(taken.width * width, 0.35 * height) << "and is seen";
+    const Extent extent = extent_of(packet, 10.5, Vec3(11.5));
+    EXPECT_LT((extent.x + 0.5 * extent.width) * width, places[0].ramp.x) << width;
+    EXPECT_GT((extent.x - 0.5 * extent.width) * width, 0.03 * width);
+    EXPECT_GT(extent.width * width, 0.35 * height) << "and is seen";
   }
 }
 
-TEST(AutoCamera, AStrayPointDoesNotMakeTheOthersSmall) {
+TEST(AutoCamera, IgnoresOutlyingPoints) {
   const test::TemporaryFolder folder;
   std::string table = "x,y,z\n";
   for (int k = 0; k < 1000; ++k) table += std::to_string(k % 10) + "," + std::to_string(k / 10 % 10) + "," + std::to_string(k / 100) + "\n";
@@ -120,7 +120,7 @@ TEST(AutoCamera, AStrayPointDoesNotMakeTheOthersSmall) {
   EXPECT_NEAR(norm(stray.view.target - plain.view.target), 0, 1e-9);
 }
 
-TEST(AutoCamera, ABoundingBoxIsInThePicture) {
+TEST(AutoCamera, FitsABoundingBox) {
   const FramePacket packet = packet_of("{" + kBall + R"(, "isosurfaces": [{"field": "s", "level": 1}], "bounding_box": true})");
   const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
   for (int i = 0; i < 8; ++i) {
@@ -131,14 +131,14 @@ TEST(AutoCamera, ABoundingBoxIsInThePicture) {
   }
 }
 
-TEST(AutoCamera, AStatedCameraStays) {
+TEST(AutoCamera, KeepsAStatedCamera) {
   const FramePacket packet = packet_of("{" + kBall + R"(, "isosurfaces": [{"field": "s", "level": 1}],
     "camera": {"position": [9, 8, 7], "target": [1, 2, 3]}})");
   EXPECT_EQ(packet.view.position, Vec3(9, 8, 7));
   EXPECT_EQ(packet.view.target, Vec3(1, 2, 3));
 }
 
-/// A ball of 200 in a cube of 24^3 voxels; `code` of the qform.
+/// A ball of value 100 in 24^3 voxels, with the qform code `code`.
 void write_nifti(const std::string& path, std::int16_t code) {
   std::string file(352, '\0');
   const auto put = [&](std::size_t at, auto v) { std::memcpy(file.data() + at, &v, sizeof v); };
@@ -158,31 +158,31 @@ void write_nifti(const std::string& path, std::int16_t code) {
   catena::test::write_file(path, file);
 }
 
-TEST(AutoCamera, APatientIsSeenFromTheFront) {
+TEST(AutoCamera, ViewsAPatientFromTheFront) {
   const catena::test::TemporaryFolder folder;
   for (const std::int16_t code : {std::int16_t{1}, std::int16_t{0}}) {
     const std::string name = code != 0 ? "p.nii" : "q.nii";
     write_nifti(folder / name, code);
     const FramePacket packet = packet_of(R"({"fields": {"s": {"file": ")" + name + R"("}}, "isosurfaces": [{"field": "s", "level": 50}]})",
                                          400, 300, folder / "s.json");
-    const Vec3 towards_eye = direction(packet.view.position - packet.view.target);
+    const Vec3 to_camera = direction(packet.view.position - packet.view.target);
     if (code != 0)
-      EXPECT_GT(towards_eye.y, 0.8);
+      EXPECT_GT(to_camera.y, 0.8);
     else
-      EXPECT_NEAR(norm(towards_eye - default_view_direction()), 0, 1e-9);
+      EXPECT_NEAR(norm(to_camera - default_view_direction()), 0, 1e-9);
     EXPECT_EQ(packet.view.up, Vec3(0, 0, 1));
   }
 }
 
-TEST(AutoCamera, FlatDataAreSeenFromAcross) {
+TEST(AutoCamera, ViewsFlatDataAlongTheirNormal) {
   const catena::test::TemporaryFolder folder;
   catena::test::write_file(folder / "t.obj", "v 0 0 0\nv 9 0 0.5\nv 9 9 0\nv 0 9 0\nf 1 2 3\nf 1 3 4\n");
   catena::test::write_file(folder / "u.obj", "v 0 0 0\nv 0.5 9 0\nv 0 9 9\nv 0 0 9\nf 1 2 3\nf 1 3 4\n");
   for (const auto& [name, axis] : {std::pair{"t.obj", 2}, {"u.obj", 0}}) {
     const FramePacket packet =
         packet_of(std::string(R"({"meshes": [{"name": "a", "file": ")") + name + R"("}]})", 400, 300, folder / "s.json");
-    const Vec3 towards_eye = direction(packet.view.position - packet.view.target);
-    EXPECT_GT(towards_eye[axis], 0.7) << name;
+    const Vec3 to_camera = direction(packet.view.position - packet.view.target);
+    EXPECT_GT(to_camera[axis], 0.7) << name;
   }
 }
 
@@ -195,5 +195,5 @@ TEST(VisiblePoints, LieOnTheSurface) {
   EXPECT_TRUE(find_visible_points(*grid, 100).empty());
 }
 
-}  // namespace first_view_test
+}  // namespace auto_camera_test
 }  // namespace catena::render

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which edges of a box carry the axes, for cameras whose answer is known; that nothing of them lies over the box.
+// The edges of a box that carry the axes, for cameras with known results; ticks and numbers never overlap the box.
 #include "render/extract/axis_edges.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace axis_edges_test {
 
 const Bounds kBox{{-1, -2, -3}, {1, 2, 3}};
 
-/// "x: -y -z" of the edge along x at least y and least z.
+/// Text of an edge, for example "-y -z" for the edge along x at minimum y and z.
 std::string words(const AxisEdge& edge) {
   std::string text;
   for (int a = 0; a < 3; ++a) {
@@ -38,7 +38,7 @@ View from(const Vec3& position, bool orthographic = false) {
   return view;
 }
 
-TEST(AxisEdges, AreThoseOfTheOutline) {
+TEST(AxisEdges, AreOnTheOutlineOfTheBox) {
   struct Case {
     Vec3 eye;
     const char *x, *y, *z;
@@ -48,7 +48,7 @@ TEST(AxisEdges, AreThoseOfTheOutline) {
                           Case{{10, -16, 8}, "-y -z", "+x -z", "-x -y"},     // from the right
                           Case{{10, 16, 8}, "+y -z", "+x -z", "+x -y"},      // from behind
                           Case{{-10, 16, 8}, "+y -z", "-x -z", "+x +y"},     //
-                          Case{{-10, -16, -8}, "+y -z", "+x -z", "-x +y"}})  // from below: the edges behind are the lowest
+                          Case{{-10, -16, -8}, "+y -z", "+x -z", "-x +y"}})  // from below: the rear edges are the lowest
     {
       const auto edges = find_axis_edges(kBox, from(c.eye, orthographic));
       EXPECT_EQ(words(edges[0]), c.x) << c.eye.x << " " << c.eye.y << " " << c.eye.z;
@@ -61,7 +61,7 @@ TEST(AxisEdges, AreThoseOfTheOutline) {
     }
 }
 
-TEST(AxisEdges, OfAFaceSeenStraightOnTheyAreItsLowerAndLeftOnes) {
+TEST(AxisEdges, OfAFaceSeenHeadOnAreTheLowerAndLeftEdges) {
   for (const bool orthographic : {false, true}) {
     const auto edges = find_axis_edges(kBox, from({0, -20, 0}, orthographic));
     EXPECT_EQ(words(edges[0]), "-y -z");
@@ -70,11 +70,11 @@ TEST(AxisEdges, OfAFaceSeenStraightOnTheyAreItsLowerAndLeftOnes) {
     EXPECT_EQ(words(edges[2].outward), "-x");
     EXPECT_EQ(words(edges[1]).find("+z"), std::string::npos) << "across the picture it is a point, or low: " << words(edges[1]);
   }
-  // from within there is no outline
+  // inside the box there is no outline
   for (const AxisEdge& edge : find_axis_edges(kBox, from({0.1, 0.2, 0.3}))) EXPECT_NEAR(norm(edge.outward), 1, 1e-12);
 }
 
-/// Whether a ray meets the box, a little smaller than it is.
+/// True if a ray intersects the slightly shrunk box.
 bool meets(const Ray& ray) {
   double enter = -HUGE_VAL, leave = HUGE_VAL;
   for (int a = 0; a < 3; ++a) {
@@ -85,7 +85,7 @@ bool meets(const Ray& ray) {
   return enter < leave;
 }
 
-TEST(AxisEdges, TicksAndNumbersLieBesideTheBoxFromEverySide) {
+TEST(AxisEdges, TicksAndNumbersNeverOverlapTheBox) {
   for (const bool orthographic : {false, true})
     for (int i = 0; i < 400; ++i) {
       const double z = 1 - (2 * i + 1) / 400.0, r = std::sqrt(1 - z * z), turn = 2.399963229728653 * i;
@@ -93,7 +93,7 @@ TEST(AxisEdges, TicksAndNumbersLieBesideTheBoxFromEverySide) {
       const Camera camera = make_camera(view, 400, 400, Bounds());
       const auto edges = find_axis_edges(kBox, view);
       for (std::size_t a = 0; a < 3; ++a) {
-        // eyes within a slab of the box see a face alone, whose outline has no edge across it
+        // cameras within a slab of the box see one face only, without an edge for the third axis
         bool slab = false;
         for (std::size_t b = 0; b < 3; ++b) slab = slab || (b != a && !orthographic && std::fabs(view.position[int(b)]) < kBox.hi[int(b)]);
         if (slab) continue;
@@ -109,7 +109,7 @@ TEST(AxisEdges, TicksAndNumbersLieBesideTheBoxFromEverySide) {
     }
 }
 
-TEST(AxisEdges, EveryEyeAndTileHasTheSame) {
+TEST(AxisEdges, AreEqualInEveryEyeAndTile) {
   View view = from({-10, -16, 8});
   const auto whole = find_axis_edges(kBox, view);
   view.window = {0, 1, 0, 0.5};
@@ -118,7 +118,7 @@ TEST(AxisEdges, EveryEyeAndTileHasTheSame) {
   for (std::size_t a = 0; a < 3; ++a) EXPECT_TRUE(whole[a].from == tile[a].from && whole[a].outward == tile[a].outward);
 }
 
-TEST(AxisEdges, TheyFollowTheViewOfAPacket) {
+TEST(AxisEdges, FollowTheViewOfAPacket) {
   auto scene = scene::parse_scene(R"({"fields": {"s": {"analytic": "sphere", "resolution": 9}}, "isosurfaces": [{"field": "s", "level": 1}],
     "axes": true, "bounding_box": true, "labels": [{"at": [0, 0, 0], "text": "here"}],
     "camera": {"position": [-10, -16, 8], "target": [0, 0, 0]}})",

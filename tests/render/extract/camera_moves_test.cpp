@@ -22,7 +22,7 @@ View from_south() { return {{0.0, -10.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0},
 TEST(CameraMoves, AxisViewsLookAlongTheirAxisAndSeeEverything) {
   const struct {
     const char* words;
-    Vec3 looks, up;
+    Vec3 look_direction, up;
   } cases[] = {{"+x", {1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}}, {"-x", {-1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}},
                {"+y", {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}, {"-y", {0.0, -1.0, 0.0}, {0.0, 0.0, 1.0}},
                {"+z", {0.0, 0.0, 1.0}, {0.0, 1.0, 0.0}}, {"-z", {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}}};
@@ -30,7 +30,7 @@ TEST(CameraMoves, AxisViewsLookAlongTheirAxisAndSeeEverything) {
     const auto view = axis_view(slab(), 4.0 / 3, c.words);
     ASSERT_TRUE(view) << c.words;
     const Camera camera = make_camera(*view, 400, 300, slab());
-    expect_near(-camera.back, c.looks);
+    expect_near(-camera.back, c.look_direction);
     expect_near(camera.up, c.up);
     expect_near(view->target, slab().center());
     for (int i = 0; i < 8; ++i) {
@@ -43,14 +43,14 @@ TEST(CameraMoves, AxisViewsLookAlongTheirAxisAndSeeEverything) {
 }
 
 TEST(CameraMoves, IsoSeesThreeSidesAlike) {
-  const auto towards_eye = axis_direction("iso");
-  ASSERT_TRUE(towards_eye);
-  EXPECT_NEAR(towards_eye->x, 1 / std::sqrt(3.0), 1e-12);
-  EXPECT_NEAR(towards_eye->y, -1 / std::sqrt(3.0), 1e-12);
-  EXPECT_NEAR(towards_eye->z, 1 / std::sqrt(3.0), 1e-12);
+  const auto to_camera = axis_direction("iso");
+  ASSERT_TRUE(to_camera);
+  EXPECT_NEAR(to_camera->x, 1 / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(to_camera->y, -1 / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(to_camera->z, 1 / std::sqrt(3.0), 1e-12);
 }
 
-TEST(CameraMoves, ATurnGoesCounterClockwiseSeenFromAbove) {
+TEST(CameraMoves, AnAzimuthTurnIsCounterClockwiseSeenFromAbove) {
   expect_near(orbit_view(from_south(), 90, 0).position, {10.0, 0.0, 0.0});
   expect_near(orbit_view(from_south(), 180, 0).position, {0.0, 10.0, 0.0});
   expect_near(orbit_view(from_south(), 360, 0).position, from_south().position);
@@ -61,7 +61,7 @@ TEST(CameraMoves, ElevationRaisesTheEyeAndNeverFlips) {
   expect_near(orbit_view(from_south(), 0, 45).position, {0.0, -s, s});
   expect_near(orbit_view(from_south(), 0, -45).position, {0.0, -s, -s});
   expect_near(orbit_view(from_south(), 90, 45).position, {s, 0.0, s});
-  // straight above, then beyond: the top of the picture turns with the eye
+  // at the pole and beyond: the up vector rotates with the camera
   const Camera above = make_camera(orbit_view(from_south(), 0, 90), 10, 10, {});
   expect_near(above.back, {0.0, 0.0, 1.0});
   expect_near(above.up, {0.0, 1.0, 0.0});
@@ -81,7 +81,7 @@ TEST(CameraMoves, ZoomEnlargesByItsFactor) {
   }
 }
 
-TEST(CameraMoves, FittedKeepsDirectionUpAngleAndProjection) {
+TEST(CameraMoves, FittingKeepsDirectionUpAngleAndProjection) {
   View view{{30.0, -4.0, 1.0}, {29.0, 2.0, 3.0}, {0.2, 0.1, 1.0}, 50, true, 9};
   const View fit = refit_view(view, slab(), 1.5);
   const Camera a = make_camera(view, 300, 200, {}), b = make_camera(fit, 300, 200, slab());

@@ -16,7 +16,7 @@ CameraPath path_of(const char* text) {
   return std::move(*path);
 }
 
-TEST(CameraPath, GoesThroughEveryKey) {
+TEST(CameraPath, PassesThroughEveryKeyframe) {
   const CameraPath path =
       path_of("t,px,py,pz,tx,ty,tz,ux,uy,uz,fovy\n0,9,0,0,0,0,0,0,0,1,30\n1,8,3,1,0,1,0,0,1,1,40\n2.5,2,7,-1,1,0,0,0,1,0,20\n");
   EXPECT_EQ(path.start_s(), 0);
@@ -28,18 +28,18 @@ TEST(CameraPath, GoesThroughEveryKey) {
   EXPECT_NEAR(path.at({}, 1).fovy_deg, 40, 1e-12);
   expect_near(path.at({}, 2.5).position, {2.0, 7.0, -1.0});
   EXPECT_NEAR(path.at({}, 0.5).fovy_deg, 35, 1e-12);
-  // it rests outside
+  // constant outside of the keyframes
   expect_near(path.at({}, -4).position, {9.0, 0.0, 0.0});
   expect_near(path.at({}, 99).position, {2.0, 7.0, -1.0});
 }
 
-TEST(CameraPath, AnEvenMotionStaysEvenAtUnevenTimes) {
-  // Catmull-Rom tangents for uneven times reproduce a straight, even motion exactly
+TEST(CameraPath, AUniformMotionStaysUniformAtNonuniformTimes) {
+  // Catmull-Rom tangents for nonuniform times reproduce a uniform linear motion exactly
   const CameraPath path = path_of("t,px,py,pz,tx,ty,tz\n0,0,1,0,5,0,0\n1,2,1,0,5,0,0\n4,8,1,0,5,0,0\n4.5,9,1,0,5,0,0\n");
   for (const double t : {0.1, 0.9, 1.5, 3.3, 4.2}) expect_near(path.at({}, t).position, {2 * t, 1.0, 0.0});
 }
 
-TEST(CameraPath, IsSmoothAtAKey) {
+TEST(CameraPath, IsSmoothAtAKeyframe) {
   const CameraPath path = path_of("t,px,py,pz,tx,ty,tz\n0,0,1,0,5,0,0\n1,2,4,0,5,0,0\n1.5,3,1,2,5,0,0\n3,3,1,0,5,0,0\n");
   constexpr double h = 1e-6;
   for (const double t : {1.0, 1.5}) {
@@ -50,7 +50,7 @@ TEST(CameraPath, IsSmoothAtAKey) {
   }
 }
 
-TEST(CameraPath, WhatItLeavesOutIsTheScenes) {
+TEST(CameraPath, OmittedColumnsAreTheScenes) {
   View base;
   base.up = {1.0, 0.0, 0.0};
   base.fovy_deg = 12;

@@ -21,7 +21,7 @@ View looking_along_y() { return {{0.0, -10.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 
 
 void expect_near(const Vec3& a, const Vec3& b, double tolerance) { EXPECT_LE(norm(a - b), tolerance) << a.x << " " << a.y << " " << a.z; }
 
-TEST(Camera, AxisPointLandsInTheMiddle) {
+TEST(Camera, AnAxisPointProjectsToTheCentre) {
   for (const bool orthographic : {false, true}) {
     View view = looking_along_y();
     view.orthographic = orthographic;
@@ -41,14 +41,14 @@ TEST(Camera, UpIsUpAndRightIsRight) {
 }
 
 TEST(Camera, FieldOfViewIsVertical) {
-  // at the distance 10 the picture's upper edge is 10 tan(15 degrees) above the axis
+  // at distance 10 the image's upper edge is 10 tan(15 degrees) above the axis
   const double top = 10 * std::tan(15 * std::acos(-1.0) / 180);
   const Camera c = make_camera(looking_along_y(), 640, 320, box(Vec3(-1.0), Vec3(1.0)));
   EXPECT_NEAR(project(c, {0.0, 0.0, top})->y, 0, 1e-9);
   EXPECT_NEAR(project(c, {2 * top, 0.0, 0.0})->x, 640, 1e-9);
 }
 
-TEST(Camera, OrthographicHeightIsTheWholePicture) {
+TEST(Camera, OrthographicHeightIsTheImageHeight) {
   View view = looking_along_y();
   view.orthographic = true;
   const Camera c = make_camera(view, 200, 100, box(Vec3(-1.0), Vec3(1.0)));
@@ -56,8 +56,8 @@ TEST(Camera, OrthographicHeightIsTheWholePicture) {
   EXPECT_NEAR(project(c, {-4.0, 5.0, 0.0})->x, 0, 1e-12);
 }
 
-TEST(Camera, PixelCentresAreAtHalf) {
-  // 2 x 2 pixels: the ray of the upper left centre passes a quarter of the way in
+TEST(Camera, PixelCentresAreAtHalfIntegers) {
+  // 2 x 2 pixels: the ray of the upper left pixel is at a quarter of width and height
   const Camera c = make_camera(looking_along_y(), 2, 2, box(Vec3(-1.0), Vec3(1.0)));
   const Ray ray = pixel_ray(c, 0.5, 0.5);
   const double t = std::tan(15 * std::acos(-1.0) / 180);
@@ -82,21 +82,21 @@ TEST(Camera, RoundTripsAgreeWithTheMatrices) {
     if (!pixel) continue;
     expect_near(unproject(c, pixel->x, pixel->y, pixel->z), p, 1e-11);
 
-    // the same through the matrices, and back
+    // projection by the matrices, and unprojection
     const glm::dvec4 clip = clip_from_world(c) * glm::dvec4(p, 1.0);
     EXPECT_NEAR(0.5 * (clip.x / clip.w + 1) * 801, pixel->x, 1e-7);
     EXPECT_NEAR(0.5 * (clip.y / clip.w + 1) * 603, pixel->y, 1e-7);
     const glm::dvec4 back = world_from_clip(c) * clip;
     expect_near(Vec3(back) / back.w, p, 1e-8);
 
-    // and on the ray
+    // the point is on the pixel's ray
     const Ray ray = pixel_ray(c, pixel->x, pixel->y);
     EXPECT_LE(norm(cross(p - ray.origin, ray.direction)), 1e-10);
     EXPECT_NEAR(norm(ray.direction), 1, 1e-14);
   }
 }
 
-TEST(Camera, DepthRunsFromNearZeroToFarOne) {
+TEST(Camera, DepthIsZeroAtNearAndOneAtFar) {
   for (const bool orthographic : {false, true}) {
     View view = looking_along_y();
     view.orthographic = orthographic;
@@ -112,7 +112,7 @@ TEST(Camera, DepthRunsFromNearZeroToFarOne) {
   }
 }
 
-TEST(Camera, InsideTheBoundsNearStaysPositive) {
+TEST(Camera, InsideTheBoundsTheNearPlaneStaysPositive) {
   View view = looking_along_y();
   view.position = {0.1, 0.2, 0.3};
   const Camera c = make_camera(view, 64, 64, box(Vec3(-1.0), Vec3(1.0)));
@@ -121,7 +121,7 @@ TEST(Camera, InsideTheBoundsNearStaysPositive) {
   EXPECT_GT(c.far, 1);
 }
 
-TEST(Camera, DegenerateViewsStillGiveAFrame) {
+TEST(Camera, DegenerateViewsGiveAValidFrame) {
   View along_up = looking_along_y();
   along_up.up = {0.0, 1.0, 0.0};
   View nowhere = looking_along_y();
@@ -135,7 +135,7 @@ TEST(Camera, DegenerateViewsStillGiveAFrame) {
   }
 }
 
-TEST(Camera, ABallMayBeSeenWhereAnyOfItsPlacesIs) {
+TEST(Camera, ABallIsVisibleIfAnyOfItsPointsIs) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> u(-1, 1);
   int unseen = 0, left_out = 0;
@@ -159,7 +159,7 @@ TEST(Camera, ABallMayBeSeenWhereAnyOfItsPlacesIs) {
   EXPECT_GT(left_out, 0.8 * unseen) << "of " << unseen;
 }
 
-TEST(Camera, FitShowsTheWholeBoxAndFillsThePicture) {
+TEST(Camera, FitShowsTheWholeBoxAndFillsTheImage) {
   for (const double aspect : {0.5, 1.0, 2.0})
     for (const Vec3& towards : {default_view_direction(), Vec3(0.0, 0.0, 1.0), Vec3(-1.0, 0.2, -0.4)})
       for (const bool orthographic : {false, true}) {
@@ -178,7 +178,7 @@ TEST(Camera, FitShowsTheWholeBoxAndFillsThePicture) {
       }
 }
 
-TEST(Camera, FitToPlacesFillsTheShareExactlyAndCentresThem) {
+TEST(Camera, FitToPointsFillsTheShareExactlyAndCentresThem) {
   FitPoints cloud;
   for (int i = 0; i < 200; ++i) cloud.points.push_back({9 * std::sin(1.7 * i), 20 + 5 * std::cos(2.3 * i), 3 * std::sin(0.9 * i)});
   for (const double aspect : {0.4, 1.0, 2.5})
@@ -199,7 +199,7 @@ TEST(Camera, FitToPlacesFillsTheShareExactlyAndCentresThem) {
     }
 }
 
-TEST(Camera, FitToPlacesLeavesSpecksOut) {
+TEST(Camera, FitToPointsIgnoresOutliers) {
   FitPoints cloud;
   for (int i = 0; i < 1000; ++i) cloud.points.push_back({std::sin(1.7 * i), std::cos(2.3 * i), std::sin(0.9 * i)});
   const double near = norm(fit_view({cloud}, 1, 0.8, 0.8).position);
@@ -209,7 +209,7 @@ TEST(Camera, FitToPlacesLeavesSpecksOut) {
   EXPECT_NEAR(norm(fit_view({cloud}, 1, 0.8, 0.8).position), near, 0.1 * near);
 }
 
-TEST(Camera, FitToOnePlaceOrNone) {
+TEST(Camera, FitToOnePointOrNone) {
   for (const std::vector<FitPoints>& clouds : {std::vector<FitPoints>{}, {{}}, {{{Vec3(5.0)}, 0}}}) {
     const View view = fit_view(clouds, 1, 0.8, 0.8);
     EXPECT_TRUE(is_finite(view.position));
@@ -217,7 +217,7 @@ TEST(Camera, FitToOnePlaceOrNone) {
   }
 }
 
-TEST(Camera, FitOfNothingAndOfAPoint) {
+TEST(Camera, FitToAnEmptyBoxAndToAPoint) {
   const View nothing = fit_view(Bounds(), 1);
   EXPECT_TRUE(is_finite(nothing.position));
   EXPECT_GT(norm(nothing.position), 2);

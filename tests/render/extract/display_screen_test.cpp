@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Pictures for a screen that one looks through: where points land, in every eye, while the head moves.
+/// Off-axis projection on a display screen: projected points in both eyes for moving heads.
 #include <gtest/gtest.h>
 
 #include "engine/scene/scene.h"
@@ -10,7 +10,7 @@
 #include "tests/support/support.h"
 
 namespace catena::render {
-namespace screens_test {
+namespace display_screen_test {
 
 constexpr const char* kScene = R"({"fields": {"ball": {"analytic": "sphere", "resolution": 24}},
   "isosurfaces": [{"field": "ball", "level": 0.5}], "stereo": {"mode": "side-by-side", "separation": 0.065},
@@ -18,7 +18,7 @@ constexpr const char* kScene = R"({"fields": {"ball": {"analytic": "sphere", "re
               {"name": "side", "lower_left": [1.5, -1, -1], "lower_right": [2.3, -1.6, -1], "upper_left": [1.5, -1, 1]}],
   "camera": {"position": [0.2, -3, 0.1], "target": [0, 0, 0]}})";
 
-/// Where the line from the eye to the point meets the screen, in pixels of the picture: straight from the geometry.
+/// Intersection of the line from eye to point with the screen, in pixels, by geometry.
 Vec2 on_screen(const scene::DisplayScreen& s, const Vec3& eye, const Vec3& point, double width, double height) {
   const Vec3 right = s.lower_right - s.lower_left, up = s.upper_left - s.lower_left, normal = cross(right, up);
   const double along = dot(normal, s.lower_left - eye) / dot(normal, point - eye);
@@ -26,7 +26,7 @@ Vec2 on_screen(const scene::DisplayScreen& s, const Vec3& eye, const Vec3& point
   return {width * dot(hit, right) / dot(right, right), height * (1 - dot(hit, up) / dot(up, up))};
 }
 
-TEST(DisplayScreens, PointsLandWhereTheLineOfSightMeetsTheScreen) {
+TEST(DisplayScreens, PointsProjectToTheIntersectionOfLineOfSightAndScreen) {
   auto scene = scene::parse_scene(kScene, "s.json");
   ASSERT_TRUE(scene) << scene.error().message;
   ASSERT_EQ(scene->stereo.screens.size(), 2u);
@@ -55,7 +55,7 @@ TEST(DisplayScreens, PointsLandWhereTheLineOfSightMeetsTheScreen) {
   }
 }
 
-TEST(DisplayScreens, AHeadBehindTheScreenIsSaid) {
+TEST(DisplayScreens, AHeadBehindTheScreenIsAnError) {
   auto scene = scene::parse_scene(kScene, "s.json");
   ASSERT_TRUE(scene);
   scene->stereo.screen_index = 0;
@@ -70,7 +70,7 @@ TEST(DisplayScreens, AHeadBehindTheScreenIsSaid) {
   EXPECT_EQ(packet->eyes.size(), 2u);
 }
 
-TEST(DisplayScreens, ProgramDrawsThemAndRefusesOthers) {
+TEST(DisplayScreens, TheProgramDrawsScreensAndRefusesUnknownOnes) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", kScene);
   test::write_file(folder / "head.csv", "t,px,py,pz,tx,ty,tz\n0,0,-3,0,0,0,0\n1,0,3,0,0,0,0\n");
@@ -95,5 +95,5 @@ TEST(DisplayScreens, ProgramDrawsThemAndRefusesOthers) {
   EXPECT_FALSE(scene::parse_scene(bad, "s.json"));
 }
 
-}  // namespace screens_test
+}  // namespace display_screen_test
 }  // namespace catena::render

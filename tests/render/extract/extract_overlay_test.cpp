@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The scene's annotations as the picture's overlay: colours, ticks and words.
+/// The scene's annotations in the image's overlay: colours, ticks and texts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ std::string texts(const ScalarBarTicks& scale) {
   return all + (scale.factor.empty() ? "" : " | " + scale.factor);
 }
 
-TEST(BarTicks, AreNiceAndSayWhatTheyAre) {
+TEST(BarTicks, AreRoundNumbersWithTheirExponent) {
   EXPECT_EQ(texts(make_scalar_bar_ticks(0, 1, 5, "")), "0.0 0.2 0.4 0.6 0.8 1.0");
   EXPECT_EQ(texts(make_scalar_bar_ticks(-0.97, 1.1, 5, "")), "−0.5 0.0 0.5 1.0");
   EXPECT_EQ(texts(make_scalar_bar_ticks(0, 100, 5, "")), "0 20 40 60 80 100");
@@ -38,7 +38,7 @@ TEST(BarTicks, AreNiceAndSayWhatTheyAre) {
   EXPECT_TRUE(make_scalar_bar_ticks(0, INFINITY, 5, "").ticks.empty());
 }
 
-TEST(BarTicks, OfALogarithmArePowersOfTen) {
+TEST(BarTicks, OfALogarithmicScaleArePowersOfTen) {
   EXPECT_EQ(texts(make_scalar_bar_ticks(1e-3, 1e3, 7, "", 1e-3)), "0.001 0.01 0.1 1 10 100 1000");
   EXPECT_EQ(texts(make_scalar_bar_ticks(2e-7, 3e5, 5, "", 2e-7)), "10⁻⁴ 0.1 100 10⁵") << "every third";
   EXPECT_EQ(texts(make_scalar_bar_ticks(2, 60, 5, "", 2)), "2 5 10 20 50") << "few decades";
@@ -48,7 +48,7 @@ TEST(BarTicks, OfALogarithmArePowersOfTen) {
   EXPECT_EQ(texts(make_scalar_bar_ticks(2, 2.9, 3, "", 2)), "2.0 2.5") << "less than a decade";
 }
 
-TEST(BarTicks, LieWithinTheRangeAtEqualSteps) {
+TEST(BarTicks, AreWithinTheRangeAtEqualSteps) {
   for (const double lo : {-7.3e5, -1.0, 0.0, 1e-9, 3.3, 1e6})
     for (const double width : {1e-8, 0.37, 1.0, 86.0, 2.2e7})
       for (const int count : {2, 5, 12}) {
@@ -66,7 +66,7 @@ TEST(BarTicks, LieWithinTheRangeAtEqualSteps) {
       }
 }
 
-TEST(ExtractOverlay, ASlicesBarSpansTheValuesThatItsFieldHas) {
+TEST(ExtractOverlay, ASlicesBarSpansTheRangeOfItsField) {
   const FramePacket packet =
       packet_of(R"({"fields": {"p": {"analytic": "plane", "resolution": 9}, "v": {"analytic": "uniform", "resolution": 9}},
     "slices": [{"field": "v", "axis": "y", "at": 0}, {"field": "p", "axis": "x", "at": 0, "color": [[-1, 0, 0, 1], [1, 1, 0, 0]]}],
@@ -80,7 +80,7 @@ TEST(ExtractOverlay, ASlicesBarSpansTheValuesThatItsFieldHas) {
   EXPECT_NEAR(packet.overlay.scalar_bars[1].colors.front()[0], 1, 1e-6);
 }
 
-TEST(ExtractOverlay, BarsShowTheColoursOfWhatTheyName) {
+TEST(ExtractOverlay, BarsShowTheColorsOfTheirObjects) {
   const FramePacket packet = packet_of(R"({"fields": {"d": {"analytic": "sphere", "resolution": 9}, "v": {"analytic": "circle"}},
     "volumes": [{"field": "d", "color": [[0, 0, 0, 0], [1, 1, 0, 0.5], [2, 1, 1, 1]]}],
     "streamlines": [{"field": "v", "seeds": [[1, 0, 0], [0.5, 0, 0]], "color_by": {"quantity": "speed"}}],
@@ -93,7 +93,7 @@ TEST(ExtractOverlay, BarsShowTheColoursOfWhatTheyName) {
   ASSERT_EQ(volume.ticks.size(), 5u);
   EXPECT_EQ(volume.ticks[1].value, 0.5);
   EXPECT_EQ(volume.ticks[1].text, "0.5");
-  // streamlines of their own range: speeds 0.5 to 1
+  // streamlines with their own range: speeds 0.5 to 1
   const ScalarBarItem& lines = packet.overlay.scalar_bars[1];
   EXPECT_NEAR(lines.colors.front()[0], 0.5, 1e-5);
   EXPECT_NEAR(lines.colors.back()[0], 1, 1e-5);
@@ -102,14 +102,14 @@ TEST(ExtractOverlay, BarsShowTheColoursOfWhatTheyName) {
   EXPECT_EQ(lines.ticks.at(1).text, "0.6");
 }
 
-TEST(ExtractOverlay, AHistogramsColoursAreShownToo) {
+TEST(ExtractOverlay, ABarShowsTheColorsOfADefaultTransferFunction) {
   const FramePacket packet = packet_of(
       R"({"fields": {"d": {"analytic": "gaussian", "resolution": 17}}, "volumes": [{"field": "d"}], "scalar_bars": [{"field": "d"}]})");
   ASSERT_EQ(packet.overlay.scalar_bars.size(), 1u);
   EXPECT_EQ(packet.overlay.scalar_bars[0].colors, packet.volumes[0].transfer.colors);
 }
 
-TEST(ExtractOverlay, StatusSaysWhatIsFelt) {
+TEST(ExtractOverlay, TheStatusReportsForcesAndLinks) {
   auto scene = scene::parse_scene(R"({"coupling": {"max_force": 4}, "status": true})", "test.json");
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_FALSE(make_frame(*scene, 32, 32)->overlay.status) << "no hand, nothing to say";
@@ -134,7 +134,7 @@ TEST(ExtractOverlay, StatusSaysWhatIsFelt) {
   EXPECT_FALSE(status.rows[1].is_active);
 }
 
-TEST(ExtractOverlay, TitleLabelsAndMarkerGoOver) {
+TEST(ExtractOverlay, TitleLabelsAndMarkerReachTheOverlay) {
   const FramePacket packet = packet_of(R"({"title": "T", "labels": [{"at": [1, 2, 3], "text": "a", "occluded": true}],
     "orientation_marker": {"position": "top-left"}, "overlay": {"scale": 2, "font": "F"}})");
   const Overlay& overlay = packet.overlay;

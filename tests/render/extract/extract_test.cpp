@@ -32,7 +32,7 @@ std::string error_of(const std::string& text) {
 
 const std::string kSphere = R"("s": {"analytic": "sphere", "resolution": 9})", kCircle = R"("v": {"analytic": "circle"})";
 
-TEST(Extract, AnEmptySceneIsABackgroundAndAView) {
+TEST(Extract, AnEmptySceneGivesABackgroundAndAView) {
   scene::Scene scene = scene_of(R"({"fields": {}, "chain": [], "background": [0.1, 0.2, 0.3]})");
   const FramePacket packet = packet_of(scene);
   EXPECT_EQ(packet.background, (std::array<float, 4>{0.1f, 0.2f, 0.3f, 1.0f}));
@@ -52,7 +52,7 @@ TEST(Extract, AMeshIsOneObjectInEveryFrame) {
   EXPECT_EQ(one.meshes[0].geometry, two.meshes[0].geometry);
   EXPECT_EQ(one.meshes[0].geometry->triangles.size(), 6u);
   EXPECT_EQ(one.meshes[0].color.r, 1.0f);
-  // the fitted camera looks at what is its middle in the picture
+  // the fitted camera looks at the mesh's centre in the image
   EXPECT_LE(norm(one.view.target - Vec3(1, 0.5, 0)), 0.2);
   EXPECT_NEAR(packet_bounds(one).diagonal(), std::sqrt(5.0), 1e-12);
 }
@@ -62,7 +62,7 @@ TEST(Extract, TransparentBackgroundHasNoAlpha) {
   EXPECT_EQ(packet_of(scene).background[3], 0.0f);
 }
 
-TEST(Extract, FogSpansWhatIsDrawnInAWorldOfAnySize) {
+TEST(Extract, FogSpansTheDrawnObjectsAtAnyScale) {
   for (const double size : {1.0, 1e-9, 1e-12, 1e9}) {
     const test::TemporaryFolder folder;
     char line[128];
@@ -77,7 +77,7 @@ TEST(Extract, FogSpansWhatIsDrawnInAWorldOfAnySize) {
   }
 }
 
-TEST(Extract, FogAndEyesFollowAViewThatMoves) {
+TEST(Extract, FogAndEyesFollowAMovingView) {
   scene::Scene scene = scene_of(R"({"fields": {)" + kSphere +
                                 R"(}, "isosurfaces": [{"field": "s", "level": 1}], "fog": true,
       "stereo": {"mode": "left"}, "camera": {"position": [0, -10, 0], "target": [0, 0, 0]}})");
@@ -94,7 +94,7 @@ TEST(Extract, FogAndEyesFollowAViewThatMoves) {
   EXPECT_LT(norm(packet.eyes[0].position - far.position), 5);
 }
 
-TEST(Extract, AnEdgeIsTheBoxsOrTheAxesAndNeverBoth) {
+TEST(Extract, BoundingBoxAndAxesShareEdgesWithoutDuplicates) {
   const auto edges = [](const std::string& aids) {
     scene::Scene scene = scene_of(R"({"fields": {)" + kSphere + R"(}, "isosurfaces": [{"field": "s", "level": 1}], )" + aids + "}");
     const FramePacket packet = packet_of(scene);
@@ -109,7 +109,7 @@ TEST(Extract, AnEdgeIsTheBoxsOrTheAxesAndNeverBoth) {
   EXPECT_EQ(edges(R"("bounding_box": {"field": "s"}, "axes": true)"), 12);
 }
 
-TEST(Extract, OpacityBecomesExtinctionAtItsPoints) {
+TEST(Extract, OpacityIsConvertedToExtinctionAtItsPoints) {
   scene::Scene scene = scene_of("{\"fields\": {" + kSphere +
                                 R"(}, "volumes": [{"field": "s", "color": [[0, 0, 0, 0], [2, 1, 0.5, 0.25]],
                                                    "opacity": [[0, 0], [1, 0.5], [2, 0.1]], "opacity_unit": 0.25, "shade": true}]})");
@@ -125,7 +125,7 @@ TEST(Extract, OpacityBecomesExtinctionAtItsPoints) {
   EXPECT_NEAR(volume.grid->max_value(), std::sqrt(12.0), 1e-6);
 }
 
-TEST(Extract, GradientFactorsComeAlong) {
+TEST(Extract, GradientFactorsReachThePacket) {
   scene::Scene scene = scene_of("{\"fields\": {" + kSphere + R"(}, "volumes": [{"field": "s", "extinction": [[1, 3]],
     "gradient_opacity": [[0, 0.25], [2, 1]]}]})");
   const FramePacket packet = packet_of(scene);
@@ -133,7 +133,7 @@ TEST(Extract, GradientFactorsComeAlong) {
   EXPECT_EQ(packet.volumes[0].transfer.gradient_factors, (std::vector<std::array<double, 2>>{{0, 0.25}, {2, 1}}));
 }
 
-TEST(Extract, LinesAreColouredByANamedMapOverARange) {
+TEST(Extract, LinesAreColoredByANamedMapOverARange) {
   scene::Scene scene = scene_of("{\"fields\": {" + kCircle + R"(}, "streamlines": [{"field": "v", "seeds": [[0.5, 0, 0], [1.5, 0, 0]],
     "color_by": {"quantity": "speed", "color": "grey", "range": [0, 1]}}]})");
   const FramePacket packet = packet_of(scene);
@@ -147,7 +147,7 @@ TEST(Extract, TheUnitOfOpacityIsTheSmallestVoxelEdge) {
   EXPECT_DOUBLE_EQ(packet_of(scene).volumes[0].transfer.extinctions[0][1], std::log(2.0) / 0.5);  // 4 / 8 cells
 }
 
-TEST(Extract, AVolumeWithoutTransferGetsOne) {
+TEST(Extract, AVolumeWithoutATransferFunctionGetsADefault) {
   scene::Scene scene = scene_of("{\"fields\": {" + kSphere + R"(}, "volumes": [{"field": "s"}]})");
   const TransferTable table = packet_of(scene).volumes[0].transfer;
   EXPECT_FALSE(table.colors.empty());
@@ -164,28 +164,28 @@ TEST(Extract, IsosurfacesCarryTheirLevel) {
   EXPECT_EQ(packet.isosurfaces[0].opacity, 0.5f);
 }
 
-TEST(Extract, TubesAreTheFeltCurve) {
+TEST(Extract, TubesShareTheCurveOfTheLink) {
   scene::Scene scene = scene_of("{\"fields\": {" + kCircle + R"(},
     "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0, 0.5]}],
     "streamlines": [{"field": "v", "seeds": [[1, 0, 0.5]], "color": [0, 1, 0]}]})");
   const auto field = scene::resolve_field(scene, "v", json::Node());
   ASSERT_TRUE(field);
-  const auto felt = scene::resolve_streamline(scene, {field->vector.get()}, {1.0, 0.0, 0.5}, json::Node());
-  ASSERT_TRUE(felt);
+  const auto streamline = scene::resolve_streamline(scene, {field->vector.get()}, {1.0, 0.0, 0.5}, json::Node());
+  ASSERT_TRUE(streamline);
   const FramePacket packet = packet_of(scene);
   EXPECT_EQ(scene.traced_curves.size(), 1u) << "one object for the hand and the eye";
   ASSERT_EQ(packet.tubes.size(), 1u);
   const TubeItem& tube = packet.tubes[0];
-  EXPECT_NEAR(tube.radius, 0.003 * std::sqrt(48.0), 1e-12);  // of the box -2..2
+  EXPECT_NEAR(tube.radius, 0.003 * std::sqrt(48.0), 1e-12);  // L of the box -2..2
   EXPECT_EQ(tube.points.front(), tube.points.back());
   for (const Vec3& p : tube.points) EXPECT_NEAR(std::hypot(p.x, p.y), 1, 1e-8);
 
-  // a second packet takes the polyline as it is
+  // a second packet reuses the polyline
   EXPECT_EQ(packet_of(scene).tubes[0].points, tube.points);
 }
 
-/// |p| of the ball, by a table from black at 0 to white at 2.
-TEST(Extract, TubesAreColouredByAField) {
+/// Coloured by the ball's |p| with a table from black at 0 to white at 2.
+TEST(Extract, TubesAreColoredByAField) {
   scene::Scene scene = scene_of("{\"fields\": {" + kCircle + ", " + kSphere + R"(}, "streamlines": [{"field": "v",
     "seeds": [[0.5, 0, 0.5], [1.5, 0, 0]], "color_by": {"field": "s", "color": [[0, 0, 0, 0], [2, 1, 1, 1]]}}]})");
   const FramePacket packet = packet_of(scene);
@@ -196,18 +196,18 @@ TEST(Extract, TubesAreColouredByAField) {
   }
 }
 
-TEST(Extract, TheSpeedIsShownOverItsRangeWithoutATable) {
+TEST(Extract, TheDefaultSpeedColorsCoverItsRange) {
   scene::Scene scene = scene_of("{\"fields\": {" + kCircle + R"(}, "streamlines": [{"field": "v", "color_by": {"quantity": "speed"},
     "seeds": {"line": {"from": [0.5, 0, 0], "to": [1.5, 0, 0], "count": 3}}}]})");
   const FramePacket packet = packet_of(scene);
   ASSERT_EQ(packet.tubes.size(), 3u);
-  // viridis: from violet over green to yellow
+  // viridis from violet through green to yellow
   EXPECT_NEAR(packet.tubes[0].colors[0].b, 84 / 255.0, 0.01);
   EXPECT_NEAR(packet.tubes[1].colors[0].g, 145 / 255.0, 0.01);
   EXPECT_NEAR(packet.tubes[2].colors[0].r, 253 / 255.0, 0.01);
 }
 
-TEST(Extract, AStraightLineHasPlacesForItsColours) {
+TEST(Extract, AStraightLineIsSubdividedForItsColors) {
   scene::Scene scene = scene_of(R"({"fields": {"v": {"analytic": "uniform"}}, "streamlines": [{"field": "v", "seeds": [[0, 0, 0]],
     "length": 2, "color_by": {"quantity": "arc_length", "color": [[-2, 0, 0, 0], [2, 1, 0, 0]]}}]})");
   const TubeItem tube = packet_of(scene).tubes.at(0);
@@ -266,25 +266,25 @@ TEST(Extract, TheIndicatorFollowsTheProbe) {
   EXPECT_TRUE(packet_of(scene).indicators.empty()) << "no line goes through the axis";
 }
 
-TEST(Extract, AnIndicatorAheadBeginsAtTheProbe) {
+TEST(Extract, AnIndicatorAheadStartsAtTheProbe) {
   scene::Scene scene = scene_of("{\"fields\": {" + kCircle +
                                 R"(}, "cursor": {"probe": [1, 0, 0.5]}, "indicator": {"field": "v", "length": 0.4, "anchor": "tail"}})");
   const FramePacket packet = packet_of(scene);
   ASSERT_EQ(packet.indicators.size(), 1u);
   const IndicatorItem& item = packet.indicators[0];
   EXPECT_LT(norm(item.tube.points.front() - Vec3(1, 0, 0.5)), 1e-9);
-  // anticlockwise about the axis, 0.4 along the unit circle
+  // counter-clockwise about the axis, 0.4 along the unit circle
   EXPECT_LT(norm(item.arrow.base - Vec3(std::cos(0.4), std::sin(0.4), 0.5)), 1e-6);
 }
 
-TEST(Extract, LinksAreNotDrawnByThemselves) {
+TEST(Extract, LinksAreNotDrawnByDefault) {
   scene::Scene scene =
       scene_of("{\"fields\": {" + kCircle + R"(}, "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0, 0]}]})");
   EXPECT_TRUE(packet_of(scene).tubes.empty());
   EXPECT_TRUE(scene.traced_curves.empty()) << "and nothing is loaded or traced for the eye";
 }
 
-TEST(Extract, TheCursorShowsOnceItIsVisible) {
+TEST(Extract, TheCursorIsExtractedWhenVisible) {
   scene::Scene scene = scene_of("{\"fields\": {" + kCircle + R"(}, "streamlines": [{"field": "v", "seeds": [[1, 0, 0]], "radius": 0.5}]})");
   EXPECT_TRUE(packet_of(scene).cursors.empty());
   scene::Cursor& cursor = scene.entities.get<scene::Cursor>(scene.cursor);
@@ -306,8 +306,8 @@ TEST(Extract, TheCursorShowsOnceItIsVisible) {
   EXPECT_TRUE(packet_of(scene).cursors.empty());
 }
 
-/// Late: the hand alone is anew; its look, its size and all else stay as they were.
-TEST(Extract, TheCursorAloneIsMoved) {
+/// A late update changes only the cursor's state; its appearance, its size and the rest of the packet stay.
+TEST(Extract, UpdatingCursorsChangesOnlyTheCursor) {
   scene::Scene scene = scene_of("{\"fields\": {" + kSphere + R"(}, "isosurfaces": [{"field": "s", "level": 1}],
     "cursor": {"drop_line": true}})");
   scene::Cursor& cursor = scene.entities.get<scene::Cursor>(scene.cursor);
@@ -348,12 +348,12 @@ TEST(Extract, ADropLineEndsOnTheFloor) {
   EXPECT_EQ(foot("", probe), std::nullopt);
   EXPECT_EQ(foot(line, probe), Vec3(0.1, 0.2, box.lo.z));
   EXPECT_EQ(foot(line, {0.1, 0.2, box.lo.z - 0.1}), std::nullopt) << "the hand is below the floor";
-  // down is the world's axis that the view's up is nearest to, but a ground lies across z
+  // down is opposite to the world axis nearest to the view's up; a ground is perpendicular to z
   const std::string camera = R"(, "camera": {"position": [0, 0, 9], "target": [0, 0, 0], "up": [0.3, -1, 0]})";
   EXPECT_EQ(foot(line + camera, probe), Vec3(0.1, box.hi.y, 0.3));
   EXPECT_EQ(foot(line + camera + R"(, "ground": {"height": -7})", probe), Vec3(0.1, 0.2, -7));
   EXPECT_LT(foot(line + R"(, "ground": true)", probe)->z, box.lo.z);
-  // nothing is drawn
+  // a scene without drawn objects
   scene::Scene empty = scene_of("{\"cursor\": {\"probe\": [0, 0, 1], \"drop_line\": true, \"show_occluded\": false}}");
   EXPECT_EQ(packet_of(empty).cursors[0].foot_point, std::nullopt);
   EXPECT_FALSE(packet_of(empty).cursors[0].show_occluded);
@@ -378,7 +378,7 @@ TEST(Extract, TheFittedCameraSeesEverything) {
   }
 }
 
-TEST(Extract, AGivenCameraIsTakenAsItIs) {
+TEST(Extract, AStatedCameraIsUsedUnchanged) {
   scene::Scene scene = scene_of(
       R"({"fields": {}, "camera": {"position": [1, 2, 3], "target": [4, 5, 6], "up": [0, 1, 0], "projection": "orthographic", "height": 7}})");
   const View view = packet_of(scene).view;
@@ -389,13 +389,13 @@ TEST(Extract, AGivenCameraIsTakenAsItIs) {
   EXPECT_EQ(view.height, 7);
 }
 
-TEST(Extract, ErrorsNameThePlaceAndWhatWasExpected) {
+TEST(Extract, ErrorsNameTheLineAndTheExpectation) {
   std::string e = error_of("{\"fields\": {" + kCircle + "},\n\"volumes\": [{\"field\": \"v\"}]}");
   EXPECT_NE(e.find("test.json:2:"), std::string::npos) << e;
   EXPECT_NE(e.find("expected a scalar field"), std::string::npos) << e;
   e = error_of("{\"fields\": {" + kSphere + "},\n\n\"streamlines\": [{\"field\": \"s\", \"seeds\": [[1, 0, 0]]}]}");
   EXPECT_NE(e.find("test.json:3:"), std::string::npos) << e;
-  EXPECT_NE(e.find("expected a vector field"), std::string::npos) << e;
+  EXPECT_NE(e.find("a vector field was expected"), std::string::npos) << e;
   e = error_of("{\"fields\": {" + kSphere + "},\n\"isosurfaces\": [{\"field\": \"s\",\n\"level\": 17}]}");
   EXPECT_NE(e.find("test.json:3:"), std::string::npos) << e;
   e = error_of("{\"fields\": {" + kCircle + "},\n\"streamlines\": [{\"field\": \"v\", \"seeds\": [[1, 0, 0],\n[0, 0, 0]]}]}");

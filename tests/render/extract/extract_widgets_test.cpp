@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Widgets as they are drawn: where closed forms put them, by mode and handle.
+// Extracted widgets against closed forms, by mode and handle.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,7 +49,7 @@ FramePacket packet_of(scene::Scene& scene, std::uint32_t width = 256, std::uint3
 
 double luminance(const Color& c) { return c.r + c.g + c.b; }
 
-TEST(PlaneOutline, OfAUnitBox) {
+TEST(PlaneOutline, OfAUnitBoxHasTheExpectedVertices) {
   Bounds box;
   box.extend(Vec3(0.0));
   box.extend(Vec3(1.0));
@@ -96,7 +96,7 @@ TEST(PlaneOutline, IsConvexInThePlaneAndOnTheBox) {
   EXPECT_EQ(found, 2000);
 }
 
-TEST(ExtractWidgets, ACuttingPlaneIsItsBorderItsCirclesAndItsNormal) {
+TEST(ExtractWidgets, ACuttingPlaneHasABorderThreeCirclesAndItsNormal) {
   scene::Scene scene = scene_of(kCamera + R"(, "isosurfaces": [{"field": "s", "level": 1}])");
   const Quat turn = rotation_from_vector({0.3, -0.5, 0.2});
   add_widget(scene, "cut", Kind::cutting_plane, {{Vec3(0.1, 0.2, 0.3), Vec3(0.0)}, turn});
@@ -123,7 +123,7 @@ TEST(ExtractWidgets, ACuttingPlaneIsItsBorderItsCirclesAndItsNormal) {
   const ArrowItem& arrow = packet.widgets.arrows[0];
   EXPECT_LT(norm(direction(arrow.tip - arrow.base) - normal), 1e-12);
   EXPECT_LT(norm(direction(arrow.tip - centre) - normal), 1e-12);
-  // nothing of it is clipped, all of it is one object with a name
+  // no part is clipped, and all parts are one named object
   for (const TubeItem& tube : packet.widgets.tubes) {
     EXPECT_FALSE(tube.is_clipped);
     EXPECT_EQ(tube.id, arrow.id);
@@ -138,7 +138,7 @@ TEST(ExtractWidgets, WithoutDataThePlaneIsASquareOfEdgeL) {
   scene::Scene scene = scene_of();
   const scene::Entity e = add_widget(scene, "cut", Kind::cutting_plane, {{Vec3(1, 2, 3), Vec3(0.0)}});
   scene.entities.get<scene::Widget>(e).spec.length = 6;
-  scene.entities.get<scene::Widget>(e).is_complete = true;  // or resolve_widget says 4
+  scene.entities.get<scene::Widget>(e).is_complete = true;  // otherwise resolve_widget() sets 4
   const FramePacket packet = packet_of(scene);
   const TubeItem& border = packet.widgets.tubes[0];
   ASSERT_EQ(border.points.size(), 5u);
@@ -147,13 +147,13 @@ TEST(ExtractWidgets, WithoutDataThePlaneIsASquareOfEdgeL) {
     EXPECT_NEAR(std::fabs(p.y - 2), 3, 1e-12);
     EXPECT_NEAR(p.z, 3, 1e-12);
   }
-  // neither the camera nor the box of what is drawn knows of it
+  // widgets do not affect the camera or the drawn bounds
   scene::Scene bare = scene_of();
   EXPECT_EQ(packet.view.position, packet_of(bare).view.position);
   EXPECT_TRUE(packet_bounds(packet).empty());
 }
 
-TEST(ExtractWidgets, WhatIsFreeIsAnArrowAndWhatIsHeldASquare) {
+TEST(ExtractWidgets, FreeAxesAreArrowsAndHeldAxesSquares) {
   for (int held = 0; held < 8; ++held) {
     scene::Scene scene = scene_of(kCamera);
     add_widget(scene, "cut", Kind::cutting_plane, {}, Mode::translate, -1, held);
@@ -181,7 +181,7 @@ TEST(ExtractWidgets, WhatIsFreeIsAnArrowAndWhatIsHeldASquare) {
   }
 }
 
-TEST(ExtractWidgets, ModesAndHandlesShow) {
+TEST(ExtractWidgets, ModesAndHandlesAreVisible) {
   const auto tubes_of = [](Kind kind, Mode mode, int handle, int held) {
     scene::Scene scene = scene_of(kCamera);
     add_widget(scene, "w", kind, {{Vec3(-1, 0, 0), Vec3(1, 0.5, 0.2)}}, mode, handle, held);
@@ -202,7 +202,7 @@ TEST(ExtractWidgets, ModesAndHandlesShow) {
   }
   EXPECT_GT(luminance(turn[2].color), 1.05 * luminance(rotate_[2].color));
 
-  // the ball of the handle alone, of every kind
+  // only the ball of the active handle, for every kind
   for (const auto& [kind, handles] : {std::pair{Kind::seed, 1}, {Kind::isolevel, 1}, {Kind::rake, 3}, {Kind::ruler, 3}, {Kind::box, 7}})
     for (int handle = 0; handle < handles; ++handle) {
       const auto balls = [&](Mode mode) {
@@ -245,7 +245,7 @@ TEST(ExtractWidgets, TheIsolevelsArrowFollowsTheGradient) {
   EXPECT_LT(norm(direction(packet.widgets.arrows[0].tip - at) - direction(at)), 1e-9) << "|x| rises outwards";
 }
 
-TEST(ExtractWidgets, ARulerSaysItsLength) {
+TEST(ExtractWidgets, ARulerIsLabelledWithItsLength) {
   scene::Scene scene = scene_of(kCamera);
   add_widget(scene, "r", Kind::ruler, {{Vec3(0, 0, 0), Vec3(3, 4, 0)}});
   const FramePacket packet = packet_of(scene);
@@ -270,7 +270,7 @@ TEST(ExtractWidgets, ARulerAlongACurveIsDrawnAlongIt) {
   ASSERT_EQ(packet.overlay.labels.size(), 1u);
   EXPECT_EQ(packet.overlay.labels[0].text, "1.571 units");
   EXPECT_NEAR(norm(packet.overlay.labels[0].position - Vec3(std::sqrt(0.5), std::sqrt(0.5), 0)), 0, 1e-2) << "halfway";
-  // another view keeps it
+  // set_view() keeps the curve
   const std::size_t before = packet.widgets.tubes.size();
   set_view(*scene, {{0, -3, 9}, {0, 0, 0}, {0, 0, 1}, 30}, packet);
   EXPECT_EQ(packet.widgets.tubes.size(), before);
@@ -278,14 +278,14 @@ TEST(ExtractWidgets, ARulerAlongACurveIsDrawnAlongIt) {
   EXPECT_EQ(packet.overlay.labels.size(), 1u);
 }
 
-TEST(ExtractWidgets, NothingIsThinnerThanAPixelFromFarAway) {
+TEST(ExtractWidgets, TubesAreAtLeastAPixelWideFromFarAway) {
   scene::Scene scene = scene_of(R"(, "camera": {"position": [0, -400, 0], "target": [0, 0, 0], "fovy_deg": 30})");
   add_widget(scene, "cut", Kind::cutting_plane, {}, Mode::translate, -1, 1);
   add_widget(scene, "r", Kind::rake, {{Vec3(-1, 0, 0), Vec3(1, 0, 0)}});
   FramePacket packet = packet_of(scene, 200, 100);
   const double pixel = 2 * 400 * std::tan(15 * 3.14159265358979 / 180) / 100;
   for (const TubeItem& tube : packet.widgets.tubes) EXPECT_GE(2 * tube.radius, pixel);
-  // nearer, by set_view: the sizes that are stated
+  // after set_view() to a nearer camera the tubes have their stated sizes
   const auto ids = packet.objects.size();
   set_view(scene, {{0, -8, 0}, {0, 0, 0}, {0, 0, 1}, 30}, packet);
   EXPECT_EQ(packet.objects.size(), ids);
@@ -296,17 +296,17 @@ TEST(ExtractWidgets, NothingIsThinnerThanAPixelFromFarAway) {
   EXPECT_EQ(packet.widgets.tubes.front().id, 1u);
 }
 
-TEST(ExtractWidgets, WhatIsNotFiniteIsLeftOut) {
+TEST(ExtractWidgets, NonFiniteWidgetsAreSkipped) {
   scene::Scene scene = scene_of(kCamera);
   add_widget(scene, "a", Kind::seed, {{Vec3(NAN, 0, 0), Vec3(0.0)}});
   add_widget(scene, "b", Kind::cutting_plane, {{Vec3(0.0), Vec3(0.0)}, Quat(NAN, 0, 0, 0)});
   add_widget(scene, "c", Kind::rake, {{Vec3(0.0), Vec3(0, INFINITY, 0)}});
   EXPECT_TRUE(packet_of(scene).widgets.empty());
-  add_widget(scene, "d", Kind::ruler, {});  // of no length
+  add_widget(scene, "d", Kind::ruler, {});  // of length zero
   EXPECT_FALSE(packet_of(scene).widgets.empty());
 }
 
-// ---- pictures ----
+// ---- images ----
 class WidgetImages : public ImageTest {};
 
 std::uint32_t id_named(const FramePacket& packet, const std::string& name) {
@@ -315,7 +315,7 @@ std::uint32_t id_named(const FramePacket& packet, const std::string& name) {
   return 0;
 }
 
-TEST_F(WidgetImages, CirclesLieWhereTheyProjectTo) {
+TEST_F(WidgetImages, CirclesAreDrawnAtTheirProjection) {
   scene::Scene scene = scene_of(kCamera);
   const Quat turn = rotation_from_vector({0.4, 0.1, -0.3});
   const scene::Entity e = add_widget(scene, "cut", Kind::cutting_plane, {{Vec3(0.0), Vec3(0.0)}, turn});
@@ -328,7 +328,7 @@ TEST_F(WidgetImages, CirclesLieWhereTheyProjectTo) {
   ASSERT_TRUE(ids);
   const std::uint32_t id = id_named(packet, "cut");
   const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
-  // every point of a circle has a pixel of it within one
+  // every projected point of a circle has a drawn pixel within one pixel
   std::vector<bool> explained(ids->ids.size());
   for (int axis = 0; axis < 3; ++axis)
     for (int k = 0; k < 2000; ++k) {
@@ -348,7 +348,7 @@ TEST_F(WidgetImages, CirclesLieWhereTheyProjectTo) {
         }
       ASSERT_TRUE(near) << axis << " " << k << ": " << at->x << " " << at->y;
     }
-  // and what is far from the centre is a circle's, or the normal's arrow
+  // every drawn pixel far from the centre belongs to a circle or the normal's arrow
   const auto tip = project(camera, rotate(turn, {0, 0, 1.45 * 1.2}));
   int stray = 0, seen = 0;
   for (std::uint32_t y = 0; y < packet.height; ++y)
@@ -364,7 +364,7 @@ TEST_F(WidgetImages, CirclesLieWhereTheyProjectTo) {
   EXPECT_EQ(stray, 0);
 }
 
-TEST_F(WidgetImages, PicturesRepeatAndModesDiffer) {
+TEST_F(WidgetImages, ImagesAreRepeatableAndModesDiffer) {
   const auto picture_of = [&](Mode mode, int held) {
     scene::Scene scene = scene_of(kCamera + R"(, "isosurfaces": [{"field": "s", "level": 1}])");
     scene.clip_planes.push_back({{{0, 0, 0}, {0, 0, -1}}});
@@ -387,7 +387,7 @@ TEST_F(WidgetImages, PicturesRepeatAndModesDiffer) {
   }
 }
 
-TEST_F(WidgetImages, ClipPlanesDoNotTouchThem) {
+TEST_F(WidgetImages, ClipPlanesDoNotCutWidgets) {
   scene::Scene scene = scene_of(kCamera);
   add_widget(scene, "s", Kind::seed, {{Vec3(0, 0, 0), Vec3(0.0)}});
   const Image8 whole = draw(packet_of(scene));
@@ -395,7 +395,7 @@ TEST_F(WidgetImages, ClipPlanesDoNotTouchThem) {
   EXPECT_EQ(draw(packet_of(scene)).rgba, whole.rgba);
 }
 
-TEST_F(WidgetImages, EveryWidgetCanBePickedAndSeenByBothEyes) {
+TEST_F(WidgetImages, EveryWidgetIsPickableAndDrawnInBothEyes) {
   scene::Scene scene = scene_of(kCamera);
   add_widget(scene, "seed", Kind::seed, {{Vec3(-1.2, 0, 1), Vec3(0.0)}});
   add_widget(scene, "rake", Kind::rake, {{Vec3(-1.5, 0, -0.6), Vec3(-0.5, 0, -1)}});
@@ -437,7 +437,7 @@ TEST_F(WidgetImages, EveryWidgetCanBePickedAndSeenByBothEyes) {
   EXPECT_GT(differ, 20);
 }
 
-// For looking at: CATENA_GALLERY=1 draws every widget in every mode, large, on dark and on light.
+// For visual inspection: CATENA_GALLERY=1 draws every widget in every mode, large, on dark and light backgrounds.
 TEST_F(WidgetImages, Gallery) {
   if (std::getenv("CATENA_GALLERY") == nullptr) GTEST_SKIP() << "CATENA_GALLERY is not set";
   struct Case {

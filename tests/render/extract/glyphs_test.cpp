@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Arrows in the packet against closed forms: where, which way, how long, of which colour; what has none; what they follow.
+// Glyphs in the packet against closed forms: position, direction, length and colour; invalid regions; glyphs on moving objects.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,8 +49,8 @@ std::string error_of(const std::string& parts) {
 
 Vec3 middle(const Glyph& glyph) { return 0.5 * (glyph.tail + glyph.tip); }
 
-TEST(ExtractGlyphs, TheyPointAndReachAsTheFieldSays) {
-  // (-y, x, 0): the longest of the square -2..2 that are placed has the length stated, the others their share of it
+TEST(ExtractGlyphs, DirectionAndLengthFollowTheField) {
+  // (-y, x, 0) on the square -2..2: the longest glyph has the stated length, the others are proportional to the speed
   const auto glyphs = glyphs_of(R"("glyphs": [{"field": "v", "on": {"plane": {"axis": "z", "at": 0.5}}, "spacing": 0.4, "length": 0.6}])");
   ASSERT_GT(glyphs.size(), 90u);
   double fastest = 0;
@@ -63,7 +63,7 @@ TEST(ExtractGlyphs, TheyPointAndReachAsTheFieldSays) {
   }
 }
 
-TEST(ExtractGlyphs, ScaleLengthAndPlace) {
+TEST(ExtractGlyphs, ScaleLengthAnchorAndMinimumSpeed) {
   const std::string head = R"("glyphs": [{"field": "v", "on": {"plane": {"axis": "z", "at": 0}}, "spacing": 0.5, )";
   for (const Glyph& glyph : glyphs_of(head + R"("scale": "constant"}])")) EXPECT_NEAR(norm(glyph.tip - glyph.tail), 0.5, 1e-12);
   const auto full = glyphs_of(head + R"("reference_speed": 1, "length": 0.25}])");
@@ -99,7 +99,7 @@ TEST(ExtractGlyphs, TheShapeFollowsTheRadiusAndALineHasNoHead) {
   EXPECT_NEAR(packet_bounds(arrows).hi.z, 2.25, 1e-12);
 }
 
-TEST(ExtractGlyphs, ColoursAreThoseOfTheMap) {
+TEST(ExtractGlyphs, ColorsAreThoseOfTheMap) {
   scene::Scene scene = scene_of(R"("glyphs": [{"field": "v", "on": {"plane": {"axis": "z", "at": 0}}, "spacing": 0.5,
       "color_by": {"quantity": "speed", "color": [[0, 0, 0, 0], [2, 1, 0.5, 0]]}},
     {"field": "v", "on": {"plane": {"axis": "z", "at": 0}}, "spacing": 0.5, "color_by": {"field": "s", "color": "magma"}}],
@@ -114,7 +114,7 @@ TEST(ExtractGlyphs, ColoursAreThoseOfTheMap) {
     lo = std::min(lo, speed);
     hi = std::max(hi, speed);
   }
-  // the distance from the origin is the speed, too; the map lies between those that are drawn
+  // the speed is the distance from the origin; the map covers the drawn speeds
   const auto map = scene::make_color_map("magma", lo, hi);
   for (const Glyph& glyph : packet.glyphs[1].glyphs) {
     const double value = norm(middle(glyph));
@@ -131,8 +131,8 @@ TEST(ExtractGlyphs, ColoursAreThoseOfTheMap) {
   EXPECT_NEAR(packet.overlay.scalar_bars[1].colors.back()[0], hi, 1e-9);
 }
 
-TEST(ExtractGlyphs, WhatIsNotValidHasNone) {
-  // x >= 0 of -2..2 is valid; a voxel of it is no number
+TEST(ExtractGlyphs, InvalidRegionsHaveNoGlyphs) {
+  // x >= 0 of -2..2 is valid, with one NaN voxel
   std::vector<float> values;
   std::vector<std::uint8_t> valid;
   const field::Mapping mapping = field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0));
@@ -155,7 +155,7 @@ TEST(ExtractGlyphs, WhatIsNotValidHasNone) {
   EXPECT_NEAR(static_cast<double>(glyphs.size()), 9 * 17 * 17, 30) << "half of the lattice of 17^3";
 }
 
-TEST(ExtractGlyphs, OnASliceWithinWhatIsSeenOfIt) {
+TEST(ExtractGlyphs, OnASliceTheyStayWithinItsVisiblePart) {
   auto made = scene::parse_scene(R"({"fields": {"v": {"analytic": "uniform"}, "s": {"analytic": "sphere", "box": [-1, 1], "resolution": 5}},
     "slices": [{"field": "s", "axis": "y", "at": 0.5}], "glyphs": [{"field": "v", "on": {"slice": 0}, "spacing": 0.2}]})",
                                  "s.json");
@@ -165,7 +165,7 @@ TEST(ExtractGlyphs, OnASliceWithinWhatIsSeenOfIt) {
   for (const Glyph& glyph : glyphs) EXPECT_LE(max_abs(middle(glyph)), 1 + 1e-9);
 }
 
-TEST(ExtractGlyphs, OnASurfaceTheyStandOnIt) {
+TEST(ExtractGlyphs, OnAnIsosurfaceTheirTailsAreOnIt) {
   const auto glyphs = glyphs_of(R"("isosurfaces": [{"field": "s", "level": 1.5, "visible": false}],
     "glyphs": [{"field": "v", "on": {"isosurface": 0}, "spacing": 0.25, "anchor": "tail"}])");
   ASSERT_GT(glyphs.size(), 250u);
@@ -175,7 +175,7 @@ TEST(ExtractGlyphs, OnASurfaceTheyStandOnIt) {
   }
 }
 
-TEST(ExtractGlyphs, TheyFollowWhatTheyStandOn) {
+TEST(ExtractGlyphs, GlyphsFollowTheirWidgets) {
   scene::Scene scene = scene_of(R"("widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0.25], "normal": [0, 0, 1]},
       {"name": "l", "type": "isolevel", "field": "s", "position": [1, 0, 0]}],
     "slices": [{"field": "s", "widget": "cut"}], "isosurfaces": [{"field": "s", "level": {"widget": "l"}}],
@@ -195,14 +195,14 @@ TEST(ExtractGlyphs, TheyFollowWhatTheyStandOn) {
   EXPECT_NEAR(middle(packet.glyphs[0].glyphs[0]).z, -1, 1e-12);
   EXPECT_NEAR(middle(packet.glyphs[1].glyphs[0]).z, -1, 1e-12);
   EXPECT_NEAR(norm(middle(packet.glyphs[2].glyphs[0])), 1.5, 0.02);
-  // out of the domain nothing is seen, and the frame goes on
+  // outside the domain there are no glyphs
   move("cut", {0, 0, 40});
   packet = packet_of(scene);
   EXPECT_TRUE(packet.glyphs[0].glyphs.empty());
   EXPECT_TRUE(packet.glyphs[1].glyphs.empty());
 }
 
-TEST(ExtractGlyphs, AnEditOfTheSliceMovesThemAndAnotherEditKeepsThem) {
+TEST(ExtractGlyphs, OnlyAnEditOfTheirSliceRecomputesThem) {
   const std::string text = R"({"fields": {"w": {"analytic": "uniform"}}, "slices": [{"field": "w", "axis": "z", "at": 0}],
     "glyphs": [{"field": "w", "on": {"slice": 0}}], "title": "a"})";
   const auto parsed = [](const std::string& t) { return std::move(*scene::parse_scene(t, "s.json")); };
@@ -220,7 +220,7 @@ TEST(ExtractGlyphs, AnEditOfTheSliceMovesThemAndAnotherEditKeepsThem) {
   EXPECT_NEAR(middle(packet_of(third).glyphs[0].glyphs[0]).z, 1, 1e-12);
 }
 
-TEST(ExtractGlyphs, TooManyAreAnErrorThatSaysHowMany) {
+TEST(ExtractGlyphs, TooManyGlyphsAreAnErrorWithTheirNumber) {
   const std::string e = error_of("\n\"glyphs\": [{\"field\": \"v\",\n\"spacing\": 0.1}]");
   EXPECT_NE(e.find("s.json:4: a \"spacing\" of 0.1 would give about 68921 glyphs; a wider one that gives at most 20000 was expected"),
             std::string::npos)
@@ -232,7 +232,7 @@ TEST(ExtractGlyphs, TooManyAreAnErrorThatSaysHowMany) {
                     .find("at most 20000 was expected"),
                 std::string::npos)
           << on << spacing;
-  // under a hand they get wider instead
+  // for a plane that follows a widget the spacing is increased instead
   const auto glyphs = glyphs_of(R"("widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [1, 1, 1]}],
     "glyphs": [{"field": "w", "spacing": 0.01, "on": {"plane": {"widget": "cut"}}}])");
   EXPECT_GT(glyphs.size(), 12000u);
@@ -244,7 +244,7 @@ TEST(ExtractGlyphs, WrongFieldsAreNamed) {
             std::string::npos);
   EXPECT_NE(
       error_of(R"("isosurfaces": [{"field": "s", "level": 99, "visible": false}], "glyphs": [{"field": "v", "on": {"isosurface": 0}}])")
-          .find("level 99 lies outside"),
+          .find("level 99 is outside"),
       std::string::npos);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a packet says of label maps: their colours, the legend, what is hidden, which slice lies over which.
+/// Label maps in a packet: colours, legend, hidden labels, order of coplanar slices.
 #include <gtest/gtest.h>
 
 #include "render/extract/extract.h"
@@ -8,7 +8,7 @@
 namespace catena::render {
 namespace labels_test {
 
-/// 26^3 voxels: label x, the lower ones twice as tall; 25 of them and 0.
+/// 26^3 voxels with label x: labels 1 to 25 and 0; labels 1 to 20 have twice as many voxels as 21 to 25.
 class LabelPacket : public testing::Test {
  protected:
   FramePacket packet_of(const std::string& parts) {
@@ -31,7 +31,7 @@ class LabelPacket : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(LabelPacket, TheLegendHasTheTwentyLargestByTheirNames) {
+TEST_F(LabelPacket, TheLegendListsTheTwentyLargestLabels) {
   const FramePacket packet =
       packet_of(R"("isosurfaces": [{"field": "all", "level": 0.5, "color_by": {"field": "m"}}], "scalar_bars": [{"field": "m"}])");
   ASSERT_EQ(packet.overlay.scalar_bars.size(), 1u);
@@ -48,13 +48,13 @@ TEST_F(LabelPacket, TheLegendHasTheTwentyLargestByTheirNames) {
   EXPECT_TRUE(packet.isosurfaces[0].color_by->spread_labels) << "the surface is that of the labels";
 }
 
-TEST_F(LabelPacket, AnotherSurfaceTakesItsColourWhereThereIsNoLabel) {
+TEST_F(LabelPacket, ASurfaceMayBeColoredByLabels) {
   const FramePacket packet = packet_of(R"("isosurfaces": [{"field": "ball", "level": 5, "color_by": {"field": "m"}}])");
   EXPECT_TRUE(packet.isosurfaces.at(0).color_by->is_categorical);
   EXPECT_FALSE(packet.isosurfaces.at(0).color_by->spread_labels);
 }
 
-TEST_F(LabelPacket, OfTwoSlicesInOnePlaneTheLaterLiesOver) {
+TEST_F(LabelPacket, OfTwoSlicesInOnePlaneTheLaterIsOnTop) {
   const FramePacket packet =
       packet_of(R"("slices": [{"field": "ball", "axis": "z", "at": 4}, {"field": "m", "axis": "z", "at": 4, "opacity": 0.5},
                  {"field": "m", "point": [3, 1, 4], "normal": [0, 0, -2]}, {"field": "m", "axis": "z", "at": 5}])");
@@ -66,7 +66,7 @@ TEST_F(LabelPacket, OfTwoSlicesInOnePlaneTheLaterLiesOver) {
   }
 }
 
-TEST_F(LabelPacket, AVolumeShowsTheLabelsColours) {
+TEST_F(LabelPacket, AVolumeHasTheLabelsColors) {
   const FramePacket packet = packet_of(R"("volumes": [{"field": "m"}])");
   const TransferTable& table = packet.volumes.at(0).transfer;
   EXPECT_TRUE(table.is_categorical);

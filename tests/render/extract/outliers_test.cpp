@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ranges that nobody states, in the packet: of colours, contours, lines and glyphs the same with an outlier as without.
+// Default ranges of colours, contours, lines and glyphs in the packet are equal with and without an outlier.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,13 +59,13 @@ Ranges ranges_of(bool spoiled) {
   return ranges;
 }
 
-TEST(Outliers, LeaveTheRangesOfColoursContoursLinesAndGlyphs) {
+TEST(Outliers, DoNotChangeDefaultRanges) {
   const Ranges clean = ranges_of(false), spoiled = ranges_of(true);
   ASSERT_EQ(clean.bars.size(), 4u);
   ASSERT_EQ(spoiled.bars.size(), clean.bars.size());
   for (std::size_t i = 0; i < clean.bars.size(); ++i) {
     ASSERT_FALSE(clean.bars[i].empty() || spoiled.bars[i].empty()) << i;
-    // a line that starts beside the outlier ends there, so that less of the flow is seen
+    // lines that start beside the outlier end there and are shorter
     const double near = i == 0 ? 0.1 : 0.02;
     EXPECT_NEAR(spoiled.bars[i].front()[0], clean.bars[i].front()[0], near) << i;
     EXPECT_NEAR(spoiled.bars[i].back()[0], clean.bars[i].back()[0], near) << i;

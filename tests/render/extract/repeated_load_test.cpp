@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scene loaded a hundred times over, each time its own grids: the device and this process hold no more at the end.
+// A scene loaded a hundred times with new grids: memory of the device and of the process does not grow.
 #include <gtest/gtest.h>
 
 #include "render/extract/extract.h"
@@ -9,7 +9,7 @@
 #include "tests/support/vulkan.h"
 
 namespace catena::render {
-namespace scene_loads_test {
+namespace repeated_load_test {
 
 const std::string kScene = R"({
   "fields": {"s": {"analytic": "sphere", "resolution": 17}, "v": {"analytic": "circle"}},
@@ -19,7 +19,7 @@ const std::string kScene = R"({
   "camera": {"position": [6, -6, 4], "target": [0, 0, 0]}
 })";
 
-TEST(RepeatedLoad, AHundredHoldNoMore) {
+TEST(RepeatedLoad, AHundredLoadsHoldNoMoreMemory) {
   test::use_lavapipe();
   vk::DeviceOptions options;
   options.device_filter = test::test_device();
@@ -35,7 +35,7 @@ TEST(RepeatedLoad, AHundredHoldNoMore) {
     const std::uint64_t uploads = (*renderer)->stats().uploads;
     const Outcome drawn = (*renderer)->draw(*packet);
     ASSERT_TRUE(drawn) << drawn.error().message;
-    // it is another grid each time
+    // a new grid each time
     EXPECT_GT((*renderer)->stats().uploads, uploads);
     EXPECT_EQ((*renderer)->device().retired_count(), 0u);
     if (k == kWarm) {
@@ -52,5 +52,5 @@ TEST(RepeatedLoad, AHundredHoldNoMore) {
   }
 }
 
-}  // namespace scene_loads_test
+}  // namespace repeated_load_test
 }  // namespace catena::render

@@ -15,7 +15,7 @@ FramePacket packet() {
   return p;
 }
 
-/// How far right of the view an eye stands.
+/// Offset of an eye to the right of the view.
 double side(const FramePacket& p, std::size_t k) { return p.eyes.at(k).position.x; }
 
 scene::Stereo mode(scene::StereoMode m) {
@@ -39,7 +39,7 @@ TEST(StereoCameras, LeftAndRightAreOneEyeOfThePair) {
   EXPECT_EQ(p.packing, Packing::single);
 }
 
-TEST(StereoCameras, CrossedAndSwappedExchangeThem) {
+TEST(StereoCameras, CrossEyedAndSwappedExchangeTheEyes) {
   using scene::StereoMode;
   for (const StereoMode m : {StereoMode::side_by_side, StereoMode::cross_eyed})
     for (const bool swap : {false, true}) {
@@ -55,7 +55,7 @@ TEST(StereoCameras, CrossedAndSwappedExchangeThem) {
     }
 }
 
-TEST(StereoCameras, ManyViewsWhereTheModeTakesThem) {
+TEST(StereoCameras, TheViewCountAppliesToModesWithManyViews) {
   using scene::StereoMode;
   for (int i = 0; i < scene::kStereoModeCount; ++i) {
     scene::Stereo stereo = mode(static_cast<StereoMode>(i));
@@ -68,7 +68,7 @@ TEST(StereoCameras, ManyViewsWhereTheModeTakesThem) {
   }
 }
 
-TEST(StereoCameras, AWindowIsFilledByItsEyes) {
+TEST(StereoCameras, ThePackedEyesFillTheWindow) {
   for (const Packing packing : {Packing::single, Packing::side_by_side, Packing::top_bottom, Packing::anaglyph, Packing::rows}) {
     const PackedSize eye = view_size(packing, 2, 800, 600);
     const PackedSize whole = packed_size(packing, 2, std::uint32_t(eye.width), std::uint32_t(eye.height));

@@ -24,7 +24,7 @@ std::string sliced(const std::string& keys) {
          keys + "}]}";
 }
 
-TEST(ExtractSlices, PlaneColoursAndLevelsReachThePacket) {
+TEST(ExtractSlices, PlaneColorsAndLevelsReachThePacket) {
   const auto packet = extract(sliced(R"("field": "s", "axis": "z", "at": 0.5, "color": [[0, 1, 0, 0], [2, 0, 0, 1]], "opacity": 0.5,
     "contours": {"count": 3, "width": 2, "color": [0, 1, 0]}, "clip": false)"));
   ASSERT_TRUE(packet) << packet.error().message;
@@ -45,7 +45,7 @@ TEST(ExtractSlices, PlaneColoursAndLevelsReachThePacket) {
   EXPECT_NEAR(packet_bounds(*packet).diagonal(), 4 * std::sqrt(3.0), 1e-9);
 }
 
-TEST(ExtractSlices, NamedColoursCoverTheFieldAndMultiplesLieWithinIt) {
+TEST(ExtractSlices, NamedColorsCoverTheFieldAndMultiplesAreWithinIt) {
   const auto packet = extract(sliced(R"("field": "s", "axis": "z", "at": 0, "contours": {"spacing": 0.75})"));
   ASSERT_TRUE(packet);
   const SliceItem& slice = packet->slices[0];
@@ -62,7 +62,7 @@ TEST(ExtractSlices, AVectorFieldIsShownByItsMagnitude) {
     EXPECT_NEAR(packet->slices[0].grid->sample(p, cursor).value, std::hypot(p.x, p.y), 1e-6);
 }
 
-TEST(ExtractSlices, TheMagnitudesKeepMaskPlaceAndHoles) {
+TEST(ExtractSlices, TheMagnitudeGridKeepsMaskMappingAndHoles) {
   std::vector<float> xyz;
   std::vector<std::uint8_t> valid;
   for (int z = 0; z < 4; ++z)
@@ -87,7 +87,7 @@ TEST(ExtractSlices, TheMagnitudesKeepMaskPlaceAndHoles) {
       }
 }
 
-TEST(ExtractSlices, WhatCannotBeDrawnIsSaidWithItsLine) {
+TEST(ExtractSlices, UndrawableSlicesAreErrorsWithTheirLine) {
   for (const auto& [keys, expected] : {std::pair{R"("field": "s", "axis": "z", "at": 2.5)", "does not meet the domain"},
                                        {R"("field": "s", "axis": "z", "at": 0, "contours": {"spacing": 1e-6})", "levels; at most 1000"}}) {
     const auto packet = extract(sliced(keys));
@@ -97,9 +97,9 @@ TEST(ExtractSlices, WhatCannotBeDrawnIsSaidWithItsLine) {
   }
 }
 
-TEST(ExtractMeshes, NormalsColoursAndOpacity) {
+TEST(ExtractMeshes, NormalsColorsAndOpacityReachThePacket) {
   const test::TemporaryFolder folder;
-  // two faces at right angles
+  // two perpendicular faces
   test::write_file(folder / "fold.obj", "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 0 0 1\nv 0 1 1\nf 1 3 4 2\nf 1 2 6 5\n");
   const std::string fields = R"({"fields": {"x": {"analytic": "linear", "resolution": 9}}, "meshes": [{"name": "m", "file": "fold.obj")";
   auto packet = extract(fields + R"(, "shading": "smooth", "opacity": 0.25, "edges": true}]})", folder / "s.json");

@@ -30,7 +30,7 @@ TEST(Tiles, CoverEverySampleOnce) {
   }
 }
 
-TEST(Tiles, SmallPicturesAreOnePiece) {
+TEST(Tiles, SmallImagesAreOneTile) {
   EXPECT_EQ(plan_tiles(1024, 768, 1, 0, true, 16384).count(), 1u);
   EXPECT_EQ(plan_tiles(2048, 2048, 1, 0, true, 16384).count(), 1u);
   EXPECT_EQ(plan_tiles(1024, 1024, 2, 0, true, 16384).count(), 1u);
@@ -39,12 +39,12 @@ TEST(Tiles, SmallPicturesAreOnePiece) {
   EXPECT_EQ(plan_tiles(200, 150, 1, 64, false, 16384).count(), 12u);
 }
 
-TEST(Tiles, ATileSeesTheSameRays) {
+TEST(Tiles, ATileHasTheRaysOfTheWholeImage) {
   FramePacket packet;
   packet.width = 300;
   packet.height = 200;
   packet.view = {{3.0, -7.0, 2.0}, {0.1, 0.2, 0.3}, {0.0, 0.0, 1.0}, 37, false, 5};
-  packet.view.window = {-0.8, 1.3, -1, 0.9};  // an eye off the axis
+  packet.view.window = {-0.8, 1.3, -1, 0.9};  // an off-axis eye
   for (const bool orthographic : {false, true}) {
     packet.view.orthographic = orthographic;
     const TilePlan plan = plan_tiles(300, 200, 1, 64, true, 16384);

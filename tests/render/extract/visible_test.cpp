@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// "visible": false hides what is drawn and nothing else.
+// "visible": false hides the drawn object and changes nothing else.
 #include <gtest/gtest.h>
 
 #include "render/extract/extract.h"
@@ -34,7 +34,7 @@ class VisibleKey : public testing::Test {
   Result<scene::Scene> scene_ = Error{""};
 };
 
-TEST_F(VisibleKey, TrueIsAsIfItWereNotSaid) {
+TEST_F(VisibleKey, TrueIsTheDefault) {
   for (const char* visible : {"", ", \"visible\": true"}) {
     const FramePacket all = packet(visible);
     EXPECT_EQ(all.volumes.size(), 2u);
@@ -46,20 +46,20 @@ TEST_F(VisibleKey, TrueIsAsIfItWereNotSaid) {
   }
 }
 
-TEST_F(VisibleKey, FalseHidesTheThingAndItsScalarBar) {
+TEST_F(VisibleKey, FalseHidesTheObjectAndItsScalarBar) {
   const FramePacket some = packet(", \"visible\": false");
   EXPECT_EQ(some.volumes.size(), 1u);
   EXPECT_TRUE(some.isosurfaces.empty());
   ASSERT_EQ(some.slices.size(), 1u);
   EXPECT_TRUE(some.tubes.empty());
   EXPECT_TRUE(some.meshes.empty());
-  // that of the slice that is seen, in its own colours
+  // the bar of the visible slice, in its colours
   ASSERT_EQ(some.overlay.scalar_bars.size(), 1u);
   EXPECT_EQ(some.overlay.scalar_bars[0].colors, some.slices[0].colors);
   EXPECT_EQ(scene_->entities.count<scene::Volume>(), 2u) << "it is still of the scene";
 }
 
-TEST_F(VisibleKey, OnlyTruthValues) {
+TEST_F(VisibleKey, OnlyBooleansAreAccepted) {
   for (const char* list : {R"("volumes": [{"field": "s")", R"("isosurfaces": [{"field": "s", "level": 1)",
                            R"("slices": [{"field": "s", "axis": "z", "at": 0)"}) {
     const auto scene =

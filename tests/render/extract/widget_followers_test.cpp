@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What follows a widget, in the packet: wherever the hand carries it, the frame goes on.
+/// Objects that follow a widget, in the packet: valid frames at any position of the widget.
 #include <gtest/gtest.h>
 
 #include "engine/scene/prepare.h"
@@ -7,7 +7,7 @@
 #include "render/extract/extract.h"
 
 namespace catena::render {
-namespace followers_test {
+namespace widget_followers_test {
 
 scene::Scene parsed() {
   auto scene = scene::parse_scene(R"({
@@ -35,7 +35,7 @@ void move(scene::Scene& scene, const char* name, const Vec3& a, const Vec3& b = 
   ASSERT_TRUE(scene::set_widget_pose(scene, scene::find_widget(scene, name), {{a, b}, kIdentityRotation}));
 }
 
-TEST(WidgetFollowers, ThePacketIsWhereTheWidgetsAre) {
+TEST(WidgetFollowers, ThePacketFollowsTheWidgets) {
   scene::Scene scene = parsed();
   FramePacket packet = frame(scene);
   ASSERT_EQ(packet.slices.size(), 1u);
@@ -54,23 +54,23 @@ TEST(WidgetFollowers, ThePacketIsWhereTheWidgetsAre) {
   EXPECT_NEAR(norm(packet.tubes[0].points[0]), 0.2, 1e-5);
 }
 
-TEST(WidgetFollowers, OutOfTheDomainTheFrameGoesOn) {
+TEST(WidgetFollowers, OutsideTheDomainTheFrameIsValid) {
   scene::Scene scene = parsed();
   frame(scene);
   move(scene, "cut", {0, 0, 50});
-  move(scene, "r", {0, 0, 0}, {0, 0, 1});  // where the flow stands still
+  move(scene, "r", {0, 0, 0}, {0, 0, 1});  // where the flow is zero
   move(scene, "l", {30, 0, 0});
   FramePacket packet = frame(scene);
   EXPECT_EQ(packet.tubes.size(), 0u);
   EXPECT_EQ(packet.arrows.size(), 0u);
   EXPECT_EQ(packet.slices.size(), 1u) << "scalar bars count them";
   EXPECT_EQ(packet.isosurfaces[0].level, packet.isosurfaces[0].grid->max_value());
-  // and back
+  // back in the flow
   move(scene, "r", {0.5, 0, 0}, {1, 0, 0});
   EXPECT_EQ(frame(scene).tubes.size(), 4u);
 }
 
-TEST(WidgetFollowers, ARulerShowsTheWayThatItMeasures) {
+TEST(WidgetFollowers, ARulerAlongACurveIsDrawnOnTheCurve) {
   auto scene = scene::parse_scene(R"({"fields": {"v": {"analytic": "circle"}},
     "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [1, 0, 0]}],
     "widgets": [{"name": "u", "type": "ruler", "from": [1, 0, 0], "to": [0, 1, 0], "along": ["curve"]}]})",
@@ -86,5 +86,5 @@ TEST(WidgetFollowers, ARulerShowsTheWayThatItMeasures) {
   EXPECT_GT(longest, 8u) << "the arc beside the straight way";
 }
 
-}  // namespace followers_test
+}  // namespace widget_followers_test
 }  // namespace catena::render

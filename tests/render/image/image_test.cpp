@@ -13,15 +13,15 @@
 #include "tests/support/support.h"
 
 namespace catena::test {
-namespace picture_test {
+namespace image_test {
 
 using namespace catena::render;
 
 Image8 ramp() {
-  Image8 picture{13, 7, {}};
+  Image8 rendered{13, 7, {}};
   for (std::uint32_t i = 0; i < 13 * 7; ++i)
-    for (const std::uint32_t c : {3 * i, 255 - i, i % 5 * 60, i * 2 % 256}) picture.rgba.push_back(std::uint8_t(c));
-  return picture;
+    for (const std::uint32_t c : {3 * i, 255 - i, i % 5 * 60, i * 2 % 256}) rendered.rgba.push_back(std::uint8_t(c));
+  return rendered;
 }
 
 TEST(Png, RoundTripWithAlpha) {
@@ -43,7 +43,7 @@ TEST(Png, RoundTripWithoutAlpha) {
   for (std::size_t i = 0; i < back->rgba.size(); ++i) EXPECT_EQ(back->rgba[i], i % 4 == 3 ? 255 : ramp().rgba[i]);
 }
 
-TEST(Png, NothingHalfWrittenStays) {
+TEST(Png, AFailedWriteLeavesNoFile) {
   const TemporaryFolder folder;
   const auto missing = write_png(folder / "no/such/a.png", ramp(), true);
   ASSERT_FALSE(missing);
@@ -60,14 +60,14 @@ TEST(Png, AFullDiskIsReported) {
   EXPECT_TRUE(exists("/dev/full"));
 }
 
-TEST(Png, ReadingSomethingElseIsAnError) {
+TEST(Png, ReadingAnotherFormatIsAnError) {
   const TemporaryFolder folder;
   write_file(folder / "a.png", "not a picture");
   EXPECT_FALSE(read_png(folder / "a.png"));
   EXPECT_FALSE(read_png(folder / "missing.png"));
 }
 
-TEST(Png, SixteenBitsComeBackInAllTheirBytes) {
+TEST(Png, SixteenBitsRoundTrip) {
   const TemporaryFolder folder;
   for (const int channels : {1, 3, 4}) {
     std::vector<std::uint16_t> values;
@@ -91,7 +91,7 @@ TEST(Png, SixteenBitsComeBackInAllTheirBytes) {
   }
 }
 
-TEST(Png, AWriterThatIsDroppedLeavesNothing) {
+TEST(Png, ADroppedWriterLeavesNoFile) {
   const TemporaryFolder folder;
   {
     auto png = PngWriter::open(folder / "a.png", {4, 4, 8, 3});
@@ -101,7 +101,7 @@ TEST(Png, AWriterThatIsDroppedLeavesNothing) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 0);
 }
 
-TEST(Png, LevelsRoundToTheNearest) {
+TEST(Png, LevelsRoundToNearest) {
   EXPECT_EQ(quantize(0, 65535), 0u);
   EXPECT_EQ(quantize(1, 65535), 65535u);
   EXPECT_EQ(quantize(0.5f, 65535), 32768u);  // 32767.5 + 0.5
@@ -113,7 +113,7 @@ TEST(Png, LevelsRoundToTheNearest) {
   EXPECT_EQ(quantize(0.5f, 255), 128u);
 }
 
-TEST(Exr, FloatsComeBackToTheBit) {
+TEST(Exr, FloatsRoundTripBitForBit) {
   const TemporaryFolder folder;
   std::vector<float> values;
   for (int i = 0; i < 9 * 40 * 4; ++i) values.push_back(std::ldexp(float(i) + 0.3f, i % 60 - 30));
@@ -156,7 +156,7 @@ TEST(Exr, AFullDiskAndAMissingFolderAreReported) {
 }
 
 TEST(Exr, DisplayValuesBecomeLinearLight) {
-  // IEC 61966-2-1: 0.5 is 0.21404 of the light, 0.04 lies on the straight part
+  // IEC 61966-2-1: 0.5 is 0.21404 of the light, 0.04 is on the linear part
   EXPECT_FLOAT_EQ(linear_from_display(0), 0);
   EXPECT_FLOAT_EQ(linear_from_display(1), 1);
   EXPECT_NEAR(linear_from_display(0.5f), 0.2140411, 1e-6);
@@ -169,5 +169,5 @@ TEST(Exr, DisplayValuesBecomeLinearLight) {
   EXPECT_FLOAT_EQ(c[3], 0.25f);
 }
 
-}  // namespace picture_test
+}  // namespace image_test
 }  // namespace catena::test

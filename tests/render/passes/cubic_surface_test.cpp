@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Isosurfaces of cubic grids (field::Interpolation): their depths against the roots of the same field on the CPU, and against quadratics,
-// which a cubic repeats and a trilinear mix does not; their light, their colours, how often a ray crosses them.
+// Isosurfaces of cubic grids (field::Interpolation): depths against the field's roots on the CPU, and against quadratics, which cubic
+// interpolation reproduces and trilinear does not; shading, colours, number of crossings per ray.
 #include <algorithm>
 #include <cmath>
 #include <glm/matrix.hpp>
@@ -15,9 +15,9 @@ using namespace cubic_rays;
 
 class CubicSurface : public ImageTest {
  protected:
-  /// Every second pixel's depth against the field's own root: within 1e-5 voxels of the surface everywhere, and along the ray where it
-  /// meets the surface at more than 30 degrees for 99 of 100. Where a ray only grazes the level either answer will do.
-  void compare_depths(const FramePacket& packet, const RenderSettings& settings, const std::string& name, int least_hits) {
+  /// Compares every second pixel's depth with the field's root: within 1e-5 voxels of the surface everywhere, and along the ray for 99 %
+  /// of the rays at more than 30 degrees to the surface. For rays that graze the level both results are accepted.
+  void compare_depths(const FramePacket& packet, const RenderSettings& settings, const std::string& name, int min_hits) {
     const field::ScalarGrid& grid = *packet.isosurfaces[0].grid;
     const double level = float(packet.isosurfaces[0].level);
     draw(packet, settings, name);
@@ -42,7 +42,7 @@ class CubicSurface : public ImageTest {
         if (off(expected) > 1e-3) {
           ++grazing;
           const double early = std::min(found, expected), late = std::max(found, expected);
-          double swing = 0;  // what the answer that was not taken makes of it
+          double swing = 0;  // deviation from the level at the other result
           for (double t = early; t < std::min(late, early + 0.2 / ray.voxels); t += 0.01 / ray.voxels) {
             const auto s = grid.sample(ray.at(t), cursor);
             if (s.inside) swing = std::max(swing, s.value >= level ? s.value - level : level - s.value);
@@ -53,7 +53,7 @@ class CubicSurface : public ImageTest {
         if (!std::isfinite(found)) continue;
         ++hits;
         const Vec3 slope = grid.sample(ray.at(expected), cursor).gradient;
-        // both in index space
+        // in index space
         const Vec3 normal = glm::transpose(grid.mapping().world_from_index_linear) * slope,
                    along = grid.mapping().index_from_world_linear * ray.direction;
         const double sine = std::fabs(dot(normal, along)) / (norm(normal) * norm(along));
@@ -61,7 +61,7 @@ class CubicSurface : public ImageTest {
         worst_away = std::max(worst_away, off(expected) * sine);
         if (sine > 0.5) steep.push_back(off(expected));
       }
-    EXPECT_GT(hits, least_hits) << name;
+    EXPECT_GT(hits, min_hits) << name;
     ASSERT_FALSE(steep.empty());
     std::sort(steep.begin(), steep.end());
     std::printf("  %-20s hits %6d  grazing %2d  %.1e voxel in the middle, %.1e at worst, %.1e from the surface\n", name.c_str(), hits,
@@ -73,7 +73,7 @@ class CubicSurface : public ImageTest {
   }
 };
 
-TEST_F(CubicSurface, DepthsAreTheRootsOfTheFieldItself) {
+TEST_F(CubicSurface, DepthsMatchTheRootsOfTheField) {
   const auto waves = noisy_grid({37, 21, 50}, 2, 0.97);
   FramePacket packet = packet_of_grid(*waves, 110);
   packet.isosurfaces = {make_isosurface_item(waves, 0.55)};
@@ -88,7 +88,7 @@ TEST_F(CubicSurface, DepthsOfNoise) {
   FramePacket packet = packet_of_grid(*noise, 95);
   packet.isosurfaces = {make_isosurface_item(noise, 0.5)};
   compare_depths(packet, {}, "noise", 2000);
-  packet.isosurfaces = {make_isosurface_item(noise, 1.05)};  // above all samples
+  packet.isosurfaces = {make_isosurface_item(noise, 1.05)};  // above all sample values
   compare_depths(packet, {}, "beyond the samples", 20);
 }
 
@@ -102,7 +102,7 @@ TEST_F(CubicSurface, DepthsOfASheardGridWithHoles) {
   compare_depths(packet, {}, "orthographic", 800);
 }
 
-TEST_F(CubicSurface, AQuadraticSurfaceIsItselfWithItsNormals) {
+TEST_F(CubicSurface, AQuadraticSurfaceIsExactWithItsNormals) {
   // an ellipsoid, 3.2 to 6.5 voxels across
   const Vec3 c(7.3, 6.9, 8.1), scale(1.0, 0.55, 0.8);
   const auto linear = make_grid({16, 15, 17}, [&](const Vec3& p) { return dot(scale * (p - c), scale * (p - c)); });
@@ -126,7 +126,7 @@ TEST_F(CubicSurface, AQuadraticSurfaceIsItselfWithItsNormals) {
         const PixelRay ray(*linear, camera, x, y);
         const Vec3 o = scale * (ray.origin - c), d = scale * ray.direction;
         const double half = dot(o, d), root = half * half - dot(d, d) * (dot(o, o) - 10.24);
-        if (root < 0.5 * dot(d, d)) continue;  // a rim of the picture is left out
+        if (root < 0.5 * dot(d, d)) continue;  // excludes the silhouette
         const double t = (-half - std::sqrt(root)) / dot(d, d);
         ASSERT_TRUE(std::isfinite(depth->depth[at]));
         ++hits;
@@ -146,14 +146,14 @@ TEST_F(CubicSurface, AQuadraticSurfaceIsItselfWithItsNormals) {
   EXPECT_GT(color_error[0], 4 * color_error[1]) << "linear";
 }
 
-TEST_F(CubicSurface, ATranslucentSurfaceIsCrossedAsOftenAsTheField) {
+TEST_F(CubicSurface, ATranslucentSurfaceHasEveryCrossingOfTheField) {
   const auto grid = noisy_grid({24, 22, 20}, 12, 0.9);
   FramePacket packet = packet_of_grid(*grid, 70);
   packet.isosurfaces = {make_isosurface_item(grid, 0.5)};
   packet.isosurfaces[0].opacity = 0.25f;
   RenderSettings settings;
   settings.termination = 1e-4;
-  const Image8 picture = draw(packet, settings, "translucent");
+  const Image8 image = draw(packet, settings, "translucent");
   const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
   field::Cursor cursor;
   int compared = 0, different = 0;
@@ -162,15 +162,15 @@ TEST_F(CubicSurface, ATranslucentSurfaceIsCrossedAsOftenAsTheField) {
       PixelRay ray(*grid, camera, x, y);
       int crossings = 0;
       for (double t; ray.from < ray.to && (t = first_root(*grid, 0.5, ray, 0.05, cursor)) < HUGE_VAL; ++crossings) ray.from = t + 1e-6;
-      if (crossings == 0 && picture.pixel(x, y)[3] == 0) continue;
+      if (crossings == 0 && image.pixel(x, y)[3] == 0) continue;
       ++compared;
-      different += std::fabs(picture.pixel(x, y)[3] - 255 * (1 - std::pow(0.75, crossings))) > 1;
+      different += std::fabs(image.pixel(x, y)[3] - 255 * (1 - std::pow(0.75, crossings))) > 1;
     }
   EXPECT_GT(compared, 150);
   EXPECT_LE(different, 3) << "of " << compared;
 }
 
-TEST_F(CubicSurface, ColoursByACubicFieldAreItsValues) {
+TEST_F(CubicSurface, ColorsByACubicFieldMatchItsValues) {
   const auto shape = make_grid({24, 24, 24}, [](const Vec3& p) { return norm(p - Vec3(11.5)); });
   const auto values = noisy_grid({12, 13, 11}, 13, 0.3, field::Mapping::from_linear(Mat3(2.1), {0, -1, 1}));
   FramePacket packet = make_packet({60, -40, 40}, {11.5, 11.5, 11.5}, 20);
@@ -191,7 +191,7 @@ TEST_F(CubicSurface, ColoursByACubicFieldAreItsValues) {
       const std::size_t at = y * packet.width + x;
       if (!std::isfinite(depth->depth[at])) continue;
       const auto s = values->sample(unproject(camera, x + 0.5, y + 0.5, depth->depth[at]), cursor);
-      const float *c = &colors->rgba[4 * at], red = c[0] - c[2], green = c[1] - c[2];  // without the glint, which is white
+      const float *c = &colors->rgba[4 * at], red = c[0] - c[2], green = c[1] - c[2];  // without the white highlight
       if (!s.inside || red + green < 0.3f) continue;
       ++compared;
       ASSERT_NEAR(red / (red + green), (s.value + 0.25) / 1.5, 5e-3) << x << " " << y;

@@ -14,7 +14,7 @@ using namespace cubic_rays;
 
 class CubicImage : public ImageTest {};
 
-TEST_F(CubicImage, ASliceHasTheFieldsOwnValuesAndLines) {
+TEST_F(CubicImage, ASliceMatchesTheFieldsValuesAndContours) {
   const auto grid = noisy_grid({20, 18, 22}, 7, 0.4, sheared(), 0.01);
   FramePacket packet = packet_of_grid(*grid, 45);
   SliceItem slice;
@@ -64,7 +64,7 @@ TEST_F(CubicImage, ASliceHasTheFieldsOwnValuesAndLines) {
   EXPECT_GT(off, 60);
 }
 
-/// Light and what gets through, in segments of `step`; a headlight.
+/// Colour and transmittance along a ray in segments of `step`, with a headlight.
 std::array<double, 2> integral(const VolumeItem& item, const PixelRay& ray, double step) {
   const auto& [first, last] = std::pair{item.transfer.extinctions.front(), item.transfer.extinctions.back()};
   const int count = std::max(1, int(std::ceil((ray.to - ray.from) / step)));
@@ -84,14 +84,14 @@ std::array<double, 2> integral(const VolumeItem& item, const PixelRay& ray, doub
   return {light, 1 - through};
 }
 
-TEST_F(CubicImage, AVolumeIsTheIntegralOfTheFieldAndItsGradient) {
+TEST_F(CubicImage, AVolumeMatchesTheIntegralOfTheField) {
   const auto grid = noisy_grid({16, 14, 15}, 9, 0.3, sheared());
   FramePacket packet = packet_of_grid(*grid, 60, 35);
   RenderSettings settings = reference_settings();
   for (const bool shade : {false, true}) {
     packet.volumes = {volume_item(grid, {{0.3, 0}, {1.1, 0.2}})};
     packet.volumes[0].is_shaded = shade;
-    const Image8 picture = draw(packet, settings, shade ? "shaded" : "plain");
+    const Image8 image = draw(packet, settings, shade ? "shaded" : "plain");
     const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
     int compared = 0;
     for (std::uint32_t y = 0; y < packet.height; y += 5)
@@ -100,17 +100,17 @@ TEST_F(CubicImage, AVolumeIsTheIntegralOfTheFieldAndItsGradient) {
         if (!(ray.from < ray.to)) continue;
         ++compared;
         const auto [light, alpha] = integral(packet.volumes[0], ray, 0.05);
-        ASSERT_NEAR(picture.pixel(x, y)[3], 255 * alpha, 1) << x << " " << y;
+        ASSERT_NEAR(image.pixel(x, y)[3], 255 * alpha, 1) << x << " " << y;
         if (alpha > 0.1) {
-          ASSERT_NEAR(picture.pixel(x, y)[0], 255 * light / alpha, 3) << x << " " << y;
+          ASSERT_NEAR(image.pixel(x, y)[0], 255 * light / alpha, 3) << x << " " << y;
         }
       }
     EXPECT_GT(compared, 150);
   }
 }
 
-TEST_F(CubicImage, NoBrickIsPassedThatAnOvershootMakesVisible) {
-  // noughts and ones in a corner, halves elsewhere; seen is only what lies beyond the samples
+TEST_F(CubicImage, BricksWithVisibleOvershootsAreNotSkipped) {
+  // zeros and ones in a corner, 0.5 elsewhere; only values beyond the samples are visible
   std::mt19937 random(4);
   const auto grid =
       smoothed_grid(make_grid({40, 33, 26}, [&](const Vec3& p) { return p.x < 14 && p.y < 15 ? double(random() & 1) : 0.5; }));
@@ -123,11 +123,11 @@ TEST_F(CubicImage, NoBrickIsPassedThatAnOvershootMakesVisible) {
   int visible = 0;
   for (std::size_t i = 3; i < leaping.rgba.size(); i += 4) visible += leaping.rgba[i] > 20;
   EXPECT_GT(visible, 200);
-  // and what asks for the fast raycast gets these rays: it reads its volumes as trilinear
+  // the fast raycast, which reads volumes as trilinear, is replaced by exact rays
   EXPECT_EQ(max_difference(leaping, draw(packet, balanced_settings())), 0);
 }
 
-TEST_F(CubicImage, ProjectionsFindWhatLiesBetweenSamples) {
+TEST_F(CubicImage, ProjectionsFindExtremesBetweenSamples) {
   const auto grid = noisy_grid({20, 18, 16}, 10, 0.5, sheared(), 0.01);
   FramePacket packet = packet_of_grid(*grid, 60, 35);
   const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
@@ -139,27 +139,27 @@ TEST_F(CubicImage, ProjectionsFindWhatLiesBetweenSamples) {
     RenderSettings settings;
     settings.texel_format = TexelFormat::r32f;
     settings.step_voxels = 0.05;
-    const Image8 picture = draw(packet, settings, std::to_string(int(projection)));
+    const Image8 image = draw(packet, settings, std::to_string(int(projection)));
     field::Cursor cursor;
     int compared = 0;
     for (std::uint32_t y = 0; y < packet.height; y += 6)
       for (std::uint32_t x = 0; x < packet.width; x += 6) {
         const PixelRay ray(*grid, camera, x, y);
         if (!(ray.from + 0.5 < ray.to)) continue;
-        double most = -HUGE_VAL, least = HUGE_VAL, sum = 0;
+        double max_value = -HUGE_VAL, min_value = HUGE_VAL, sum = 0;
         int count = 0;
         for (int k = 0; k < 1500; ++k) {
           const auto s = grid->sample(ray.at(ray.from + (ray.to - ray.from) * (k + 0.5) / 1500), cursor);
           if (!s.inside) continue;
-          most = std::max(most, s.value);
-          least = std::min(least, s.value);
+          max_value = std::max(max_value, s.value);
+          min_value = std::min(min_value, s.value);
           sum += s.value;
           ++count;
         }
         if (count == 0) continue;
         ++compared;
-        const double value = projection == Projection::maximum ? most : projection == Projection::minimum ? least : sum / count;
-        ASSERT_NEAR(picture.pixel(x, y)[0], 255 * (value + 0.25) / 1.5, 1.1) << x << " " << y;
+        const double value = projection == Projection::maximum ? max_value : projection == Projection::minimum ? min_value : sum / count;
+        ASSERT_NEAR(image.pixel(x, y)[0], 255 * (value + 0.25) / 1.5, 1.1) << x << " " << y;
       }
     EXPECT_GT(compared, 100);
   }

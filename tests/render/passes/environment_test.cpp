@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-/// Lights, fog and aids, against the formulas of shaders/lib/lighting.glsl and closed forms.
+/// Lights, fog, bounding box and ground, against the formulas of shaders/lib/lighting.glsl and closed forms.
 #include <cmath>
 
 #include "render/frame/camera.h"
 #include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
-namespace aids_test {
+namespace environment_test {
 
 using namespace catena::render;
 
-/// A square across y at `y`, seen along +y in orthographic projection: 0.1 units a pixel.
+/// A square perpendicular to y at `y`, seen along +y in orthographic projection: 0.1 units per pixel.
 MeshItem square(double y, double half, const Color& color) {
   auto geometry = std::make_shared<MeshGeometry>();
   geometry->vertices = {{-half, y, -half}, {half, y, -half}, {half, y, half}, {-half, y, half}};
@@ -32,8 +32,8 @@ FramePacket square_packet(double y, const Color& color) {
 class EnvironmentPass : public ImageTest {
  protected:
   std::array<int, 3> middle(const FramePacket& packet, const std::string& name) {
-    const Image8 picture = draw(packet, {}, name);
-    const std::uint8_t* p = picture.pixel(packet.width / 2, packet.height / 2);
+    const Image8 image = draw(packet, {}, name);
+    const std::uint8_t* p = image.pixel(packet.width / 2, packet.height / 2);
     return {p[0], p[1], p[2]};
   }
 };
@@ -42,7 +42,7 @@ void expect_color(const std::array<int, 3>& found, const Vec3& expected) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[std::size_t(c)], 255 * std::min(1.0, expected[c]), 1.01) << c;
 }
 
-TEST_F(EnvironmentPass, ALightOfTheSceneLightsByItsAngle) {
+TEST_F(EnvironmentPass, AWorldLightShadesByItsAngle) {
   FramePacket packet = square_packet(0, {0.5f, 0.6f, 0.7f});
   const Vec3 color(0.5, 0.6, 0.7), to_eye(0, -1, 0);
   expect_color(middle(packet, "headlight"), 0.9 * color + Vec3(0.2));
@@ -51,7 +51,7 @@ TEST_F(EnvironmentPass, ALightOfTheSceneLightsByItsAngle) {
   const double d = dot(l, to_eye), m = std::max(0.0, dot(2 * d * to_eye - l, to_eye));
   const Vec3 shine = 0.7 * d * color + 0.2 * std::pow(m, 20) * white;
   expect_color(middle(packet, "side"), 0.2 * color + Vec3(1.0, 0.5, 0.25) * shine);
-  // behind the surface: only the ambient share
+  // behind the surface: only ambient light
   packet.lights[0].direction = {1, 1, 1};
   expect_color(middle(packet, "behind"), 0.2 * color);
   // two lights add
@@ -59,8 +59,8 @@ TEST_F(EnvironmentPass, ALightOfTheSceneLightsByItsAngle) {
   expect_color(middle(packet, "two"), 0.2 * color + Vec3(1, 0, 1) * shine);
 }
 
-TEST_F(EnvironmentPass, ALightOfTheCameraTurnsWithIt) {
-  // right, up, towards the eye: the same as (1, -1, 1) above, whichever way the camera looks
+TEST_F(EnvironmentPass, ACameraLightRotatesWithTheCamera) {
+  // (right, up, towards the camera): equal to (1, -1, 1) above for any camera direction
   for (const bool turned : {false, true}) {
     FramePacket packet = square_packet(0, {0.5f, 0.5f, 0.5f});
     packet.lights = {{{1, 1, 1}, {1, 1, 1}, true}};
@@ -70,7 +70,7 @@ TEST_F(EnvironmentPass, ALightOfTheCameraTurnsWithIt) {
   }
 }
 
-TEST_F(EnvironmentPass, FogTakesItsShareByDepth) {
+TEST_F(EnvironmentPass, FogBlendsByDepth) {
   const Vec3 fog(0.1, 0.3, 0.8);
   for (const double y : {-7.0, -2.0, 1.0, 9.0}) {
     FramePacket packet = square_packet(y, {0.5f, 0.25f, 0.1f});
@@ -80,7 +80,7 @@ TEST_F(EnvironmentPass, FogTakesItsShareByDepth) {
   }
 }
 
-TEST_F(EnvironmentPass, FogTakesItsShareOfAnIsosurfaceAndOfAThinVolume) {
+TEST_F(EnvironmentPass, FogBlendsAnIsosurfaceAndAThinVolume) {
   // z of the grid along the view; the surface at index 10
   const auto grid = make_grid({21, 21, 21}, [](const Vec3& p) { return p.y; });
   FramePacket packet;
@@ -92,17 +92,17 @@ TEST_F(EnvironmentPass, FogTakesItsShareOfAnIsosurfaceAndOfAThinVolume) {
   packet.isosurfaces.push_back({grid, 10.0, {0.5f, 0.25f, 0.1f}, 1.0f});
   packet.fog = FogItem{{0.1f, 0.3f, 0.8f}, 25, 35, 1};
   expect_color(middle(packet, "surface"), 0.5 * (0.9 * Vec3(0.5, 0.25, 0.1) + Vec3(0.2)) + 0.5 * Vec3(0.1, 0.3, 0.8));
-  // dense beyond the end of the fog: all of its light comes from there
+  // dense and beyond the end of the fog: all its colour is fogged
   packet.isosurfaces.clear();
   packet.volumes.push_back(volume_item(grid, {{0, 0}, {15.8, 0}, {16, 400}, {16.2, 0}, {20, 0}}, {0.5f, 0.25f, 0.1f}));
   RenderSettings settings;
   settings.step_voxels = 0.02;
-  const Image8 picture = draw(packet, settings, "volume");
-  const std::uint8_t* p = picture.pixel(30, 30);
+  const Image8 image = draw(packet, settings, "volume");
+  const std::uint8_t* p = image.pixel(30, 30);
   expect_color({p[0], p[1], p[2]}, Vec3(0.1, 0.3, 0.8));
 }
 
-TEST_F(EnvironmentPass, BoundingBoxAndGroundAreWhereTheyAreSaid) {
+TEST_F(EnvironmentPass, BoundingBoxAndGroundAreAtTheirPositions) {
   FramePacket packet = square_packet(0, {0.2f, 0.2f, 0.2f});
   TubeItem edge;
   edge.points = {{-2.5, 0, 2.5}, {2.5, 0, 2.5}};
@@ -110,7 +110,7 @@ TEST_F(EnvironmentPass, BoundingBoxAndGroundAreWhereTheyAreSaid) {
   edge.color = {1, 0, 0};
   edge.id = 4;
   packet.environment.tubes.push_back(edge);
-  packet.clip_planes = {{{0, 0, 0}, {0, 0, -1}}};  // cuts the square, not the aid
+  packet.clip_planes = {{{0, 0, 0}, {0, 0, -1}}};  // clips the square, not the bounding box
   draw(packet, {}, "clipped");
   const auto ids = renderer_->read_ids();
   ASSERT_TRUE(ids);
@@ -122,7 +122,7 @@ TEST_F(EnvironmentPass, BoundingBoxAndGroundAreWhereTheyAreSaid) {
   EXPECT_NEAR(depth->depth[40 * 60 + 30], 10, 1e-4);
 }
 
-TEST_F(EnvironmentPass, TheFastRaycastLeavesFogAndLightsToTheExactOne) {
+TEST_F(EnvironmentPass, FogAndLightsAreDrawnByExactRays) {
   FramePacket packet = make_packet({10, -40, 10}, {10, 10, 10});
   packet.volumes.push_back(volume_item(make_grid({21, 21, 21}, [](const Vec3& p) { return p.x; }), {{0, 0.1}, {20, 0.1}}));
   EXPECT_TRUE(renderer_->can_draw_fast(packet));
@@ -133,5 +133,5 @@ TEST_F(EnvironmentPass, TheFastRaycastLeavesFogAndLightsToTheExactOne) {
   EXPECT_FALSE(renderer_->can_draw_fast(packet));
 }
 
-}  // namespace aids_test
+}  // namespace environment_test
 }  // namespace catena::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The driver fails at every call of a frame in turn: one sentence, nothing left over, no hang, and the picture comes back.
+// The driver fails at each call of a frame in turn: one error line, no leaks, no hang, and the next image is correct.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace failure_test {
 using namespace catena::render;
 using vk::DriverCall;
 
-/// A little of everything that takes device memory.
+/// A packet with every kind of object that needs device memory.
 FramePacket everything() {
   FramePacket packet = make_packet({45, -50, 40}, {12, 12, 12});
   packet.width = 64;
@@ -36,7 +36,7 @@ FramePacket everything() {
   return packet;
 }
 
-class Failures : public ImageTest {
+class DriverFailures : public ImageTest {
  protected:
   void SetUp() override {
     ImageTest::SetUp();
@@ -68,7 +68,7 @@ class Failures : public ImageTest {
   std::shared_ptr<FailureInjector> failing_;
 };
 
-TEST_F(Failures, OutOfMemoryAtEveryAllocation) {
+TEST_F(DriverFailures, OutOfMemoryAtEveryAllocation) {
   const FramePacket packet = everything();
   FramePacket smaller = packet;
   smaller.isosurfaces.clear();
@@ -83,11 +83,11 @@ TEST_F(Failures, OutOfMemoryAtEveryAllocation) {
     const std::string message = failed(packet);
     ASSERT_NE(message.find("VK_ERROR_OUT_OF_DEVICE_MEMORY"), std::string::npos) << n << ": " << message;
     EXPECT_FALSE(renderer_->device().is_lost());
-    // nothing of the frame is left
+    // all memory of the frame is freed
     EXPECT_EQ(renderer_->device().counters().allocated_bytes, 0u) << "allocation " << n;
     EXPECT_EQ(renderer_->device().retired_count(), 0u) << "allocation " << n;
     EXPECT_EQ(renderer_->stats().resident_grids, 0u);
-    // every fourth time the same renderer goes on, with less and then with all of it
+    // every fourth time the renderer is reused, for a smaller and then for the full packet
     if (n % 4 != 1 && n != allocations) continue;
     EXPECT_EQ(max_difference(draw(smaller), few), 0) << "allocation " << n;
     EXPECT_EQ(max_difference(draw(packet), all), 0) << "allocation " << n;
@@ -95,31 +95,31 @@ TEST_F(Failures, OutOfMemoryAtEveryAllocation) {
   }
 }
 
-TEST_F(Failures, OutOfMemoryWhileAPictureIsReadBack) {
+TEST_F(DriverFailures, OutOfMemoryDuringAReadBack) {
   const FramePacket packet = everything();
   const Image8 all = draw(packet);
   failing_->arm(DriverCall::allocate, VK_ERROR_OUT_OF_DEVICE_MEMORY, 1);
-  const auto picture = renderer_->read_back();
-  ASSERT_FALSE(picture);
-  EXPECT_NE(picture.error().message.find("VK_ERROR_OUT_OF_DEVICE_MEMORY"), std::string::npos);
+  const auto image = renderer_->read_back();
+  ASSERT_FALSE(image);
+  EXPECT_NE(image.error().message.find("VK_ERROR_OUT_OF_DEVICE_MEMORY"), std::string::npos);
   EXPECT_EQ(renderer_->device().counters().allocated_bytes, 0u);
   EXPECT_EQ(max_difference(draw(packet), all), 0);
 }
 
-TEST_F(Failures, TheSceneSurvivesALostDevice) {
+TEST_F(DriverFailures, TheSceneSurvivesALostDevice) {
   const FramePacket packet = everything();
   const Image8 before = draw(packet);
   for (const DriverCall call : {DriverCall::submit, DriverCall::wait}) {
     const int calls = calls_of_a_frame(packet, call);
     ASSERT_GT(calls, 3);
-    // the first, one in the middle, and the frame's own
+    // the first call, one in the middle, and the frame's submission
     for (const int n : {1, calls / 2, calls}) {
       start_over();
       failing_->arm(call, VK_ERROR_DEVICE_LOST, n);
       const std::string message = failed(packet);
       ASSERT_NE(message.find("VK_ERROR_DEVICE_LOST"), std::string::npos) << message;
       EXPECT_TRUE(renderer_->device().is_lost());
-      // it stays lost, and says so at once
+      // the device stays lost, and the next draw reports it at once
       EXPECT_NE(failed(packet).find("VK_ERROR_DEVICE_LOST"), std::string::npos);
       start_over();
       EXPECT_FALSE(renderer_->device().is_lost());
@@ -128,13 +128,13 @@ TEST_F(Failures, TheSceneSurvivesALostDevice) {
   }
 }
 
-TEST_F(Failures, ADeviceLostBetweenPicturesIsSaid) {
+TEST_F(DriverFailures, ADeviceLostBetweenImagesIsReported) {
   const FramePacket packet = everything();
   const Image8 before = draw(packet);
   failing_->arm(DriverCall::wait, VK_ERROR_DEVICE_LOST, 1);
-  const auto picture = renderer_->read_back();
-  ASSERT_FALSE(picture);
-  EXPECT_NE(picture.error().message.find("VK_ERROR_DEVICE_LOST"), std::string::npos);
+  const auto image = renderer_->read_back();
+  ASSERT_FALSE(image);
+  EXPECT_NE(image.error().message.find("VK_ERROR_DEVICE_LOST"), std::string::npos);
   start_over();
   EXPECT_EQ(max_difference(draw(packet), before), 0);
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// A picture does not depend on the unit of the field: densities of 1e24 a cubic metre look as those of 1.
+/// An image does not depend on the field's unit: densities near 1e24 give the image of densities near 1.
 #include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
-namespace units_test {
+namespace field_unit_scaling_test {
 
 using namespace catena::render;
 
@@ -60,5 +60,5 @@ TEST_F(Units, ShadedVolumesKeepTheirLight) {
   for (const double unit : kUnits) EXPECT_LE(max_difference(at(unit), one), 3) << unit;
 }
 
-}  // namespace units_test
+}  // namespace field_unit_scaling_test
 }  // namespace catena::test

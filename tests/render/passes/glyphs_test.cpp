@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Arrows of vectors in the picture: where they begin and end, how wide they are there, what covers and cuts them.
+// Arrow glyphs in the image: start, end, width, occlusion and clipping.
 #include <cmath>
 
 #include "render/frame/camera.h"
@@ -12,7 +12,7 @@ using namespace catena::render;
 
 class Glyphs : public ImageTest {};
 
-/// 5 pixels a unit, along y; (x, z) is at pixel (80 + 5 x, 60 - 5 z).
+/// View along y with 5 pixels per unit; (x, z) is at pixel (80 + 5 x, 60 - 5 z).
 FramePacket along_y() {
   FramePacket packet = make_packet({0, -60, 0}, {0, 0, 0}, 20);
   packet.background = {0, 0, 0, 1};
@@ -21,7 +21,7 @@ FramePacket along_y() {
   return packet;
 }
 
-/// From (-8, 0, 0) to (8, 0, 0): the neck at x = 4, the shaft 1 wide and the head 2.5, to each side.
+/// An arrow from (-8, 0, 0) to (8, 0, 0) with its head from x = 4; half-widths 1 (shaft) and 2.5 (head).
 GlyphItem arrow() {
   GlyphItem item;
   item.glyphs = {{{-8, 0, 0}, {8, 0, 0}, {1, 0, 0}}};
@@ -32,78 +32,78 @@ GlyphItem arrow() {
   return item;
 }
 
-TEST_F(Glyphs, AnArrowBeginsAndEndsWhereItsVectorDoes) {
+TEST_F(Glyphs, AnArrowStartsAndEndsAtItsVector) {
   FramePacket packet = along_y();
   packet.glyphs = {arrow()};
-  const Image8 picture = draw(packet, {}, "arrow");
+  const Image8 image = draw(packet, {}, "arrow");
   const auto ids = renderer_->read_ids();
   ASSERT_TRUE(ids);
   const auto id = [&](double x, double z) {
     return ids->ids[static_cast<std::size_t>(60 - 5 * z) * 160 + static_cast<std::size_t>(80 + 5 * x)];
   };
-  // along its middle: all of it, nothing beyond its ends
+  // along the axis: covered between the ends only
   EXPECT_EQ(id(-7.8, 0), 7u);
   EXPECT_EQ(id(0, 0), 7u);
   EXPECT_EQ(id(7.5, 0), 7u);
   EXPECT_EQ(id(-8.4, 0), 0u);
   EXPECT_EQ(id(8.4, 0), 0u);
-  // the shaft is 1 to each side, the head 2.5 at its base and half of that in its middle
+  // half-widths: shaft 1, head 2.5 at its base and half of it at its middle
   EXPECT_EQ(id(0, 0.7), 7u);
   EXPECT_EQ(id(0, 1.3), 0u);
   EXPECT_EQ(id(4.3, 1.9), 7u);
   EXPECT_EQ(id(3.6, 1.9), 0u) << "before the head";
   EXPECT_EQ(id(6, 0.9), 7u);
   EXPECT_EQ(id(6, 1.7), 0u);
-  EXPECT_GT(picture.pixel(80, 60)[0], 150);
-  EXPECT_EQ(picture.pixel(80, 60)[1], picture.pixel(80, 60)[2]) << "red, and white where it shines";
+  EXPECT_GT(image.pixel(80, 60)[0], 150);
+  EXPECT_EQ(image.pixel(80, 60)[1], image.pixel(80, 60)[2]) << "red, and white where it shines";
   const auto picked = renderer_->pick(80, 60);
   ASSERT_TRUE(picked);
   EXPECT_EQ(picked->id, 7u);
   EXPECT_NEAR(unproject(make_camera(packet.view, 160, 120, {}), 80.5, 60.5, picked->depth).y, -1, 0.1) << "its wall, an octagon's";
 }
 
-TEST_F(Glyphs, WithoutAHeadItIsARod) {
+TEST_F(Glyphs, AnArrowWithoutAHeadIsARod) {
   FramePacket packet = along_y();
   GlyphItem item = arrow();
   item.head_length = 0;
   packet.glyphs = {item};
-  const Image8 picture = draw(packet, {}, "rod");
-  EXPECT_GT(picture.pixel(118, 60)[0], 60);
-  EXPECT_EQ(picture.pixel(122, 60)[0], 0);
-  EXPECT_EQ(picture.pixel(101, 51)[0], 0) << "where the head was";
+  const Image8 image = draw(packet, {}, "rod");
+  EXPECT_GT(image.pixel(118, 60)[0], 60);
+  EXPECT_EQ(image.pixel(122, 60)[0], 0);
+  EXPECT_EQ(image.pixel(101, 51)[0], 0) << "where the head was";
 }
 
-TEST_F(Glyphs, EveryOneHasItsSizeAndColour) {
+TEST_F(Glyphs, EveryGlyphHasItsSizeAndColor) {
   FramePacket packet = along_y();
   GlyphItem item = arrow();
   item.glyphs = {{{-10, 0, 6}, {6, 0, 6}, {0, 1, 0}}, {{-10, 0, -6}, {-6, 0, -6}, {0, 0, 1}}};
   packet.glyphs = {item};
-  const Image8 picture = draw(packet, {}, "two");
-  EXPECT_GT(picture.pixel(55, 30)[1], 100);
-  EXPECT_EQ(picture.pixel(55, 30)[0], picture.pixel(55, 30)[2]);
-  EXPECT_GT(picture.pixel(36, 90)[2], 100);
-  EXPECT_EQ(picture.pixel(36, 93)[2], 0) << "a quarter as long, and as wide";
-  EXPECT_GT(picture.pixel(55, 33)[1], 40);
+  const Image8 image = draw(packet, {}, "two");
+  EXPECT_GT(image.pixel(55, 30)[1], 100);
+  EXPECT_EQ(image.pixel(55, 30)[0], image.pixel(55, 30)[2]);
+  EXPECT_GT(image.pixel(36, 90)[2], 100);
+  EXPECT_EQ(image.pixel(36, 93)[2], 0) << "a quarter as long, and as wide";
+  EXPECT_GT(image.pixel(55, 33)[1], 40);
 }
 
-TEST_F(Glyphs, PlanesCutThemAndVolumesDimThem) {
+TEST_F(Glyphs, GlyphsAreClippedAndAttenuatedByVolumes) {
   FramePacket packet = along_y();
   packet.glyphs = {arrow()};
   packet.clip_planes = {{{-2, 0, 0}, {1, 0, 0}}};
-  Image8 picture = draw(packet, {}, "clipped");
-  EXPECT_EQ(picture.pixel(62, 60)[0], 0);
-  EXPECT_GT(picture.pixel(80, 60)[0], 100);
+  Image8 image = draw(packet, {}, "clipped");
+  EXPECT_EQ(image.pixel(62, 60)[0], 0);
+  EXPECT_GT(image.pixel(80, 60)[0], 100);
   packet.glyphs[0].is_clipped = false;
   EXPECT_GT(draw(packet).pixel(62, 60)[0], 100);
   packet.clip_planes.clear();
   const double bare = draw(packet).pixel(80, 60)[0];
-  // 7 of the mist's 15 lie before its wall
+  // 7 of the fog's 15 units are in front of the arrow
   const auto fog = make_grid(
       {16, 16, 16}, [](const Vec3&) { return 0.5; }, field::Mapping::from_linear(Mat3(1.0), {-7.5, -8, -7.5}));
   packet.volumes = {volume_item(fog, {{0, 0.1}, {1, 0.1}}, {0, 0, 1})};
-  picture = draw(packet, {}, "mist");
-  EXPECT_NEAR(picture.pixel(80, 60)[0], bare * std::exp(-0.7), 6);
-  EXPECT_GT(picture.pixel(80, 60)[2], 100);
+  image = draw(packet, {}, "mist");
+  EXPECT_NEAR(image.pixel(80, 60)[0], bare * std::exp(-0.7), 6);
+  EXPECT_GT(image.pixel(80, 60)[2], 100);
 }
 
 }  // namespace glyphs_test

@@ -41,8 +41,7 @@ double cpu_crossing(const field::ScalarGrid& grid, const Ray& ray, double level,
   return HUGE_VAL;
 }
 
-void expect_depths(Renderer& renderer, const FramePacket& packet, const field::ScalarGrid& grid, double level, double voxel,
-                   int least_hits) {
+void expect_depths(Renderer& renderer, const FramePacket& packet, const field::ScalarGrid& grid, double level, double voxel, int min_hits) {
   const auto depth = renderer.read_depth();
   ASSERT_TRUE(depth);
   const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
@@ -51,7 +50,7 @@ void expect_depths(Renderer& renderer, const FramePacket& packet, const field::S
   for (std::uint32_t y = 0; y < packet.height; y += 2)
     for (std::uint32_t x = 0; x < packet.width; x += 2) {
       const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
-      // the chord's ends
+      // entry and exit of the ray
       const Vec3 o = grid.mapping().index_from_world(ray.origin), d = grid.mapping().index_from_world_linear * ray.direction;
       double enter = 0, leave = 1e9;
       for (int a = 0; a < 3; ++a) {
@@ -69,12 +68,12 @@ void expect_depths(Renderer& renderer, const FramePacket& packet, const field::S
         worst = std::max(worst, std::fabs(found - expected) / voxel);
       }
     }
-  EXPECT_GT(hits, least_hits);
+  EXPECT_GT(hits, min_hits);
   EXPECT_LE(disagree, 2);
   EXPECT_LE(worst, 1e-3);
 }
 
-TEST_F(Isosurface, SphereDepthAgreesWithTheField) {
+TEST_F(Isosurface, DepthOfASphereMatchesTheField) {
   const Vec3 c(15.3, 16.1, 14.7);
   const auto grid = make_grid({32, 32, 32}, [&](const Vec3& p) { return norm(p - c); });
   FramePacket packet = make_packet({70, -50, 55}, c, 25);
@@ -87,7 +86,7 @@ TEST_F(Isosurface, SphereDepthAgreesWithTheField) {
   }
 }
 
-TEST_F(Isosurface, RoughFieldOnATurnedGrid) {
+TEST_F(Isosurface, DepthOfARoughFieldOnARotatedGrid) {
   const Mat3 linear = Mat3(0.8, 0.3, 0, -0.4, 1.1, 0.2, 0.1, 0, 1.7);
   const auto grid = make_grid(
       {28, 24, 20}, [](const Vec3& p) { return std::sin(0.9 * p.x) + std::cos(0.8 * p.y) + std::sin(0.7 * p.z + 0.3 * p.x); },
@@ -99,7 +98,7 @@ TEST_F(Isosurface, RoughFieldOnATurnedGrid) {
   expect_depths(*renderer_, packet, *grid, 0.3, 0.8, 800);
 }
 
-TEST_F(Isosurface, OrthographicDepth) {
+TEST_F(Isosurface, DepthInOrthographicProjection) {
   const Vec3 c(15.5);
   const auto grid = make_grid({32, 32, 32}, [&](const Vec3& p) { return norm(p - c); });
   FramePacket packet = make_packet({70, -50, 55}, c);
@@ -110,13 +109,13 @@ TEST_F(Isosurface, OrthographicDepth) {
   expect_depths(*renderer_, packet, *grid, 10, 1, 700);
 }
 
-TEST_F(Isosurface, SphereIsLitByItsNormal) {
+TEST_F(Isosurface, ASphereIsShadedByItsNormal) {
   const Vec3 c(23.5);
   const double radius = 16;
   const auto grid = make_grid({48, 48, 48}, [&](const Vec3& p) { return norm(p - c); });
   FramePacket packet = make_packet({100, -60, 70}, c, 22);
   packet.isosurfaces = {surface_item(grid, radius, 1, {0.9f, 0.5f, 0.1f})};
-  const Image8 picture = draw(packet);
+  const Image8 image = draw(packet);
   const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
   int compared = 0;
   for (std::uint32_t y = 0; y < packet.height; ++y)
@@ -124,28 +123,28 @@ TEST_F(Isosurface, SphereIsLitByItsNormal) {
       const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
       const Vec3 to = ray.origin - c;
       const double b = dot(to, ray.direction), q = b * b - dot(to, to) + radius * radius;
-      if (q < 12) continue;  // the rim
+      if (q < 12) continue;  // the silhouette
       const Vec3 n = (to + (-b - std::sqrt(q)) * ray.direction) / radius;
       const double lambert = std::fabs(dot(n, ray.direction)), mirrored = std::max(0.0, 2 * lambert * lambert - 1);
       const double expected = (0.2 + 0.7 * lambert) * 0.9 + 0.2 * std::pow(mirrored, 20);
-      ASSERT_NEAR(picture.pixel(x, y)[0], 255 * std::min(1.0, expected), 3) << x << " " << y;
-      ASSERT_EQ(picture.pixel(x, y)[3], 255);
+      ASSERT_NEAR(image.pixel(x, y)[0], 255 * std::min(1.0, expected), 3) << x << " " << y;
+      ASSERT_EQ(image.pixel(x, y)[3], 255);
       ++compared;
     }
   EXPECT_GT(compared, 2000);
 }
 
-TEST_F(Isosurface, TranslucentShowsTwoWalls) {
+TEST_F(Isosurface, ATranslucentSphereShowsTwoWalls) {
   const Vec3 c(15.5);
   const auto grid = make_grid({32, 32, 32}, [&](const Vec3& p) { return norm(p - c); });
   FramePacket packet = make_packet({70, -50, 55}, c, 25);
   packet.isosurfaces = {surface_item(grid, 11, 0.4f)};
-  const Image8 picture = draw(packet, {}, "shell");
-  EXPECT_NEAR(picture.pixel(80, 60)[3], 255 * (1 - 0.6 * 0.6), 1);
-  EXPECT_EQ(picture.pixel(2, 2)[3], 0);
+  const Image8 image = draw(packet, {}, "shell");
+  EXPECT_NEAR(image.pixel(80, 60)[3], 255 * (1 - 0.6 * 0.6), 1);
+  EXPECT_EQ(image.pixel(2, 2)[3], 0);
 }
 
-TEST_F(Isosurface, TranslucentIsSortedWithTheVolume) {
+TEST_F(Isosurface, ATranslucentSurfaceIsSortedWithTheVolume) {
   // a fog box of sigma s from y = 0 to 31, a plane at y = 16 of opacity 0.5, seen along +y
   const auto fog = make_grid({32, 32, 32}, [](const Vec3&) { return 0.5; });
   const auto plane = make_grid({32, 32, 32}, [](const Vec3& p) { return p.y; });
@@ -153,37 +152,37 @@ TEST_F(Isosurface, TranslucentIsSortedWithTheVolume) {
   packet.volumes = {volume_item(fog, {{0, 0.05}, {1, 0.05}}, {0, 1, 0})};
   packet.isosurfaces = {surface_item(plane, 16, 0.5f, {1, 0, 0})};
   packet.background = {0, 0, 1, 1};
-  const Image8 picture = draw(packet, {}, "sorted");
+  const Image8 image = draw(packet, {}, "sorted");
   const double front = std::exp(-0.05 * 16), all = 0.5 * std::exp(-0.05 * 31);
-  const std::uint8_t* p = picture.pixel(80, 60);
-  // the plane faces the eye: 0.9 of its colour plus a white highlight of 0.2
+  const std::uint8_t* p = image.pixel(80, 60);
+  // the plane faces the camera: 0.9 of its colour plus a white highlight of 0.2
   EXPECT_NEAR(p[0], 255 * front * 0.5 * 1.1, 1.5);
   EXPECT_NEAR(p[1], 255 * ((1 - front) + 0.5 * front - all + front * 0.5 * 0.2), 1.5);
   EXPECT_NEAR(p[2], 255 * (all + front * 0.5 * 0.2), 1.5);
 }
 
-TEST_F(Isosurface, SeveralTranslucentSurfacesInOrder) {
+TEST_F(Isosurface, SeveralTranslucentSurfacesAreInOrder) {
   const auto plane = make_grid({32, 32, 32}, [](const Vec3& p) { return p.y; });
   FramePacket packet = make_packet({15.5, -60, 15.5}, {15.5, 0, 15.5}, 20);
   packet.isosurfaces = {surface_item(plane, 24.5, 0.5f, {0, 0, 1}), surface_item(plane, 8.25, 0.5f, {0, 1, 0})};
-  const Image8 picture = draw(packet, {}, "planes");
-  const std::uint8_t* p = picture.pixel(80, 60);
-  // premultiplied: near green 0.5, far blue 0.25; alpha 0.75; highlights 0.2 white each
+  const Image8 image = draw(packet, {}, "planes");
+  const std::uint8_t* p = image.pixel(80, 60);
+  // premultiplied: near green 0.5, far blue 0.25; alpha 0.75; white highlights of 0.2 each
   EXPECT_NEAR(p[3], 255 * 0.75, 1);
   EXPECT_NEAR(p[1] * 0.75, 255 * (0.5 * 1.1 + 0.25 * 0.2), 2);
   EXPECT_NEAR(p[2] * 0.75, 255 * (0.25 * 1.1 + 0.5 * 0.2), 2);
 }
 
-TEST_F(Isosurface, OpaqueEndsTheVolume) {
+TEST_F(Isosurface, AnOpaqueSurfaceHidesTheVolumeBehindIt) {
   const auto fog = make_grid({32, 32, 32}, [](const Vec3&) { return 0.5; });
   const auto plane = make_grid({32, 32, 32}, [](const Vec3& p) { return p.y; });
   FramePacket packet = make_packet({15.5, -60, 15.5}, {15.5, 0, 15.5}, 20);
   packet.volumes = {volume_item(fog, {{0, 0.05}, {1, 0.05}}, {0, 1, 0})};
   packet.isosurfaces = {surface_item(plane, 12.5, 1, {1, 0, 0})};
-  const Image8 picture = draw(packet, {}, "cut");
+  const Image8 image = draw(packet, {}, "cut");
   const double front = std::exp(-0.05 * 12.5);
-  EXPECT_NEAR(picture.pixel(80, 60)[1], 255 * ((1 - front) + front * 0.2), 1.5);
-  EXPECT_EQ(picture.pixel(80, 60)[3], 255);
+  EXPECT_NEAR(image.pixel(80, 60)[1], 255 * ((1 - front) + front * 0.2), 1.5);
+  EXPECT_EQ(image.pixel(80, 60)[3], 255);
 }
 
 TEST_F(Isosurface, MaskedCellsHaveNoSurface) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Label maps in pictures: a colour that is no label's is nowhere, each by its own transform, slices in one plane in their order.
+/// Label maps in images: no colours other than the labels', grids with different transforms, order of coplanar slices.
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +15,7 @@ class LabelImage : public ImageTest {};
 
 using Rgb = std::array<int, 3>;
 
-/// Far apart in value and in no order of colour: a mix of two would be another one.
+/// Labels with distant numbers and unordered colours, so that a blend of two is detected.
 constexpr double kLabels[] = {0, 3, 40, 41, 2035, 14175};
 constexpr Rgb kRgb[] = {{0, 0, 0}, {255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 0}, {0, 255, 255}};
 
@@ -43,8 +43,8 @@ Vec3 middle(const field::ScalarGrid& grid) {
   return grid.mapping().world_from_index(0.5 * grid.index_box().lo + 0.5 * grid.index_box().hi);
 }
 
-Rgb rgb(const Image8& picture, std::uint32_t x, std::uint32_t y) {
-  const std::uint8_t* p = picture.pixel(x, y);
+Rgb rgb(const Image8& image, std::uint32_t x, std::uint32_t y) {
+  const std::uint8_t* p = image.pixel(x, y);
   return {p[0], p[1], p[2]};
 }
 
@@ -58,11 +58,11 @@ SliceItem slice_of(const GridPtr& grid, const Vec3& normal) {
   return item;
 }
 
-TEST_F(LabelImage, ASliceHasTheColourOfTheNearestVoxelInEveryPixelAndNoOther) {
+TEST_F(LabelImage, ASliceHasTheColorOfTheNearestVoxelInEveryPixel) {
   const auto grid = label_grid(turned());
   FramePacket packet = make_packet(middle(*grid) + Vec3(12, -25, 20), middle(*grid));
   packet.slices = {slice_of(grid, {0.3, -0.5, 0.8})};
-  const Image8 picture = draw(packet, {}, "slice");
+  const Image8 image = draw(packet, {}, "slice");
   const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
   int seen = 0, empty = 0;
   for (std::uint32_t y = 0; y < packet.height; ++y)
@@ -71,10 +71,10 @@ TEST_F(LabelImage, ASliceHasTheColourOfTheNearestVoxelInEveryPixelAndNoOther) {
       const SliceItem& item = packet.slices[0];
       const Vec3 world = ray.origin + dot(item.normal, item.point - ray.origin) / dot(item.normal, ray.direction) * ray.direction;
       const Vec3 index = grid->mapping().index_from_world(world);
-      const Rgb got = rgb(picture, x, y);
-      const bool drawn = picture.pixel(x, y)[3] > 0;
+      const Rgb got = rgb(image, x, y);
+      const bool drawn = image.pixel(x, y)[3] > 0;
       ASSERT_TRUE(!drawn || std::count(std::begin(kRgb), std::end(kRgb), got) == 1) << "a colour of no label";
-      // rounding of floats decides within a thousandth of a face
+      // within a thousandth of a face float rounding decides
       bool sure = true, inside = true;
       for (int a = 0; a < 3; ++a) {
         sure = sure && std::fabs(index[a] - std::floor(index[a]) - 0.5) > 1e-3;
@@ -91,7 +91,7 @@ TEST_F(LabelImage, ASliceHasTheColourOfTheNearestVoxelInEveryPixelAndNoOther) {
   EXPECT_GT(empty, 2000);
 }
 
-TEST_F(LabelImage, AVolumeHasNoColourBetweenTwoLabels) {
+TEST_F(LabelImage, AVolumeDoesNotBlendColorsBetweenLabels) {
   const auto grid = make_grid({14, 12, 13}, [](const Vec3& p) {
                       return std::min(kLabels[label_index(p)], 6000.0);
                     })->with_interpolation(field::Interpolation::nearest);
@@ -100,7 +100,7 @@ TEST_F(LabelImage, AVolumeHasNoColourBetweenTwoLabels) {
   item.grid = grid;
   item.transfer.is_categorical = true;
   item.transfer.extinctions = {{0.4, 0}, {0.6, 1e4}};
-  // what is no label is green
+  // unlabelled voxels are green
   for (const double label : {3.0, 40.0, 41.0, 2035.0, 6000.0}) {
     const double red = label == 40 ? 0 : 1;
     item.transfer.colors.insert(
@@ -108,12 +108,12 @@ TEST_F(LabelImage, AVolumeHasNoColourBetweenTwoLabels) {
         {{label - 0.5, 0, 1, 0}, {label - 0.5, red, 0, 1 - red}, {label + 0.5, red, 0, 1 - red}, {label + 0.5, 0, 1, 0}});
   }
   packet.volumes = {item};
-  const Image8 picture = draw(packet, {}, "volume");
+  const Image8 image = draw(packet, {}, "volume");
   int seen = 0, red = 0, blue = 0, green = 0;
   for (std::uint32_t y = 0; y < packet.height; ++y)
     for (std::uint32_t x = 0; x < packet.width; ++x) {
-      const Rgb got = rgb(picture, x, y);
-      seen += picture.pixel(x, y)[3] == 255;
+      const Rgb got = rgb(image, x, y);
+      seen += image.pixel(x, y)[3] == 255;
       red += got[0] > 200;
       blue += got[2] > 200;
       green = std::max(green, got[1]);
@@ -124,8 +124,8 @@ TEST_F(LabelImage, AVolumeHasNoColourBetweenTwoLabels) {
   EXPECT_EQ(green, 0);
 }
 
-/// A ball in one grid, coloured by labels in another that is turned: which half of the world a pixel lies in is its colour.
-TEST_F(LabelImage, ASurfaceIsColouredByAGridOfItsOwnTransform) {
+/// A ball in one grid, coloured by labels of another, rotated grid: the colour depends on the half-space of the pixel's point.
+TEST_F(LabelImage, ASurfaceIsColoredByAGridWithAnotherTransform) {
   const auto ball = make_grid(
       {40, 40, 40}, [](const Vec3& p) { return norm(p - Vec3(19.5)); }, field::Mapping::from_linear(Mat3(0.5), {-9.75, -9.75, -9.75}));
   const field::Mapping mapping = turned();
@@ -146,7 +146,7 @@ TEST_F(LabelImage, ASurfaceIsColouredByAGridOfItsOwnTransform) {
   item.id = 1;
   item.color_by = ColorSource{halves, label_rows(), true, false};
   packet.isosurfaces = {item};
-  const Image8 picture = draw(packet, {}, "turned");
+  const Image8 image = draw(packet, {}, "turned");
   const auto depth = renderer_->read_depth();
   ASSERT_TRUE(depth);
   const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
@@ -163,7 +163,7 @@ TEST_F(LabelImage, ASurfaceIsColouredByAGridOfItsOwnTransform) {
       for (int a = 0; a < 3; ++a) sure = sure && std::fabs(index[a] - std::floor(index[a]) - 0.5) > 1e-2;
       if (!sure) continue;
       const double label = halves->sample(world, cursor).value;
-      const Rgb got = rgb(picture, x, y);
+      const Rgb got = rgb(image, x, y);
       const int channel = label == 41 ? 2 : label == 40 ? 1 : 0;
       ++counts[channel];
       wrong += got[std::size_t(channel)] < 40 || got[std::size_t(channel)] != *std::max_element(got.begin(), got.end());
@@ -172,8 +172,8 @@ TEST_F(LabelImage, ASurfaceIsColouredByAGridOfItsOwnTransform) {
   EXPECT_EQ(wrong, 0);
 }
 
-/// In one plane the later slice lies over the earlier one, whatever is opaque and from either side.
-TEST_F(LabelImage, SlicesInOnePlaneLieInTheirOrder) {
+/// Of coplanar slices the later is on top, for any opacity and from both sides.
+TEST_F(LabelImage, CoplanarSlicesAreDrawnInTheirOrder) {
   const auto one = make_grid({9, 9, 9}, [](const Vec3&) { return 1; });
   const auto two = make_grid(
       {17, 17, 17}, [](const Vec3&) { return 1; }, field::Mapping::from_linear(Mat3(0.5), Vec3(0.0)));
@@ -195,11 +195,11 @@ TEST_F(LabelImage, SlicesInOnePlaneLieInTheirOrder) {
       over.stack_order = 1;
       over.id = 2;
       packet.slices = {below, over};
-      const Image8 picture = draw(packet, {}, std::string(side > 0 ? "above" : "below") + (first_opaque ? "1" : "2"));
+      const Image8 image = draw(packet, {}, std::string(side > 0 ? "above" : "below") + (first_opaque ? "1" : "2"));
       int both = 0;
       for (std::uint32_t y = 0; y < packet.height; ++y)
         for (std::uint32_t x = 0; x < packet.width; ++x) {
-          const Rgb got = rgb(picture, x, y);
+          const Rgb got = rgb(image, x, y);
           if (got[0] == 0 || got[2] == 0) continue;
           ++both;
           ASSERT_NEAR(got[2], 128, 1) << x << " " << y;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Translucent layers among volumes and surfaces: layers made by hand, against the sum along the ray.
+/// Translucent layers among volumes and surfaces: synthetic layers, against the sum along the ray.
 #include <cmath>
 #include <cstring>
 
@@ -13,11 +13,11 @@ namespace layers_test {
 using namespace catena::render;
 
 struct Sheet {
-  double depth = 0;  // along the view axis, world units; infinite: nothing
+  double depth = 0;  // along the view axis in world units; infinite: no layer
   std::array<float, 4> color{};
 };
 
-/// The ray's colour over the left and the right half of the picture, where `left` and `right` are met, the nearest first.
+/// Checks the colours of the image's left and right half, whose rays hit the layers `left` and `right`, nearest first.
 class Layers : public ImageTest {
  protected:
   vk::Image image(VkFormat format, const std::vector<float>& values) {
@@ -77,9 +77,9 @@ class Layers : public ImageTest {
     return values;
   }
 
-  std::array<float, 4> at(const std::vector<float>& picture, std::uint32_t x, std::uint32_t y) const {
+  std::array<float, 4> at(const std::vector<float>& rendered, std::uint32_t x, std::uint32_t y) const {
     std::array<float, 4> c{};
-    std::copy_n(&picture[4 * (std::size_t(y) * packet_.width + x)], 4, c.begin());
+    std::copy_n(&rendered[4 * (std::size_t(y) * packet_.width + x)], 4, c.begin());
     return c;
   }
 
@@ -101,8 +101,8 @@ FramePacket fog_packet(double sigma) {
 TEST_F(Layers, AreBlendedWithinAVolumeInOrder) {
   packet_ = fog_packet(0.05);
   const std::array<float, 4> red{0.5f, 0, 0, 0.5f}, blue{0, 0, 0.25f, 0.25f}, green{0, 0.9f, 0, 0.9f};
-  // before, within (twice) and behind the fog; and on the right only one, behind it
-  const auto picture = draw_with({{30, green}, {45, red}, {52.5, blue}, {70, green}}, {{70, red}});
+  // left: in front of, within (twice) and behind the fog; right: one layer behind it
+  const auto rendered = draw_with({{30, green}, {45, red}, {52.5, blue}, {70, green}}, {{70, red}});
   const auto fog = [](double length) { return 1 - std::exp(-0.05 * length); };
   double through = 1, white = 0, r = 0, g = 0, b = 0;
   const auto march = [&](double length) {
@@ -116,12 +116,12 @@ TEST_F(Layers, AreBlendedWithinAVolumeInOrder) {
     through *= 1 - c[3];
   };
   meet(green), march(5), meet(red), march(7.5), meet(blue), march(7.5), meet(green);
-  const auto left = at(picture, 10, 30);
+  const auto left = at(rendered, 10, 30);
   EXPECT_NEAR(left[0], white + r, 2e-3);
   EXPECT_NEAR(left[1], white + g, 2e-3);
   EXPECT_NEAR(left[2], white + b, 2e-3);
   EXPECT_NEAR(left[3], 1 - through, 2e-3);
-  const auto right = at(picture, 50, 30);
+  const auto right = at(rendered, 50, 30);
   EXPECT_NEAR(right[0], fog(20) + (1 - fog(20)) * 0.5, 2e-3);
   EXPECT_NEAR(right[1], fog(20), 2e-3);
   EXPECT_NEAR(right[3], 1 - (1 - fog(20)) * 0.5, 2e-3);
@@ -137,25 +137,25 @@ TEST_F(Layers, AreBlendedWithASurface) {
   plane.opacity = 0.5f;
   packet_.isosurfaces = {plane};
   const std::array<float, 4> red{0.5f, 0, 0, 0.5f};
-  const auto picture = draw_with({{45, red}}, {{55, red}});
+  const auto rendered = draw_with({{45, red}}, {{55, red}});
   const double lit = 1.1;  // 0.2 + 0.7 + 0.2, seen along the normal
-  EXPECT_NEAR(at(picture, 10, 30)[0], 0.5 + 0.5 * 0.5 * lit, 2e-3);
-  EXPECT_NEAR(at(picture, 50, 30)[0], 0.5 * lit + 0.5 * 0.5, 2e-3);
-  EXPECT_NEAR(at(picture, 50, 30)[1], 0.5 * lit, 2e-3);
+  EXPECT_NEAR(at(rendered, 10, 30)[0], 0.5 + 0.5 * 0.5 * lit, 2e-3);
+  EXPECT_NEAR(at(rendered, 50, 30)[0], 0.5 * lit + 0.5 * 0.5, 2e-3);
+  EXPECT_NEAR(at(rendered, 50, 30)[1], 0.5 * lit, 2e-3);
 }
 
 TEST_F(Layers, AreDrawnWithoutAVolume) {
   packet_ = fog_packet(0);
   packet_.volumes.clear();
   const std::array<float, 4> red{0.5f, 0, 0, 0.5f}, blue{0, 0, 0.25f, 0.25f};
-  const auto picture = draw_with({{5, red}, {6, blue}}, {});
-  EXPECT_NEAR(at(picture, 10, 30)[0], 0.5, 1e-6);
-  EXPECT_NEAR(at(picture, 10, 30)[2], 0.125, 1e-6);
-  EXPECT_NEAR(at(picture, 10, 30)[3], 0.625, 1e-6);
-  EXPECT_EQ(at(picture, 50, 30)[3], 0);
+  const auto rendered = draw_with({{5, red}, {6, blue}}, {});
+  EXPECT_NEAR(at(rendered, 10, 30)[0], 0.5, 1e-6);
+  EXPECT_NEAR(at(rendered, 10, 30)[2], 0.125, 1e-6);
+  EXPECT_NEAR(at(rendered, 10, 30)[3], 0.625, 1e-6);
+  EXPECT_EQ(at(rendered, 50, 30)[3], 0);
 }
 
-TEST_F(Layers, MoreThanFourAreRefusedWithASentence) {
+TEST_F(Layers, MoreThanFourLayersAreAnError) {
   packet_ = fog_packet(0.1);
   vk::Device& device = renderer_->device();
   ResidencyManager mirrors(device);

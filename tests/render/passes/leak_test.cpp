@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A thousand frames, things coming and going: what the device and this process hold does not grow.
+// A thousand frames with changing objects: memory of the device and the process does not grow.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace leak_test {
 
 using namespace catena::render;
 
-class Leaks : public ImageTest {};
+class ResourceLeaks : public ImageTest {};
 
 FramePacket frame_of(int k, const std::vector<GridPtr>& grids) {
   FramePacket packet = make_packet({45.0 + k % 7, -50, 40}, {8, 8, 8});
@@ -31,7 +31,7 @@ FramePacket frame_of(int k, const std::vector<GridPtr>& grids) {
     tube.radius = 0.5;
     packet.tubes = {tube};
   }
-  // the packet always has something solid: passes, and so pipelines, stay
+  // the packet always has an opaque object, so that passes and pipelines are kept
   CursorItem cursor;
   cursor.probe = {8, 8, double(k % 16)};
   cursor.radius = k % 4 == 0 ? 0.5 : 1;
@@ -39,15 +39,15 @@ FramePacket frame_of(int k, const std::vector<GridPtr>& grids) {
   return packet;
 }
 
-TEST_F(Leaks, AThousandFramesHoldNoMore) {
-  // without the validation layer: it keeps books of its own
+TEST_F(ResourceLeaks, AThousandFramesHoldNoMoreMemory) {
+  // without the validation layer, which allocates memory of its own
   vk::DeviceOptions options;
   options.device_filter = test_device();
   auto renderer = Renderer::create(options);
   ASSERT_TRUE(renderer) << renderer.error().message;
   std::vector<GridPtr> grids;
   for (int g = 0; g < 3; ++g) grids.push_back(make_grid({16, 16, 16}, [g](const Vec3& p) { return norm(p - Vec3(8, 8, 4 + 4 * g)) / 16; }));
-  // things come and go every frame; the passes go with them every hundredth, which makes pipelines
+  // objects change in every frame; every hundredth frame passes are also destroyed and pipelines recreated
   const auto draw_frames = [&](int from, int to) {
     for (int k = from; k < to; ++k) {
       FramePacket packet = frame_of(k, grids);
@@ -73,7 +73,7 @@ TEST_F(Leaks, AThousandFramesHoldNoMore) {
   settled();
   EXPECT_EQ((*renderer)->device().counters().allocated_bytes, device_before);
   EXPECT_EQ((*renderer)->device().retired_count(), 0u);
-  // 800 frames; the slack is for the driver, which keeps about 0.2 MB of every pipeline that discards (eight times two here)
+  // tolerance for the driver, which keeps about 0.2 MB per pipeline with discard (8 x 2 in these 800 frames)
   const std::uint64_t host_after = resident_bytes();
   RecordProperty("host_growth_bytes", std::to_string(std::int64_t(host_after) - std::int64_t(host_before)));
   std::printf("host growth %.2f MB\n", 1e-6 * (double(host_after) - double(host_before)));
@@ -82,7 +82,7 @@ TEST_F(Leaks, AThousandFramesHoldNoMore) {
   }
 }
 
-TEST_F(Leaks, WhatComesAndGoesLeavesTheValidationLayerSilent) {
+TEST_F(ResourceLeaks, ChangingScenesCauseNoValidationMessages) {
   std::vector<GridPtr> grids{make_grid({16, 16, 16}, [](const Vec3& p) { return norm(p) / 28; })};
   for (int k = 1; k < 40; ++k) draw(frame_of(k, grids));
   FramePacket empty = make_packet({45, -50, 40}, {8, 8, 8});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The memory budget: never exceeded; what does not fit is drawn coarser, in its place, and said.
+// The memory budget is never exceeded; grids that do not fit are drawn downsampled, at their position, and reported.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ RenderSettings exact() {
 
 class MemoryBudget : public ImageTest {
  protected:
-  /// `left` bytes beside what the picture itself takes.
+  /// Sets the budget to the image's own memory plus `left` bytes.
   void limit(std::uint64_t left) {
     vk::DeviceOptions options;
     options.validation = true;
@@ -51,7 +51,7 @@ TEST_F(MemoryBudget, ALinearFieldLooksTheSameAtEveryResolution) {
   const Image8 whole = draw(packet, exact(), "whole");
   EXPECT_EQ(factor(), 1);
   EXPECT_GT(whole.pixel(80, 60)[3], 100);
-  // 64^3 floats are 1 MB; half the resolution an eighth of it, and so on
+  // 64^3 floats are 1 MB, half the resolution an eighth of it
   for (const auto& [left, expected] : {std::pair{1'300'000, 1}, {400'000, 2}, {80'000, 4}, {30'000, 8}}) {
     limit(std::uint64_t(left));
     const Image8 coarse = draw(packet, exact(), "factor-" + std::to_string(expected));
@@ -62,7 +62,7 @@ TEST_F(MemoryBudget, ALinearFieldLooksTheSameAtEveryResolution) {
   }
 }
 
-TEST_F(MemoryBudget, ItIsSaidWhatIsCoarserAndWhy) {
+TEST_F(MemoryBudget, DownsampledGridsAreReportedWithTheirReason) {
   if (!uses_lavapipe()) GTEST_SKIP() << kOwnSizes;
   limit(400'000);
   FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
@@ -77,7 +77,7 @@ TEST_F(MemoryBudget, ItIsSaidWhatIsCoarserAndWhy) {
   EXPECT_TRUE(renderer_->stats().downsampled_grids.empty());
 }
 
-TEST_F(MemoryBudget, AnIsosurfaceOfAPlaneStaysInItsPlace) {
+TEST_F(MemoryBudget, AnIsosurfaceOfAPlaneKeepsItsPosition) {
   if (!uses_lavapipe()) GTEST_SKIP() << kOwnSizes;
   IsosurfaceItem item;
   item.grid = linear_grid();
@@ -107,7 +107,7 @@ TEST_F(MemoryBudget, AnIsosurfaceOfAPlaneStaysInItsPlace) {
   expect_within();
 }
 
-TEST_F(MemoryBudget, ASparseGridIsCoarserInItsAtlas) {
+TEST_F(MemoryBudget, ASparseGridIsDownsampledInItsAtlas) {
   if (!uses_lavapipe()) GTEST_SKIP() << kOwnSizes;
   const auto ball = [](const Vec3& p) { return std::max(0.0, 1 - norm(p - Vec3(40, 32, 32)) / 14); };
   FramePacket packet = make_packet({130, -100, 70}, {32, 32, 32});
@@ -120,7 +120,7 @@ TEST_F(MemoryBudget, ASparseGridIsCoarserInItsAtlas) {
   limit(300'000);
   const Image8 half = draw(packet, settings, "half");
   EXPECT_EQ(factor(), 2);
-  // the averages of a curved field differ a little, its place does not
+  // averages of a curved field differ slightly, its position does not
   EXPECT_LE(max_difference(whole, half), 10);
   double moment[2] = {0, 0}, mass[2] = {0, 0};
   for (std::uint32_t i = 0; i < kPixels; ++i) {
@@ -134,7 +134,7 @@ TEST_F(MemoryBudget, ASparseGridIsCoarserInItsAtlas) {
   expect_within();
 }
 
-TEST_F(MemoryBudget, TwoGridsShareWhatIsThere) {
+TEST_F(MemoryBudget, TwoGridsShareTheBudget) {
   limit(500'000);
   FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
   packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.03}}), volume_item(linear_grid(), {{0, 0}, {1, 0.03}})};
@@ -144,7 +144,7 @@ TEST_F(MemoryBudget, TwoGridsShareWhatIsThere) {
   expect_within();
 }
 
-TEST_F(MemoryBudget, WhatFitsAgainIsWholeAgain) {
+TEST_F(MemoryBudget, AGridReturnsToFullResolutionWhenItFits) {
   limit(1'900'000);
   const VolumeItem one = volume_item(linear_grid(), {{0, 0}, {1, 0.03}}), two = volume_item(linear_grid(), {{0, 0}, {1, 0.03}});
   FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
@@ -158,7 +158,7 @@ TEST_F(MemoryBudget, WhatFitsAgainIsWholeAgain) {
   expect_within();
 }
 
-TEST_F(MemoryBudget, WhatFitsAtNoResolutionIsOneSentence) {
+TEST_F(MemoryBudget, AGridThatFitsAtNoResolutionIsAnErrorInOneLine) {
   limit(2'000);
   FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
   packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.03}})};
@@ -167,13 +167,13 @@ TEST_F(MemoryBudget, WhatFitsAtNoResolutionIsOneSentence) {
   EXPECT_EQ(drawn.error().message.find('\n'), std::string::npos);
   EXPECT_NE(drawn.error().message.find("density: 64^3 needs 1.3 MB of GPU memory"), std::string::npos) << drawn.error().message;
   EXPECT_EQ(renderer_->stats().gpu_bytes, 0u);
-  // the same renderer goes on
+  // the renderer can be reused
   packet.volumes.clear();
   packet.background = {1, 1, 1, 1};
   EXPECT_EQ(draw(packet).pixel(80, 60)[0], 255);
 }
 
-TEST_F(MemoryBudget, ALargerPictureKeepsWithinIt) {
+TEST_F(MemoryBudget, ALargerImageStaysWithinTheBudget) {
   limit(1'400'000);
   FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
   packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.06}})};
@@ -182,7 +182,7 @@ TEST_F(MemoryBudget, ALargerPictureKeepsWithinIt) {
   packet.width = 256;
   packet.height = 192;
   EXPECT_GT(draw(packet, exact()).pixel(128, 96)[3], 100);
-  // what holds no picture at all is one sentence
+  // a budget too small for the image is an error in one line
   packet.width = packet.height = 1024;
   const Outcome drawn = renderer_->draw(packet, exact());
   ASSERT_FALSE(drawn);

@@ -25,22 +25,22 @@ FramePacket along_y() {
   return packet;
 }
 
-TEST_F(Mesh, TubeInFrontOfAndBehindTheVolume) {
+TEST_F(Mesh, ATubeInFrontOfAndBehindAVolume) {
   const auto fog = make_grid({32, 32, 32}, [](const Vec3&) { return 0.5; });
   for (const double y : {-5.0, 15.0, 40.0}) {
     FramePacket packet = along_y();
     packet.volumes = {volume_item(fog, {{0, 0.05}, {1, 0.05}}, {0, 1, 0})};
     packet.tubes = {tube_of({-20, y, 15.5}, {50, y, 15.5}, 2, {1, 0, 0})};
-    const Image8 picture = draw(packet, {}, "y" + std::to_string(int(y)));
-    // the tube's front wall is at y - 2
+    const Image8 image = draw(packet, {}, "y" + std::to_string(int(y)));
+    // the tube's front is at y - 2
     const double length = std::min(31.0, std::max(0.0, y - 2)), through = std::exp(-0.05 * length);
-    const std::uint8_t* p = picture.pixel(80, 60);
+    const std::uint8_t* p = image.pixel(80, 60);
     EXPECT_NEAR(p[0], std::min(255.0, 255 * through * 1.1), 5) << y;
     EXPECT_NEAR(p[1], 255 * ((1 - through) + through * 0.2), 5) << y;
   }
 }
 
-TEST_F(Mesh, ColoursRunAlongATube) {
+TEST_F(Mesh, ColorsVaryAlongATube) {
   FramePacket packet = along_y();
   packet.view.orthographic = true;
   packet.view.height = 24;
@@ -48,10 +48,10 @@ TEST_F(Mesh, ColoursRunAlongATube) {
   tube.points = {tube.points[0], Vec3(15.5, 10, 15.5), tube.points[1]};
   tube.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   packet.tubes = {tube};
-  const Image8 picture = draw(packet, {}, "rainbow");
-  // 5 pixels a unit; the middle faces the eye, so that a white highlight lies over it
+  const Image8 image = draw(packet, {}, "rainbow");
+  // 5 pixels per unit; the centre faces the camera and has a white highlight
   const auto part = [&](std::uint32_t x, int channel) {
-    const std::uint8_t* p = picture.pixel(x, 60);
+    const std::uint8_t* p = image.pixel(x, 60);
     return static_cast<double>(p[channel]) / (p[0] + p[1] + p[2]);
   };
   EXPECT_GT(part(21, 0), 0.65);
@@ -68,14 +68,14 @@ TEST_F(Mesh, ArrowsAndTheIndicatorAreDrawn) {
   packet.view.height = 24;
   packet.arrows = {{{5.5, 10, 15.5}, {11.5, 10, 15.5}, 3, {1, 0, 0}}};
   packet.indicators = {{tube_of({17.5, 10, 15.5}, {21.5, 10, 15.5}, 1, {0, 1, 0}), {{21.5, 10, 15.5}, {25.5, 10, 15.5}, 2.5, {0, 1, 0}}}};
-  const Image8 picture = draw(packet, {}, "arrows");
-  // wide at its base, nothing beyond its tip
-  EXPECT_GT(picture.pixel(33, 72)[0], 60);
-  EXPECT_EQ(picture.pixel(55, 72)[0], 0);
-  EXPECT_GT(picture.pixel(55, 60)[0], 60);
-  EXPECT_GT(picture.pixel(95, 60)[1], 100);
-  EXPECT_GT(picture.pixel(114, 68)[1], 40);
-  EXPECT_EQ(picture.pixel(95, 68)[1], 0);
+  const Image8 image = draw(packet, {}, "arrows");
+  // wide at its base, empty beyond its tip
+  EXPECT_GT(image.pixel(33, 72)[0], 60);
+  EXPECT_EQ(image.pixel(55, 72)[0], 0);
+  EXPECT_GT(image.pixel(55, 60)[0], 60);
+  EXPECT_GT(image.pixel(95, 60)[1], 100);
+  EXPECT_GT(image.pixel(114, 68)[1], 40);
+  EXPECT_EQ(image.pixel(95, 68)[1], 0);
 }
 
 TEST_F(Mesh, DepthOfATubeIsExact) {
@@ -84,7 +84,7 @@ TEST_F(Mesh, DepthOfATubeIsExact) {
   draw(packet, {}, "tube");
   const auto depth = renderer_->read_depth();
   ASSERT_TRUE(depth);
-  // 68 from the eye; a tube of flat facets is a little thinner
+  // 68 from the camera; a faceted tube is slightly thinner
   EXPECT_NEAR(depth->depth[60 * 160 + 80], 68, 0.1);
   EXPECT_TRUE(std::isinf(depth->depth[2 * 160 + 80]));
 }
@@ -96,22 +96,22 @@ MeshItem item_of(const mesh::TriangleSoup& soup, Color color) {
   return {geometry, color};
 }
 
-/// A box seen along y, in parallel: a rectangle with sharp edges, one colour, one depth.
-TEST_F(Mesh, BoxHasItsSilhouetteColourAndDepth) {
+/// A box seen along y in orthographic projection: a rectangle with sharp edges, one colour and one depth.
+TEST_F(Mesh, ABoxHasItsSilhouetteColorAndDepth) {
   FramePacket packet = make_packet({0, -10, 0}, {0, 0, 0});
   packet.background = {0, 0, 0, 1};
   packet.view.orthographic = true;
-  packet.view.height = 12;  // 0.1 a pixel
+  packet.view.height = 12;  // 0.1 per pixel
   packet.meshes = {item_of(box_soup({-2, 1, -1}, {3, 4, 1.5}), {1, 0.5, 0})};
-  const Image8 picture = draw(packet, {}, "box");
+  const Image8 image = draw(packet, {}, "box");
   const auto depth = renderer_->read_depth();
   ASSERT_TRUE(depth);
   for (std::uint32_t y = 0; y < 120; ++y)
     for (std::uint32_t x = 0; x < 160; ++x) {
       const double u = (x - 79.5) * 0.1, v = (59.5 - y) * 0.1;
       const bool inside = u > -2 && u < 3 && v > -1 && v < 1.5;
-      const std::uint8_t* p = picture.pixel(x, y);
-      // facing the eye: 0.9 of the colour and the whole highlight
+      const std::uint8_t* p = image.pixel(x, y);
+      // facing the camera: 0.9 of the colour and the full highlight
       ASSERT_NEAR(p[0], inside ? 255 : 0, 1) << x << " " << y;
       ASSERT_NEAR(p[1], inside ? 255 * (0.9 * 0.5 + 0.2) : 0, 1) << x << " " << y;
       ASSERT_NEAR(p[2], inside ? 255 * 0.2 : 0, 1) << x << " " << y;
@@ -123,8 +123,8 @@ TEST_F(Mesh, BoxHasItsSilhouetteColourAndDepth) {
     }
 }
 
-/// Turned by 60 degrees the face is lit by its own normal: 0.2 + 0.7 cos of the colour, no smoothing over the edge.
-TEST_F(Mesh, FacesAreLitByTheirOwnNormals) {
+/// Rotated by 60 degrees the face is shaded by its own normal: 0.2 + 0.7 cos of the colour, without smoothing across the edge.
+TEST_F(Mesh, FacesAreShadedByTheirOwnNormals) {
   FramePacket packet = make_packet({0, -10, 0}, {0, 0, 0});
   packet.background = {0, 0, 0, 1};
   packet.view.orthographic = true;
@@ -134,21 +134,21 @@ TEST_F(Mesh, FacesAreLitByTheirOwnNormals) {
   add_quad(roof, {0, 0, -4}, {4, rise, -4}, {4, rise, 4}, {0, 0, 4});
   add_quad(roof, {0, 0, -4}, {0, 0, 4}, {-4, 0, 4}, {-4, 0, -4});
   packet.meshes = {item_of(roof, {0, 0, 1})};
-  const Image8 picture = draw(packet, {}, "roof");
-  for (const std::uint32_t x : {81u, 100u, 118u}) EXPECT_NEAR(picture.pixel(x, 60)[2], 255 * (0.2 + 0.7 * 0.5), 1.5) << x;
-  for (const std::uint32_t x : {42u, 60u, 78u}) EXPECT_EQ(picture.pixel(x, 60)[2], 255) << x;
-  EXPECT_EQ(picture.pixel(125, 60)[2], 0);
+  const Image8 image = draw(packet, {}, "roof");
+  for (const std::uint32_t x : {81u, 100u, 118u}) EXPECT_NEAR(image.pixel(x, 60)[2], 255 * (0.2 + 0.7 * 0.5), 1.5) << x;
+  for (const std::uint32_t x : {42u, 60u, 78u}) EXPECT_EQ(image.pixel(x, 60)[2], 255) << x;
+  EXPECT_EQ(image.pixel(125, 60)[2], 0);
 }
 
-TEST_F(Mesh, NearerTubeHidesTheFartherOne) {
+TEST_F(Mesh, ANearerTubeHidesTheFartherOne) {
   FramePacket packet = along_y();
   const TubeItem red = tube_of({-20, 10, 15.5}, {50, 10, 15.5}, 2, {1, 0, 0}), blue = tube_of({15.5, 4, -9}, {15.5, 4, 40}, 2, {0, 0, 1});
   for (const bool red_first : {true, false}) {
     packet.tubes = red_first ? std::vector{red, blue} : std::vector{blue, red};
-    const Image8 picture = draw(packet, {}, red_first ? "a" : "b");
-    EXPECT_GT(picture.pixel(80, 60)[2], 200);
-    EXPECT_LT(picture.pixel(80, 60)[0], 60);
-    EXPECT_GT(picture.pixel(20, 60)[0], 150);
+    const Image8 image = draw(packet, {}, red_first ? "a" : "b");
+    EXPECT_GT(image.pixel(80, 60)[2], 200);
+    EXPECT_LT(image.pixel(80, 60)[0], 60);
+    EXPECT_GT(image.pixel(20, 60)[0], 150);
   }
 }
 
@@ -165,13 +165,13 @@ TEST_F(Mesh, TubeAndOpaqueSurfaceHideEachOther) {
       wall.color = {0, 1, 0};
       packet.isosurfaces = {wall};
       packet.tubes = {tube_of({-20, y, 15.5}, {50, y, 15.5}, 2, {1, 0, 0})};
-      const Image8 picture = draw(packet, {}, std::string(orthographic ? "o" : "p") + std::to_string(int(y)));
-      EXPECT_EQ(picture.pixel(80, 60)[0] > 150, y < 14) << y << " " << orthographic;
-      EXPECT_EQ(picture.pixel(80, 60)[1] > 150, y > 14);
+      const Image8 image = draw(packet, {}, std::string(orthographic ? "o" : "p") + std::to_string(int(y)));
+      EXPECT_EQ(image.pixel(80, 60)[0] > 150, y < 14) << y << " " << orthographic;
+      EXPECT_EQ(image.pixel(80, 60)[1] > 150, y > 14);
     }
 }
 
-TEST_F(Mesh, FarFromTheOriginTheTubeStaysWhereItIs) {
+TEST_F(Mesh, ATubeFarFromTheOriginIsAtItsPosition) {
   const Vec3 far{3e6, -2e6, 1e6};
   FramePacket near_packet = along_y(), far_packet = along_y();
   near_packet.tubes = {tube_of({-4, 10, 12}, {34, 14, 20}, 1, {1, 0.5, 0})};
@@ -181,7 +181,7 @@ TEST_F(Mesh, FarFromTheOriginTheTubeStaysWhereItIs) {
   EXPECT_LE(max_difference(draw(near_packet), draw(far_packet, {}, "far")), 2);
 }
 
-TEST_F(Mesh, CursorIsDrawn) {
+TEST_F(Mesh, TheCursorIsDrawn) {
   FramePacket packet = along_y();
   CursorItem cursor;
   cursor.probe = {15.5, 10, 15.5};
@@ -189,9 +189,9 @@ TEST_F(Mesh, CursorIsDrawn) {
   cursor.link_active = {true};
   cursor.radius = 1;
   packet.cursors = {cursor};
-  const Image8 picture = draw(packet, {}, "cursor");
+  const Image8 image = draw(packet, {}, "cursor");
   int covered = 0;
-  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) covered += picture.rgba[i] + picture.rgba[i + 1] + picture.rgba[i + 2] > 30;
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) covered += image.rgba[i] + image.rgba[i + 1] + image.rgba[i + 2] > 30;
   EXPECT_GT(covered, 60);
 }
 

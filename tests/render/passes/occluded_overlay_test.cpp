@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The hand behind what hides it, against the blending formula of shaders/passes/compose.frag worked out by hand.
+/// The occluded cursor, against the blending formula of shaders/passes/compose.frag.
 #include <algorithm>
 #include <cmath>
 
@@ -8,16 +8,16 @@
 #include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
-namespace ghost_test {
+namespace occluded_overlay_test {
 
 using namespace catena::render;
 
 constexpr double kFace = 0.45;             // as in occluded_overlay.frag
-constexpr double kLit = 0.9 * 0.95 + 0.2;  // the probe's white ball where it faces the eye (shaders/lib/lighting.glsl)
+constexpr double kLit = 0.9 * 0.95 + 0.2;  // the probe's white ball where it faces the camera (shaders/lib/lighting.glsl)
 constexpr std::uint32_t kSide = 121, kMiddle = 60;
 constexpr std::uint32_t kHand = 7, kBall = 3;
 
-/// Along +y, orthographic, 0.25 units a pixel; the middle of pixel (60, 60) looks at (16, y, 16).
+/// Orthographic view along +y, 0.25 units per pixel; the centre of pixel (60, 60) is at (16, y, 16).
 FramePacket along_y() {
   FramePacket packet;
   packet.width = packet.height = kSide;
@@ -44,7 +44,7 @@ IsosurfaceItem ball() {
   return {grid, 10.0, {0.4f, 0.4f, 0.4f}, 1.0f, kBall};
 }
 
-/// Alpha 1 - exp(-extinction y) in front of what is at y.
+/// A volume with alpha 1 - exp(-extinction y) in front of y.
 VolumeItem fog(double extinction) {
   return volume_item(make_grid({33, 33, 33}, [](const Vec3& p) { return p.x / 32; }), {{0, extinction}, {1, extinction}},
                      {0.2f, 0.5f, 0.9f});
@@ -59,7 +59,7 @@ FramePacket inside_ball(bool ghost) {
 
 class OccludedOverlay : public ImageTest {};
 
-TEST_F(OccludedOverlay, ShinesThroughASurfaceWithAnOutline) {
+TEST_F(OccludedOverlay, IsDrawnThroughASurfaceWithAnOutline) {
   FramePacket empty = inside_ball(false);
   empty.cursors.clear();
   const Image8 without = draw(empty), off = draw(inside_ball(false)), on = draw(inside_ball(true), {}, "inside");
@@ -68,7 +68,7 @@ TEST_F(OccludedOverlay, ShinesThroughASurfaceWithAnOutline) {
   for (std::uint32_t c = 0; c < 3; ++c)
     EXPECT_NEAR(on.pixel(kMiddle, kMiddle)[c], 255 * kFace * kLit + (1 - kFace) * off.pixel(kMiddle, kMiddle)[c], 1.01);
 
-  // outwards from half of the radius: the face, a bright ring, a dark one
+  // outwards from half of the radius: the face, a bright and a dark ring
   const std::uint32_t face = kMiddle + 4;
   std::uint32_t brightest = face, darkest = face;
   for (std::uint32_t x = face; x < kMiddle + 8; ++x) {
@@ -80,7 +80,7 @@ TEST_F(OccludedOverlay, ShinesThroughASurfaceWithAnOutline) {
   EXPECT_GT(brightest, face);
   EXPECT_GT(darkest, brightest);
 
-  // nothing beyond
+  // unchanged outside
   int changed = 0;
   for (std::uint32_t y = 0; y < kSide; ++y)
     for (std::uint32_t x = 0; x < kSide; ++x) {
@@ -93,7 +93,7 @@ TEST_F(OccludedOverlay, ShinesThroughASurfaceWithAnOutline) {
   EXPECT_NEAR(changed, M_PI * 64, 12);
 }
 
-TEST_F(OccludedOverlay, LeavesThePictureAsItIsWhereNothingHidesTheHand) {
+TEST_F(OccludedOverlay, DoesNotChangeAVisibleCursor) {
   for (const bool volume : {false, true}) {
     FramePacket packets[2];
     for (const bool ghost : {false, true}) {
@@ -108,11 +108,11 @@ TEST_F(OccludedOverlay, LeavesThePictureAsItIsWhereNothingHidesTheHand) {
   }
 }
 
-TEST_F(OccludedOverlay, OnlyAHandThatAsksForItHasOne) {
+TEST_F(OccludedOverlay, IsDrawnOnlyForCursorsWithTheOption) {
   FramePacket packet = inside_ball(false);
   draw(packet);
   EXPECT_EQ(renderer_->stats().passes, (std::vector<std::string>{"cursor", "isosurfaces", "compose"}));
-  // of two hands only the one that asks for it
+  // only the cursor of two with the option
   packet.cursors[0].probe.x = 20;
   const Image8 one = draw(packet);
   packet.cursors.push_back(hand(16, true));
@@ -123,28 +123,29 @@ TEST_F(OccludedOverlay, OnlyAHandThatAsksForItHasOne) {
   EXPECT_FALSE(std::equal(two.pixel(kMiddle, kMiddle), two.pixel(kMiddle, kMiddle) + 4, one.pixel(kMiddle, kMiddle)));
 }
 
-TEST_F(OccludedOverlay, ShinesThroughAVolumeByTheVolumesAlpha) {
+TEST_F(OccludedOverlay, IsDrawnThroughAVolumeByItsAlpha) {
   for (const double extinction : {0.02, 0.1, 1.0}) {
     FramePacket packet = along_y();
     packet.volumes.push_back(fog(extinction));
     packet.cursors.push_back(hand(16, true));
     const double alpha = 1 - std::exp(-extinction * 14), share = alpha * kFace;
     RenderSettings fast = balanced_settings();
-    fast.fast = FastSettings{.step_voxels = 1, .spacing = 4, .refine_full_255 = -1};  // ends at half, where nothing is opaque
+    fast.fast =
+        FastSettings{.step_voxels = 1, .spacing = 4, .refine_full_255 = -1};  // refinement ends at half resolution where nothing is opaque
     for (const RenderSettings& settings : {RenderSettings{}, fast}) {
-      const Image8 picture = draw(packet, settings, "e" + std::to_string(int(100 * extinction)) + (settings.fast ? "fast" : ""));
+      const Image8 image = draw(packet, settings, "e" + std::to_string(int(100 * extinction)) + (settings.fast ? "fast" : ""));
       const double volume[3] = {0.2, 0.5, 0.9};
       for (std::size_t c = 0; c < 3; ++c) {
         const double seen = alpha * volume[c] + (1 - alpha) * kLit;
-        EXPECT_NEAR(picture.pixel(kMiddle, kMiddle)[c], 255 * std::min(1.0, share * kLit + (1 - share) * seen), 2)
-            << extinction << " " << c;
+        EXPECT_NEAR(image.pixel(kMiddle, kMiddle)[c], 255 * std::min(1.0, share * kLit + (1 - share) * seen), 2) << extinction << " " << c;
       }
     }
   }
 }
 
-/// A ghost lies on pixels that the hand or what hides it covers: alpha does not change, and the colours are those over a background.
-TEST_F(OccludedOverlay, IsRightOnATransparentBackgroundAndInFloats) {
+/// The overlay affects only pixels that the cursor or its occluder covers: alpha is unchanged, and the colours equal those over a
+/// background.
+TEST_F(OccludedOverlay, IsCorrectOnATransparentBackgroundAndInFloats) {
   FramePacket off = inside_ball(false), on = inside_ball(true);
   const Image8 solid = draw(on);
   off.background = on.background = {0, 0, 0, 0};
@@ -158,18 +159,18 @@ TEST_F(OccludedOverlay, IsRightOnATransparentBackgroundAndInFloats) {
   RenderSettings floats;
   floats.float_image = true;
   ASSERT_TRUE(renderer_->draw(on, floats));
-  const auto picture = renderer_->read_back_float();
-  ASSERT_TRUE(picture);
+  const auto image = renderer_->read_back_float();
+  ASSERT_TRUE(image);
   for (std::size_t i = 0; i < after.rgba.size(); ++i)
-    ASSERT_NEAR(255 * std::clamp(picture->rgba[i], 0.0f, 1.0f), after.rgba[i], uses_lavapipe() ? 0.51 : 0.6);
+    ASSERT_NEAR(255 * std::clamp(image->rgba[i], 0.0f, 1.0f), after.rgba[i], uses_lavapipe() ? 0.51 : 0.6);
 }
 
-TEST_F(OccludedOverlay, LeavesDepthsAndIdsAlone) {
+TEST_F(OccludedOverlay, DoesNotChangeDepthsAndIds) {
   std::vector<std::uint32_t> ids[2];
   std::vector<float> depths[2];
   for (const bool ghost : {false, true}) {
     FramePacket packet = inside_ball(ghost);
-    packet.cursors[0].probe = {16, 6.5, 16};  // half out of the ball
+    packet.cursors[0].probe = {16, 6.5, 16};  // half outside the ball
     draw(packet, {}, ghost ? "half" : "half_off");
     const auto id = renderer_->read_ids();
     const auto depth = renderer_->read_depth();
@@ -183,7 +184,7 @@ TEST_F(OccludedOverlay, LeavesDepthsAndIdsAlone) {
   EXPECT_EQ(ids[1][(kMiddle + 20) * kSide + kMiddle], kBall);
 }
 
-TEST_F(OccludedOverlay, IsThereInBothEyesAndInEveryTile) {
+TEST_F(OccludedOverlay, IsDrawnInBothEyesAndInEveryTile) {
   FramePacket packet = inside_ball(true);
   packet.width = packet.height = 128;
   const Image8 whole = draw(packet);
@@ -210,16 +211,16 @@ TEST_F(OccludedOverlay, IsThereInBothEyesAndInEveryTile) {
     }
 }
 
-TEST_F(OccludedOverlay, AHandBesideThePictureOrAroundTheEyeDoesNoHarm) {
+TEST_F(OccludedOverlay, ACursorOutsideTheImageOrAroundTheEyeIsHandled) {
   FramePacket packet = inside_ball(true);
   const Image8 before = draw(packet);
   packet.cursors[0].probe.x = 60;
   FramePacket off = packet;
   off.cursors[0].show_occluded = false;
   EXPECT_EQ(max_difference(draw(packet), draw(off)), 0);
-  packet.cursors[0].radius = 0;  // nothing is drawn
+  packet.cursors[0].radius = 0;  // not drawn
   EXPECT_EQ(max_difference(draw(packet), draw(off)), 0);
-  // the eye is within the ball and sees it from inside, behind a part of the surface
+  // the camera is inside the ball, partly behind the surface
   packet = make_packet({16, 5, 16}, {16, 16, 16}, 60);
   packet.isosurfaces.push_back(ball());
   packet.cursors.push_back(hand(16, true));
@@ -231,8 +232,8 @@ TEST_F(OccludedOverlay, AHandBesideThePictureOrAroundTheEyeDoesNoHarm) {
 TEST_F(OccludedOverlay, ADropLineLeadsToItsFoot) {
   FramePacket packet = inside_ball(true);
   packet.cursors[0].probe = {18, 16, 18};
-  packet.cursors[0].foot_point = Vec3(18, 16, 2);  // 4 below the ball
-  const Image8 picture = draw(packet, {}, "drop_line");
+  packet.cursors[0].foot_point = Vec3(18, 16, 2);  // 4 units below the ball
+  const Image8 image = draw(packet, {}, "drop_line");
   FramePacket off = packet;
   off.cursors[0].show_occluded = false;
   const Image8 solid = draw(off);
@@ -248,9 +249,9 @@ TEST_F(OccludedOverlay, ADropLineLeadsToItsFoot) {
                                        : norm(Vec3(2, 0, z - 16)) > 10.2 ? kHand
                                                                          : ids->ids[y * kSide + x])
         << z;
-    EXPECT_EQ(std::equal(picture.pixel(x, y), picture.pixel(x, y) + 3, solid.pixel(x, y)), !hidden) << z;
+    EXPECT_EQ(std::equal(image.pixel(x, y), image.pixel(x, y) + 3, solid.pixel(x, y)), !hidden) << z;
   }
-  // the cross reaches to both sides of the foot; below it there is nothing
+  // the cross extends to both sides of the foot; below it the image is empty
   for (const double side : {-2.5, 2.5}) {
     const Vec3 p = at({18 + side, 16, 2});
     EXPECT_EQ(ids->ids[std::uint32_t(p.y) * kSide + std::uint32_t(p.x)], kHand);
@@ -259,5 +260,5 @@ TEST_F(OccludedOverlay, ADropLineLeadsToItsFoot) {
   EXPECT_EQ(ids->ids[std::uint32_t(below.y) * kSide + std::uint32_t(below.x)], 0u);
 }
 
-}  // namespace ghost_test
+}  // namespace occluded_overlay_test
 }  // namespace catena::test

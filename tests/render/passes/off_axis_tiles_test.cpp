@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Off-axis frusta and tiles: a window of the frustum shows the very pixels that the whole picture has there.
+/// Off-axis frusta and tiles: a window of the frustum has exactly the pixels of the whole image.
 #include "render/frame/camera.h"
 #include "tests/render/support/image_fixture.h"
 
@@ -29,9 +29,9 @@ FramePacket scene_packet(bool orthographic) {
   return packet;
 }
 
-class Windows : public ImageTest {};
+class OffAxisTiles : public ImageTest {};
 
-void expect_tiles_equal(Windows& test, const FramePacket& whole_packet,
+void expect_tiles_equal(OffAxisTiles& test, const FramePacket& whole_packet,
                         const std::function<Image8(const FramePacket&, const char*)>& draw) {
   (void)test;
   const Image8 whole = draw(whole_packet, "whole");
@@ -53,11 +53,11 @@ void expect_tiles_equal(Windows& test, const FramePacket& whole_packet,
   EXPECT_GT(drawn, 2000);
 }
 
-TEST_F(Windows, TilesMakeThePictureInPerspective) {
+TEST_F(OffAxisTiles, TilesEqualTheWholeImageInPerspective) {
   expect_tiles_equal(*this, scene_packet(false), [&](const FramePacket& p, const char* name) { return draw(p, {}, name); });
 }
 
-TEST_F(Windows, TilesMakeThePictureInOrthographicProjection) {
+TEST_F(OffAxisTiles, TilesEqualTheWholeImageInOrthographicProjection) {
   expect_tiles_equal(*this, scene_packet(true), [&](const FramePacket& p, const char* name) { return draw(p, {}, name); });
 }
 

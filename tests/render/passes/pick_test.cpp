@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One pixel's depth and id: those of the whole images, and of an isosurface and a slice in closed form.
+// Depth and id of one pixel, against the whole images and the closed forms of an isosurface and a slice.
 #include <cmath>
 
 #include "render/frame/camera.h"
@@ -12,8 +12,8 @@ using namespace catena::render;
 
 class Pick : public ImageTest {};
 
-TEST_F(Pick, ASphereAndASliceAreFoundWhereTheyAre) {
-  // |x - c| on 25^3 nodes, level 8; a slice across it in front of the centre's right half
+TEST_F(Pick, ASphereAndASliceAreFoundAtTheirDepth) {
+  // |x - c| on 25^3 nodes, level 8; a slice in front of the right half
   const Vec3 centre(12.0);
   const auto grid = make_grid({25, 25, 25}, [&](const Vec3& p) { return norm(p - centre); });
   FramePacket packet = make_packet(centre + Vec3(0, -50, 0), centre);
@@ -57,11 +57,11 @@ TEST_F(Pick, ASphereAndASliceAreFoundWhereTheyAre) {
   const auto picked = renderer_->pick(100, 40);
   ASSERT_TRUE(picked);
   EXPECT_EQ(picked->id, 9u);
-  // 50 units away, and nearer by what puts it over surfaces in its plane
+  // distance 50 units, minus the depth offset over coplanar surfaces
   EXPECT_NEAR(unproject(camera, 100.5, 40.5, picked->depth).y, 12 - 8e-6 * 50, 1e-4);
 }
 
-TEST_F(Pick, WithoutAnythingSolidNothingIsFound) {
+TEST_F(Pick, WithoutOpaqueObjectsNothingIsFound) {
   FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
   ASSERT_TRUE(renderer_->draw(packet));
   const auto picked = renderer_->pick(3, 4);
@@ -70,7 +70,7 @@ TEST_F(Pick, WithoutAnythingSolidNothingIsFound) {
   EXPECT_TRUE(std::isinf(picked->depth));
 }
 
-TEST_F(Pick, TheNextPictureIsTheSameAfterIt) {
+TEST_F(Pick, APickDoesNotChangeTheNextImage) {
   const auto grid = make_grid({9, 9, 9}, [](const Vec3& p) { return p.x; });
   FramePacket packet = make_packet({4, -20, 4}, {4, 4, 4});
   packet.volumes = {volume_item(grid, {{0, 0}, {8, 0.3}})};
@@ -85,7 +85,7 @@ TEST_F(Pick, TheNextPictureIsTheSameAfterIt) {
   EXPECT_EQ(draw(packet).rgba, first.rgba);
 }
 
-TEST_F(Pick, AnAreaOfTheWindowHoldsThePictureAndBlackIsBesideIt) {
+TEST_F(Pick, AWindowAreaShowsTheImageBesideBlack) {
   FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
   packet.background = {0, 1, 0, 1};
   packet.width = 20;
@@ -94,9 +94,9 @@ TEST_F(Pick, AnAreaOfTheWindowHoldsThePictureAndBlackIsBesideIt) {
   UiItems items;
   const auto shown = [&](std::uint32_t width, std::uint32_t height) {
     EXPECT_TRUE(renderer_->paint_window(width, height, items));
-    auto picture = renderer_->read_back_window();
-    EXPECT_TRUE(picture);
-    return *picture;
+    auto image = renderer_->read_back_window();
+    EXPECT_TRUE(image);
+    return *image;
   };
   items.image_area = {10, 5, 30, 15};
   const Image8 window = shown(40, 20);
@@ -106,7 +106,7 @@ TEST_F(Pick, AnAreaOfTheWindowHoldsThePictureAndBlackIsBesideIt) {
       ASSERT_EQ(int(window.pixel(x, y)[1]), inside ? 255 : 0) << x << " " << y;
       ASSERT_EQ(int(window.pixel(x, y)[0]), 0);
     }
-  // a window that has shrunk since shows what of the area it holds, or the picture alone
+  // a smaller window shows the visible part of the area, or only the image
   EXPECT_EQ(int(shown(15, 20).pixel(12, 10)[1]), 255);
   EXPECT_EQ(int(shown(15, 20).pixel(2, 2)[1]), 0);
   EXPECT_EQ(int(shown(8, 4).pixel(2, 2)[1]), 255);

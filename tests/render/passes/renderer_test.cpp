@@ -10,22 +10,22 @@ using namespace catena::render;
 
 class Frames : public ImageTest {};
 
-TEST_F(Frames, EmptyPacketIsTheBackground) {
+TEST_F(Frames, AnEmptyPacketShowsTheBackground) {
   FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
   packet.background = {0.2f, 0.4f, 0.6f, 1};
-  const Image8 picture = draw(packet);
-  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
-    ASSERT_EQ(picture.rgba[i], 51);
-    ASSERT_EQ(picture.rgba[i + 1], 102);
-    ASSERT_EQ(picture.rgba[i + 2], 153);
-    ASSERT_EQ(picture.rgba[i + 3], 255);
+  const Image8 image = draw(packet);
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    ASSERT_EQ(image.rgba[i], 51);
+    ASSERT_EQ(image.rgba[i + 1], 102);
+    ASSERT_EQ(image.rgba[i + 2], 153);
+    ASSERT_EQ(image.rgba[i + 3], 255);
   }
   packet.background = {1, 1, 1, 0};
   const Image8 clear = draw(packet);
   for (const std::uint8_t byte : clear.rgba) ASSERT_EQ(byte, 0);
 }
 
-TEST_F(Frames, PassesAreMadeForWhatIsThere) {
+TEST_F(Frames, PassesAreCreatedOnDemand) {
   FramePacket packet = make_packet({30, -40, 30}, {8, 8, 8});
   draw(packet);
   EXPECT_EQ(renderer_->stats().pipelines, 1u);  // compose
@@ -33,14 +33,14 @@ TEST_F(Frames, PassesAreMadeForWhatIsThere) {
   const auto grid = make_grid({16, 16, 16}, [](const Vec3& p) { return p.x / 16; });
   packet.volumes = {volume_item(grid, {{0, 0.1}, {1, 0.1}})};
   draw(packet);
-  EXPECT_EQ(renderer_->stats().pipelines, 3u);  // volume, compose over it
+  EXPECT_EQ(renderer_->stats().pipelines, 3u);  // volume, and compose over it
   TubeItem tube;
   tube.points = {{0, 0, 0}, {16, 16, 16}};
   tube.radius = 1;
   packet.volumes.clear();
   packet.tubes = {tube};
   draw(packet);
-  EXPECT_EQ(renderer_->stats().pipelines, 5u);  // mesh, compose over it
+  EXPECT_EQ(renderer_->stats().pipelines, 5u);  // mesh, and compose over it
   EXPECT_EQ(renderer_->stats().resident_grids, 0u);
 }
 
@@ -72,14 +72,14 @@ TEST_F(Frames, TheSecondFrameUploadsNothing) {
   EXPECT_EQ(second.uploads, first.uploads);
   EXPECT_EQ(second.pipelines, first.pipelines);
   EXPECT_LE(second.gpu_bytes, first.gpu_bytes);
-  // an edit of the transfer function leaves the values where they are
+  // an edit of the transfer function does not upload the values
   packet.volumes[0].transfer.extinctions[1][1] = 0.2;
   draw(packet);
   EXPECT_GT(renderer_->stats().uploads, second.uploads);
   EXPECT_LT(renderer_->stats().upload_bytes - second.upload_bytes, 100000u);
 }
 
-TEST_F(Frames, WhatIsNoLongerNamedIsFreed) {
+TEST_F(Frames, UnreferencedResourcesAreFreed) {
   FramePacket packet = make_packet({60, -70, 50}, {20, 20, 20});
   draw(packet);
   const std::uint64_t empty = renderer_->stats().gpu_bytes;
@@ -95,7 +95,7 @@ TEST_F(Frames, WhatIsNoLongerNamedIsFreed) {
   EXPECT_LT(renderer_->stats().gpu_bytes, full - 64 * 64 * 64 * 2);
 }
 
-TEST_F(Frames, TransparentPicturesKeepStraightAlpha) {
+TEST_F(Frames, TransparentImagesKeepStraightAlpha) {
   const auto grid = make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; });
   FramePacket packet = make_packet({30, -40, 30}, {8, 8, 8});
   packet.volumes = {volume_item(grid, {{0, 0.01}, {1, 0.01}}, {1, 0.5f, 0})};
@@ -112,7 +112,7 @@ TEST_F(Frames, TransparentPicturesKeepStraightAlpha) {
   EXPECT_NEAR(clear.pixel(80, 60)[0], 255, 1);
 }
 
-TEST_F(Frames, ResizeAndRepeat) {
+TEST_F(Frames, ImagesRepeatAfterAResize) {
   const auto grid = make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; });
   FramePacket packet = make_packet({30, -40, 30}, {8, 8, 8});
   packet.volumes = {volume_item(grid, {{0, 0.1}, {1, 0.1}})};

@@ -38,7 +38,7 @@ ShapeMesh tube(std::vector<Vec3> points, double radius, int sides = 12) {
   return shape;
 }
 
-/// Closed: every edge (by position) is walked once in each direction.
+/// Checks that the mesh is closed: every edge (by position) occurs once in each direction.
 void expect_closed(const ShapeMesh& shape) {
   using Key = std::array<double, 3>;
   std::map<std::pair<Key, Key>, int> edges;
@@ -65,7 +65,7 @@ double volume_of(const ShapeMesh& shape) {
   return volume;
 }
 
-/// The triangles' winding agrees with the vertex normals, and those are unit.
+/// Checks that the triangles' winding agrees with the unit vertex normals.
 void expect_outward(const ShapeMesh& shape) {
   for (const MeshVertex& v : shape.vertices) ASSERT_NEAR(norm(v.normal), 1, 1e-12);
   for (std::size_t t = 0; t < shape.triangles.size(); t += 3) {
@@ -90,7 +90,7 @@ double distance_to(const Vec3& p, const std::vector<Vec3>& line) {
   return best;
 }
 
-TEST(Shapes, TubeIsClosedAndOutward) {
+TEST(Shapes, ATubeIsClosedAndOutward) {
   for (const auto& points : {helix(200), knotted_loop(400), std::vector<Vec3>{{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}}}) {
     const ShapeMesh shape = tube(points, 0.05);
     expect_closed(shape);
@@ -99,7 +99,7 @@ TEST(Shapes, TubeIsClosedAndOutward) {
   }
 }
 
-TEST(Shapes, TubeVerticesKeepTheRadius) {
+TEST(Shapes, TubeVerticesAreAtTheRadius) {
   const auto points = helix(1000, 0.25);
   const ShapeMesh shape = tube(points, 0.05);
   for (const MeshVertex& v : shape.vertices) ASSERT_NEAR(distance_to(v.position, points), 0.05, 1e-6 * 0.05);
@@ -115,7 +115,7 @@ TEST(Shapes, AStraightTubeKeepsTheRadiusThroughSharpCorners) {
   }
 }
 
-TEST(Shapes, VolumeOfATubeIsThatOfACapsule) {
+TEST(Shapes, TheVolumeOfATubeIsThatOfACapsule) {
   const double r = 0.1, l = 2;
   const int n = 48;
   const ShapeMesh shape = tube({{0.0, 0.0, 0.0}, {0.0, 0.0, l}}, r, n);
@@ -131,7 +131,7 @@ TEST(Shapes, AClosedLineIsJoinedWithoutCaps) {
 }
 
 TEST(Shapes, FramesDoNotTwist) {
-  // along a plane curve the transported normal keeps its angle to the plane
+  // along a planar curve the transported normal keeps its angle to the plane
   std::vector<Vec3> arc;
   for (int i = 0; i <= 100; ++i) arc.push_back({std::cos(0.03 * i), std::sin(0.03 * i), 0.0});
   const int sides = 8;
@@ -139,7 +139,7 @@ TEST(Shapes, FramesDoNotTwist) {
   for (int i = 1; i <= 100; ++i) EXPECT_NEAR(shape.vertices[i * sides].normal.z, shape.vertices[0].normal.z, 1e-12);
 }
 
-TEST(Shapes, TriangleCountIsBounded) {
+TEST(Shapes, TheTriangleCountIsBounded) {
   for (const int sides : {8, 12, 16}) {
     const ShapeMesh shape = tube(helix(500), 0.01, sides);
     EXPECT_LE(shape.triangles.size() / 3, std::size_t(2 * sides * (500 + sides)));
@@ -150,7 +150,7 @@ TEST(Shapes, TriangleCountIsBounded) {
   EXPECT_EQ(tube_sides(0.001, 0), 16) << "the eye is among them";
 }
 
-TEST(Shapes, DegenerateTubes) {
+TEST(Shapes, DegenerateTubesAreHandled) {
   EXPECT_TRUE(tube({}, 0.1).triangles.empty());
   EXPECT_TRUE(tube(helix(10), 0).triangles.empty());
   const ShapeMesh point = tube({{1.0, 2.0, 3.0}}, 0.1);
@@ -164,7 +164,7 @@ TEST(Shapes, DegenerateTubes) {
   for (const MeshVertex& v : there_and_back.vertices) ASSERT_TRUE(is_finite(v.position) && is_finite(v.normal));
 }
 
-TEST(ShapesDeathTest, NonFinitePointsAreABug) { EXPECT_DEATH(tube({{0.0, 0.0, 0.0}, {std::nan(""), 0.0, 0.0}}, 0.1), "is_finite"); }
+TEST(ShapesDeathTest, NonFinitePointsFailAnAssertion) { EXPECT_DEATH(tube({{0.0, 0.0, 0.0}, {std::nan(""), 0.0, 0.0}}, 0.1), "is_finite"); }
 
 TEST(Shapes, BallCylinderConeAreClosedAndOutward) {
   ShapeMesh ball, cylinder, cone;
@@ -187,12 +187,12 @@ TEST(Shapes, BallCylinderConeAreClosedAndOutward) {
 
 CursorItem cursor() { return {{0.0, 0.0, 0.0}, {{1.0, 0.0, 0.0}, {1.0, 2.0, 0.0}}, {true, false}, {0.0, 0.0, 3.0}, 0.1, {}}; }
 
-TEST(Shapes, CursorShowsEveryProxyAndTheForce) {
+TEST(Shapes, TheCursorShowsEveryProxyAndTheForce) {
   ShapeMesh shape;
   add_cursor(shape, cursor());
   expect_closed(shape);
   expect_outward(shape);
-  // a vertex of link 0's colour on the first proxy's ball, of the dim colour of link 1 on the second's
+  // the first proxy's ball has the colour of link 0, the second's the dimmed colour of link 1
   int first = 0, second = 0;
   double highest = 0;
   for (const MeshVertex& v : shape.vertices) {
@@ -218,13 +218,13 @@ int vertices_of(const ShapeMesh& shape, const Color& c) {
   return count;
 }
 
-TEST(Shapes, ALinkThatTheHandIsLeavingIsSeen) {
+TEST(Shapes, ALinkNearItsReleaseIsHighlighted) {
   CursorItem item = cursor();
   ShapeMesh calm, near, gone;
   add_cursor(calm, item);
   item.release_ratios = {0.5, 0};
   add_cursor(near, item);
-  item.release_ratios = {0, 1};  // link 1 is not active: it has let go
+  item.release_ratios = {0, 1};  // link 1 is released and not active
   add_cursor(gone, item);
   EXPECT_GT(vertices_of(calm, release_color(0)), 0);
   EXPECT_EQ(vertices_of(near, release_color(0)), 0);
@@ -259,7 +259,7 @@ TEST(Shapes, ADropLineEndsInACross) {
   EXPECT_EQ(none.vertices.size(), plain.vertices.size());
 }
 
-TEST(Shapes, ACrosshairIsThreeRodsAndTellsNothingOfWhatIsFelt) {
+TEST(Shapes, ACrosshairIsThreeRodsIndependentOfTheForce) {
   CursorItem item = cursor();
   item.is_crosshair = true;
   ShapeMesh held, free;
@@ -283,25 +283,25 @@ TEST(Shapes, ACrosshairIsThreeRodsAndTellsNothingOfWhatIsFelt) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(longest[axis], 0.1, 1e-12);
 }
 
-TEST(Shapes, WithoutADeviceThePictureShowsTheForce) {
+TEST(Shapes, WithoutADeviceColorsShowTheForce) {
   CursorItem item = cursor();
   item.link_active = {true, true};
   const auto reddest_far_from = [](const ShapeMesh& shape, const Vec3& probe) {
-    float most = -1;
+    float maximum = -1;
     for (const MeshVertex& v : shape.vertices) {
       const bool of_a_link = v.color.r == link_color(0, true).r || v.color.r == link_color(1, true).r;
-      if (!of_a_link && norm(v.position - probe) > 0.3) most = std::max(most, v.color.r - v.color.b);
+      if (!of_a_link && norm(v.position - probe) > 0.3) maximum = std::max(maximum, v.color.r - v.color.b);
     }
-    return most;
+    return maximum;
   };
-  ShapeMesh calm, half, most;
+  ShapeMesh calm, half, maximum;
   item.force_ratio = 0;
   add_cursor(calm, item);
   item.force_ratio = 0.5;
   add_cursor(half, item);
   item.force_ratio = 1;
-  add_cursor(most, item);
-  // the cursor is where the last link holds it, the probe is the small ball of the two
+  add_cursor(maximum, item);
+  // the cursor is at the last proxy; the probe is the smaller ball
   double at_proxy = 0, at_probe = 0, highest = 0;
   for (const MeshVertex& v : calm.vertices) {
     const double from_proxy = norm(v.position - Vec3(1.0, 2.0, 0.0)), from_probe = norm(v.position);
@@ -312,11 +312,11 @@ TEST(Shapes, WithoutADeviceThePictureShowsTheForce) {
   EXPECT_NEAR(highest, cursor_arrow_length(norm(item.force_n), item.radius), 1e-9) << "the arrow begins where the hand is held";
   EXPECT_NEAR(at_proxy, 0.1, 1e-6);
   EXPECT_NEAR(at_probe, 0.045, 1e-3);
-  expect_closed(most);
-  expect_outward(most);
+  expect_closed(maximum);
+  expect_outward(maximum);
   EXPECT_LT(reddest_far_from(calm, item.probe), 0.5f) << "green, and the calm colour";
   EXPECT_GT(reddest_far_from(half, item.probe), 0.6f);
-  EXPECT_GT(reddest_far_from(most, item.probe), 0.85f);
+  EXPECT_GT(reddest_far_from(maximum, item.probe), 0.85f);
 }
 
 TEST(Shapes, ArrowLengthFollowsTheForceWithinLimits) {
@@ -328,7 +328,7 @@ TEST(Shapes, ArrowLengthFollowsTheForceWithinLimits) {
   EXPECT_EQ(cursor_arrow_length(1e6, 1), 16);
 }
 
-TEST(Shapes, ACursorWithoutSizeOrPlaceIsNotDrawn) {
+TEST(Shapes, ACursorWithoutSizeOrPositionIsNotDrawn) {
   ShapeMesh shape;
   CursorItem item = cursor();
   item.radius = 0;
@@ -339,7 +339,7 @@ TEST(Shapes, ACursorWithoutSizeOrPlaceIsNotDrawn) {
   EXPECT_TRUE(shape.vertices.empty());
 }
 
-TEST(Shapes, LinkColoursDiffer) {
+TEST(Shapes, LinkColorsDiffer) {
   for (std::size_t i = 0; i < 8; ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const Color a = link_color(i, true), b = link_color(j, true);
@@ -348,7 +348,7 @@ TEST(Shapes, LinkColoursDiffer) {
   EXPECT_LT(link_color(0, false).r, link_color(0, true).r);
 }
 
-TEST(Tube, EveryRingHasItsPointsColour) {
+TEST(Tube, EveryRingHasItsPointsColor) {
   ShapeMesh shape;
   TubeItem item{helix(20), 0.05, {0.5f, 0.5f, 0.5f}};
   for (std::size_t i = 0; i < item.points.size(); ++i) item.colors.push_back({static_cast<float>(i), 0, 0});

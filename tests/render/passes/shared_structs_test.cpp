@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// One struct, two languages: the offsets that the shader compiler chose against those of C++.
+/// Structs shared by GLSL and C++: member offsets of the shader compiler against those of C++.
 #include <gtest/gtest.h>
 
 #include <cstddef>

@@ -29,7 +29,7 @@ std::array<double, 3> table_color(const std::vector<std::array<double, 4>>& tabl
   return {table.back()[1], table.back()[2], table.back()[3]};
 }
 
-/// Turned and sheared, anisotropic, away from the origin.
+/// A rotated, sheared and anisotropic mapping away from the origin.
 field::Mapping sheared() {
   const Mat3 turn = Mat3(Vec3(0.8, 0.6, 0.0), Vec3(-0.6, 0.8, 0.0), Vec3(0.0, 0.0, 1.0));
   const Mat3 shear = Mat3(Vec3(0.10, 0.0, 0.0), Vec3(0.04, 0.13, 0.0), Vec3(-0.03, 0.05, 0.08));
@@ -54,7 +54,7 @@ SliceItem slice_of(GridPtr grid, const Vec3& point, const Vec3& normal) {
   return item;
 }
 
-/// Where the ray of a pixel meets a plane; index space, and how far (voxels) it is within the domain.
+/// Intersection of a pixel's ray with a plane in index space, and its distance in voxels inside the domain.
 struct Met {
   Vec3 world{0.0}, index{0.0};
   double inside = 0, view_depth = 0;
@@ -72,7 +72,7 @@ Met meet(const Camera& camera, const SliceItem& item, double x, double y) {
   return met;
 }
 
-TEST_F(SliceImage, EveryPixelOfAShearedGridHasItsTableColourDepthAndId) {
+TEST_F(SliceImage, EveryPixelOfAShearedGridHasItsTableColorDepthAndId) {
   const auto grid = wavy_grid();
   for (const bool orthographic : {false, true}) {
     FramePacket packet = make_packet(centre_of(*grid) + Vec3(2.5, -4, 3), centre_of(*grid));
@@ -80,7 +80,7 @@ TEST_F(SliceImage, EveryPixelOfAShearedGridHasItsTableColourDepthAndId) {
     packet.view.height = 3;
     packet.slices = {slice_of(grid, centre_of(*grid) + Vec3(0.1, 0, 0.05), {0.5, -0.6, 0.9})};
     packet.slices[0].id = 17;
-    const Image8 picture = draw(packet, {}, orthographic ? "orthographic" : "perspective");
+    const Image8 image = draw(packet, {}, orthographic ? "orthographic" : "perspective");
     const auto depth = renderer_->read_depth();
     const auto ids = renderer_->read_ids();
     ASSERT_TRUE(depth && ids);
@@ -91,7 +91,7 @@ TEST_F(SliceImage, EveryPixelOfAShearedGridHasItsTableColourDepthAndId) {
       for (std::uint32_t x = 0; x < packet.width; ++x) {
         const Met met = meet(camera, packet.slices[0], x + 0.5, y + 0.5);
         if (std::fabs(met.inside) < 0.01) continue;
-        const std::uint8_t* p = picture.pixel(x, y);
+        const std::uint8_t* p = image.pixel(x, y);
         const std::size_t at = y * packet.width + x;
         ASSERT_EQ(p[3], met.inside > 0 ? 255 : 0) << x << " " << y;
         ASSERT_EQ(ids->ids[at], met.inside > 0 ? 17u : 0u);
@@ -100,7 +100,7 @@ TEST_F(SliceImage, EveryPixelOfAShearedGridHasItsTableColourDepthAndId) {
         field::Cursor cursor;
         const auto color = table_color(kTable, grid->sample(met.world, cursor).value);
         for (std::size_t c = 0; c < 3; ++c) worst = std::max(worst, std::abs(int(std::lround(255 * color[c])) - int(p[c])));
-        // nearer by what puts it over surfaces in its plane: a share of its distance, and what a 128th of a pixel to either side is nearer
+        // minus the depth offset over coplanar surfaces: a fraction of the distance, and the slope over 1/128 pixel
         const auto beside = [&](double dx, double dy) {
           return std::fabs(meet(camera, packet.slices[0], x + 0.5 + dx, y + 0.5 + dy).view_depth - met.view_depth);
         };
@@ -114,11 +114,11 @@ TEST_F(SliceImage, EveryPixelOfAShearedGridHasItsTableColourDepthAndId) {
   }
 }
 
-/// Of a line one pixel and more wide: its darkness along a row or a column, as a place.
-double centroid(const Image8& picture, std::uint32_t from, std::uint32_t to, std::uint32_t row, double* sum_out = nullptr) {
+/// Position of a line in a row or a column, as the centroid of its darkness.
+double centroid(const Image8& image, std::uint32_t from, std::uint32_t to, std::uint32_t row, double* sum_out = nullptr) {
   double sum = 0, moment = 0;
   for (std::uint32_t x = from; x < to; ++x) {
-    const double dark = 1 - picture.pixel(x, row)[1] / 255.0;
+    const double dark = 1 - image.pixel(x, row)[1] / 255.0;
     sum += dark;
     moment += dark * (x + 0.5);
   }
@@ -126,34 +126,34 @@ double centroid(const Image8& picture, std::uint32_t from, std::uint32_t to, std
   return moment / sum;
 }
 
-/// x + 2 y on a plane seen at right angles: lines at x = level - 2 y, of the asked width across.
-TEST_F(SliceImage, LinesOfALinearFieldAreWhereTheyBelongAndAsWideAsAsked) {
+/// x + 2 y on a plane seen perpendicularly: contours at x = level - 2 y with the stated width.
+TEST_F(SliceImage, ContoursOfALinearFieldHaveTheirPositionAndWidth) {
   const auto grid = make_grid({33, 33, 9}, [](const Vec3& p) { return p.x + 2 * p.y; });
   FramePacket packet = make_packet({16, 16, 40}, {16, 16, 0});
   packet.view.up = {0, 1, 0};
   packet.view.orthographic = true;
-  packet.view.height = 30;  // 0.25 a pixel
+  packet.view.height = 30;  // 0.25 per pixel
   packet.background = {1, 1, 1, 1};
   packet.slices = {slice_of(grid, {0, 0, 4}, {0, 0, 1})};
   packet.slices[0].colors = {{0, 1, 1, 1}};
   packet.slices[0].contour_levels = {30.1, 48.33, 63};
   for (const double width : {1.0, 2.0, 5.0}) {
     packet.slices[0].line_width = float(width);
-    const Image8 picture = draw(packet, {}, "w" + std::to_string(int(width)));
+    const Image8 image = draw(packet, {}, "w" + std::to_string(int(width)));
     for (const double level : packet.slices[0].contour_levels)
       for (std::uint32_t row = 30; row < 90; row += 7) {
         const double y = 16 + (59.5 - row) * 0.25, x = level - 2 * y, px = 80 + (x - 16) / 0.25;
         if (px < 20 || px > 140) continue;
         double sum = 0;
-        EXPECT_NEAR(centroid(picture, std::uint32_t(px) - 12, std::uint32_t(px) + 13, row, &sum), px, 0.05) << level << " " << row;
-        // across a row the line is wider by 1 / cos of its slope
+        EXPECT_NEAR(centroid(image, std::uint32_t(px) - 12, std::uint32_t(px) + 13, row, &sum), px, 0.05) << level << " " << row;
+        // along a row the line is wider by 1 / cos of its slope
         EXPECT_NEAR(sum, width * std::sqrt(5.0), 0.02 * width + 0.1) << level << " " << row;
       }
   }
 }
 
-/// In perspective and askew: the darkest pixels lie where the plane, the level and the row meet.
-TEST_F(SliceImage, LinesInPerspectiveAreWithinATenthOfAPixel) {
+/// Oblique perspective view: the line is at the intersection of plane, level and row.
+TEST_F(SliceImage, ContoursInPerspectiveAreWithinATenthOfAPixel) {
   const auto grid = make_grid({32, 32, 32}, [](const Vec3& p) { return p.x - 0.3 * p.y + 0.5 * p.z; });
   FramePacket packet = make_packet({-10, -45, 40}, {15.5, 15.5, 15.5}, 40);
   packet.background = {1, 1, 1, 1};
@@ -161,7 +161,7 @@ TEST_F(SliceImage, LinesInPerspectiveAreWithinATenthOfAPixel) {
   packet.slices[0].colors = {{0, 1, 1, 1}};
   packet.slices[0].contour_levels = {12.3, 18.9, 24};
   packet.slices[0].line_width = 2;
-  const Image8 picture = draw(packet, {}, "lines");
+  const Image8 image = draw(packet, {}, "lines");
   const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
   const auto value = [&](double x, double y) {
     const Met met = meet(camera, packet.slices[0], x, y);
@@ -173,16 +173,16 @@ TEST_F(SliceImage, LinesInPerspectiveAreWithinATenthOfAPixel) {
       for (const double level : packet.slices[0].contour_levels) {
         const double a = value(x, row + 0.5), b = value(x + 1, row + 0.5);
         if (std::isnan(value(x - 10, row + 0.5)) || std::isnan(value(x + 10, row + 0.5)) || (a - level) * (b - level) >= 0) continue;
-        // flat lines blur along a row
+        // lines nearly parallel to a row are excluded
         if (std::fabs(value(x, row + 0.5) - value(x, row + 1.5)) > 1.5 * std::fabs(a - b)) continue;
-        EXPECT_NEAR(centroid(picture, x - 6, x + 7, row), x + (level - a) / (b - a), 0.1) << row << " " << level;
+        EXPECT_NEAR(centroid(image, x - 6, x + 7, row), x + (level - a) / (b - a), 0.1) << row << " " << level;
         ++found;
       }
   EXPECT_GT(found, 20);
 }
 
-/// A cone of trilinear cells: its line is a circle within what the grid itself leaves of one, and keeps its width.
-TEST_F(SliceImage, ACurvedLineKeepsItsWidthOverTheCells) {
+/// A cone on a trilinear grid: its contour is a circle up to the grid's error, and has a constant width.
+TEST_F(SliceImage, ACurvedContourKeepsItsWidthAcrossCells) {
   const auto grid = make_grid({33, 33, 5}, [](const Vec3& p) { return norm(Vec3(p.x - 16.2, p.y - 15.7, 0)); });
   FramePacket packet = make_packet({16, 16, 40}, {16, 16, 0});
   packet.view.up = {0, 1, 0};
@@ -193,14 +193,14 @@ TEST_F(SliceImage, ACurvedLineKeepsItsWidthOverTheCells) {
   packet.slices[0].colors = {{0, 1, 1, 1}};
   packet.slices[0].contour_levels = {9};
   packet.slices[0].line_width = 2;
-  const Image8 picture = draw(packet, {}, "circle");
+  const Image8 image = draw(packet, {}, "circle");
   for (int i = 0; i < 72; ++i) {
     const double angle = 2 * M_PI * i / 72;
-    const auto dark_at = [&](double r) {  // bilinear
+    const auto dark_at = [&](double r) {  // bilinear interpolation
       const double x = 80 + (16.2 + r * std::cos(angle) - 16) / 0.25 - 0.5, y = 60 - (15.7 + r * std::sin(angle) - 16) / 0.25 - 0.5;
       const auto i0 = std::uint32_t(x), j0 = std::uint32_t(y);
       const double u = x - i0, v = y - j0;
-      const auto d = [&](std::uint32_t a, std::uint32_t b) { return 1 - picture.pixel(a, b)[1] / 255.0; };
+      const auto d = [&](std::uint32_t a, std::uint32_t b) { return 1 - image.pixel(a, b)[1] / 255.0; };
       return (1 - v) * ((1 - u) * d(i0, j0) + u * d(i0 + 1, j0)) + v * ((1 - u) * d(i0, j0 + 1) + u * d(i0 + 1, j0 + 1));
     };
     double sum = 0, moment = 0;
@@ -213,8 +213,8 @@ TEST_F(SliceImage, ACurvedLineKeepsItsWidthOverTheCells) {
   }
 }
 
-/// The line of a level on a slice is where the isosurface of that level is cut.
-TEST_F(SliceImage, ALineLiesOnTheCutOfTheIsosurface) {
+/// The contour of a level on a slice is at the cut of the isosurface of that level.
+TEST_F(SliceImage, AContourIsAtTheCutOfTheIsosurface) {
   const auto grid = wavy_grid();
   FramePacket packet = make_packet(centre_of(*grid) + Vec3(0, 0, 8), centre_of(*grid));
   packet.view.up = {0, 1, 0};
@@ -232,11 +232,11 @@ TEST_F(SliceImage, ALineLiesOnTheCutOfTheIsosurface) {
   surface.level = 1.5;
   surface.color = {1, 0, 0};
   packet.isosurfaces = {surface};
-  packet.clip_planes = {{point, {0, 0, -1}}};  // from the plane downwards
+  packet.clip_planes = {{point, {0, 0, -1}}};  // keeps the part below the plane
   draw(packet, {}, "cut");
   const auto depth = renderer_->read_depth();
   ASSERT_TRUE(depth);
-  // beside the line, on the side where the surface begins at the plane, its depth is nearly the plane's
+  // next to the line, on the surface's side, the depth is nearly the plane's
   const double plane = 8 - 0.3;
   int checked = 0;
   for (std::uint32_t y = 2; y + 2 < packet.height; ++y)
@@ -259,7 +259,7 @@ TEST_F(SliceImage, MaskedAndUndefinedCellsAreTransparent) {
   FramePacket packet = make_packet({7.5, 7.5, 40}, {7.5, 7.5, 0});
   packet.view.up = {0, 1, 0};
   packet.view.orthographic = true;
-  packet.view.height = 24;  // 0.2 a pixel
+  packet.view.height = 24;  // 0.2 per pixel
   const auto column = [](double x) { return std::uint32_t(80 + (x - 7.5) / 0.2); };
   const auto row = [](double y) { return std::uint32_t(60 - (y - 7.5) / 0.2); };
   for (const float opacity : {1.0f, 0.5f}) {
@@ -278,17 +278,17 @@ TEST_F(SliceImage, MaskedAndUndefinedCellsAreTransparent) {
   }
 }
 
-TEST_F(SliceImage, PlanesInTheDomainsFacesAndTheirCornersAreDrawn) {
+TEST_F(SliceImage, SlicesInTheDomainsFacesAreDrawnCompletely) {
   const auto grid = make_grid({9, 9, 9}, [](const Vec3& p) { return p.x; });
   FramePacket packet = make_packet({4, 4, 40}, {4, 4, 0});
   packet.view.up = {0, 1, 0};
   packet.view.orthographic = true;
-  packet.view.height = 12;  // 0.1 a pixel
+  packet.view.height = 12;  // 0.1 per pixel
   for (const double z : {0.0, 8.0}) {
     packet.slices = {slice_of(grid, {0, 0, z}, {0, 0, z > 4 ? 1.0 : -1.0})};
-    const Image8 picture = draw(packet, {}, "z" + std::to_string(int(z)));
+    const Image8 image = draw(packet, {}, "z" + std::to_string(int(z)));
     int covered = 0;
-    for (std::size_t i = 3; i < picture.rgba.size(); i += 4) covered += picture.rgba[i] == 255;
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) covered += image.rgba[i] == 255;
     EXPECT_EQ(covered, 80 * 80) << z;
   }
   packet.slices = {slice_of(grid, {0, 0, 8.01}, {0, 0, 1})};
@@ -296,14 +296,14 @@ TEST_F(SliceImage, PlanesInTheDomainsFacesAndTheirCornersAreDrawn) {
   for (std::size_t i = 3; i < beyond.rgba.size(); i += 4) ASSERT_EQ(beyond.rgba[i], 0);
 }
 
-/// The clip planes cut it unless it says no; one that lies in a clip plane stays.
+/// Clip planes cut a slice unless "clip" is false; a slice in a clip plane is kept.
 TEST_F(SliceImage, ClipPlanesCutASliceAndKeepOneThatLiesInThem) {
   const auto grid = make_grid({17, 17, 17}, [](const Vec3& p) { return p.x; });
   FramePacket packet = make_packet({2, -14, 34}, {8, 8, 8}, 40);
   packet.slices = {slice_of(grid, {8, 8, 8}, {0.3, 0.2, 1})};
-  const auto covered = [](const Image8& picture) {
+  const auto covered = [](const Image8& image) {
     int n = 0;
-    for (std::size_t i = 3; i < picture.rgba.size(); i += 4) n += picture.rgba[i] == 255;
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) n += image.rgba[i] == 255;
     return n;
   };
   const int whole = covered(draw(packet, {}, "whole"));
@@ -317,7 +317,7 @@ TEST_F(SliceImage, ClipPlanesCutASliceAndKeepOneThatLiesInThem) {
   EXPECT_EQ(covered(draw(packet, {}, "unclipped")), whole);
 }
 
-TEST_F(SliceImage, ALitSliceIsShadedByItsNormalAndSlicesHideEachOther) {
+TEST_F(SliceImage, AShadedSliceUsesItsNormalAndSlicesHideEachOther) {
   const auto grid = make_grid({17, 17, 17}, [](const Vec3&) { return 0.5; });
   FramePacket packet = make_packet({8, -30, 8}, {8, 8, 8});
   packet.view.orthographic = true;
@@ -332,14 +332,14 @@ TEST_F(SliceImage, ALitSliceIsShadedByItsNormalAndSlicesHideEachOther) {
   for (const bool turned : {false, true}) {
     if (turned) std::swap(packet.slices[0], packet.slices[1]);
     const Image8 cross = draw(packet, {}, "cross");
-    // the blue one comes nearer on the right, the red one on the left
+    // the blue slice is nearer on the right, the red one on the left
     EXPECT_GT(cross.pixel(90, 60)[2], 100);
     EXPECT_EQ(cross.pixel(90, 60)[0], 0);
     EXPECT_EQ(cross.pixel(70, 60)[0], 255);
   }
 }
 
-/// A square of two triangles in z = 8, larger than the grids.
+/// A square of two triangles at z = 8, larger than the grids.
 MeshItem square_at_8() {
   auto geometry = std::make_shared<MeshGeometry>();
   geometry->vertices = {{-2.3, -2.1, 8}, {18.7, -2.2, 8}, {18.4, 18.9, 8}, {-2.6, 18.2, 8}};
@@ -351,9 +351,9 @@ MeshItem square_at_8() {
   return item;
 }
 
-/// Where a surface lies in a slice's plane the slice is over it at every pixel, from either side, whatever is opaque: the picture is that
-/// of the slice alone over that of the surface alone.
-TEST_F(SliceImage, ASliceLiesOverWhatLiesInItsPlane) {
+/// A slice is over a coplanar surface at every pixel, from both sides and for any opacity: the image equals the slice's image over the
+/// surface's image.
+TEST_F(SliceImage, ASliceIsDrawnOverCoplanarSurfaces) {
   const auto rising = make_grid({17, 17, 17}, [](const Vec3& p) { return p.z; });
   const auto even = make_grid({17, 17, 17}, [](const Vec3&) { return 1; });
   struct Eye {
@@ -412,8 +412,8 @@ TEST_F(SliceImage, ASliceLiesOverWhatLiesInItsPlane) {
   }
 }
 
-/// The atlas layout and the dense one draw the same.
-TEST_F(SliceImage, BricksAndDenseImagesAgree) {
+/// The atlas and the dense layout give the same image.
+TEST_F(SliceImage, AtlasAndDenseStorageDrawTheSameImage) {
   const auto grid = wavy_grid();
   FramePacket packet = make_packet(centre_of(*grid) + Vec3(2.5, -4, 3), centre_of(*grid));
   packet.slices = {slice_of(grid, centre_of(*grid), {0.5, -0.6, 0.9})};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Stereo pictures: where a ball lands in each eye against the closed form, and every packing against the eyes' own pictures, pixel by
-/// pixel, by an implementation on the processor.
+/// Stereo images: the position of a ball in each eye against the closed form, and every packing against the eyes' images, pixel by
+/// pixel, by an implementation on the CPU.
 #include <array>
 #include <cmath>
 
@@ -15,17 +15,17 @@ using namespace catena::render;
 
 class StereoImage : public ImageTest {
  protected:
-  /// The pictures of the packet's eyes, each drawn alone.
+  /// The images of the packet's eyes, each drawn separately.
   std::vector<Image8> each_eye(const FramePacket& packet) {
-    std::vector<Image8> pictures;
+    std::vector<Image8> images;
     for (const View& eye : packet.eyes) {
       FramePacket one = packet;
       one.view = eye;
       one.eyes.clear();
       one.packing = Packing::single;
-      pictures.push_back(draw(one));
+      images.push_back(draw(one));
     }
-    return pictures;
+    return images;
   }
 };
 
@@ -48,12 +48,12 @@ GridPtr ball_grid(const Vec3& centre) {
 struct Centroid {
   double x = 0, y = 0, weight = 0;
 };
-/// Of the alpha.
-Centroid centroid(const Image8& picture) {
+/// Centroid of the alpha.
+Centroid centroid(const Image8& image) {
   Centroid c;
-  for (std::uint32_t y = 0; y < picture.height; ++y)
-    for (std::uint32_t x = 0; x < picture.width; ++x) {
-      const double a = picture.pixel(x, y)[3];
+  for (std::uint32_t y = 0; y < image.height; ++y)
+    for (std::uint32_t x = 0; x < image.width; ++x) {
+      const double a = image.pixel(x, y)[3];
       c.x += a * (x + 0.5);
       c.y += a * (y + 0.5);
       c.weight += a;
@@ -66,7 +66,7 @@ Centroid centroid(const Image8& picture) {
 enum class Kind { volume, surface, tube };
 constexpr Kind kKinds[] = {Kind::volume, Kind::surface, Kind::tube};
 
-/// One small thing about the place: a cloud, a ball, or a star of tubes across the camera's axis.
+/// A small object at a position: a cloud, a ball, or a star of tubes perpendicular to the camera's axis.
 void add_ball(FramePacket& packet, Kind kind, const Vec3& centre, const Camera& camera) {
   if (kind == Kind::volume) packet.volumes.push_back(volume_item(ball_grid(centre), {{0.3, 0}, {1, 12}}, {1, 0.6f, 0.2f}));
   if (kind == Kind::surface) {
@@ -113,15 +113,15 @@ TEST_F(StereoImage, ABallHasTheDisparityOfItsDepthAndNoVerticalParallax) {
           one.view = pair[std::size_t(k)];
           in[k] = centroid(draw(one, reference_settings()));
         }
-        // the outline of a ball of radius r is centred at x z / (z^2 - r^2), that of a star across the axis at x / z
+        // the outline of a ball of radius r is centred at x z / (z^2 - r^2), that of a star at x / z
         const double r = kind == Kind::tube ? 0 : kRadius;
         const double slope = orthographic ? 1 - depth / zero : depth / (depth * depth - r * r) - 1 / zero;
         const double expected = -separation * slope * 0.5 * packet.height / c.half_height;
-        // hard edges have a rougher centroid than a cloud, and a tube's flat sides turn
+        // larger tolerance for hard edges and for the facets of tubes
         const double tolerance = kind == Kind::volume || depth == zero ? 0.02 : kind == Kind::surface ? 0.15 : 0.3;
         EXPECT_NEAR(in[1].x - in[0].x, expected, tolerance) << int(kind) << " at " << depth << (orthographic ? " orthographic" : "");
         EXPECT_NEAR(in[1].y, in[0].y, tolerance) << int(kind) << " at " << depth;
-        // crossed nearer, uncrossed beyond
+        // crossed disparity in front, uncrossed behind
         const double sign = depth < zero ? -1 : depth > zero ? 1 : 0;
         EXPECT_GE(sign * (in[1].x - in[0].x), std::fabs(sign));
       }
@@ -154,7 +154,7 @@ TEST_F(StereoImage, VolumeSurfaceAndTubeCoincideInEachEye) {
   }
 }
 
-/// Everything at once: a cloud, a surface and tubes at three depths, over nothing.
+/// A cloud, a surface and tubes at three depths on a transparent background.
 FramePacket busy_packet() {
   FramePacket packet = oblique_packet(false);
   packet.width = 96;
@@ -180,7 +180,7 @@ Rgba at(const Image8& p, std::size_t x, std::size_t y) {
   return {c[0] / 255.0, c[1] / 255.0, c[2] / 255.0, c[3] / 255.0};
 }
 
-/// Light through both glasses, weighted with alpha.
+/// Colour through both anaglyph filters, weighted with alpha.
 Rgba anaglyph(const Rgba& l, const Rgba& r, const double (&left)[3][3], const double (&right)[3][3]) {
   const double alpha = std::max(l[3], r[3]);
   Rgba out{0, 0, 0, alpha};
@@ -199,7 +199,7 @@ constexpr double kDuboisRight[3][3] = {
 constexpr double kGreyLeft[3][3] = {{0.2126, 0.7152, 0.0722}, {0, 0, 0}, {0, 0, 0}};
 constexpr double kGreyRight[3][3] = {{0, 0, 0}, {0.2126, 0.7152, 0.0722}, {0.2126, 0.7152, 0.0722}};
 
-/// The mean of a block of pixels, weighted with alpha.
+/// Alpha-weighted mean of a block of pixels.
 Rgba mean(const Image8& p, std::size_t x0, std::size_t y0, std::size_t nx, std::size_t ny) {
   Rgba sum{};
   for (std::size_t y = y0; y < y0 + ny; ++y)
@@ -214,7 +214,7 @@ Rgba mean(const Image8& p, std::size_t x0, std::size_t y0, std::size_t nx, std::
   return sum;
 }
 
-/// What the packed picture must show at (x, y).
+/// Expected pixel (x, y) of the packed image.
 Rgba expected(Packing packing, const std::vector<Image8>& e, std::size_t x, std::size_t y) {
   const std::size_t n = e.size(), w = e[0].width, h = e[0].height;
   switch (packing) {
@@ -258,22 +258,22 @@ constexpr Named kPackings[] = {{Packing::single, "single", 1, 1},
                                {Packing::columns, "columns", 1, 1},
                                {Packing::checkerboard, "checkerboard", 1, 1}};
 
-void expect_packed(Packing packing, const Image8& picture, const std::vector<Image8>& each, const char* name) {
+void expect_packed(Packing packing, const Image8& image, const std::vector<Image8>& each, const char* name) {
   double worst = 0;
-  for (std::uint32_t y = 0; y < picture.height; ++y)
-    for (std::uint32_t x = 0; x < picture.width; ++x) {
-      const Rgba want = expected(packing, each, x, y), have = at(picture, x, y);
+  for (std::uint32_t y = 0; y < image.height; ++y)
+    for (std::uint32_t x = 0; x < image.width; ++x) {
+      const Rgba want = expected(packing, each, x, y), have = at(image, x, y);
       worst = std::max(worst, std::fabs(want[3] - have[3]));
-      // the colour of what can hardly be seen is rounded away
+      // at low alpha the colour is lost to rounding
       for (std::size_t i = 0; i < 3; ++i) worst = std::max(worst, std::fabs(want[i] - have[i]) * (want[3] > 0 ? 1 : 0));
     }
   const bool computed = packing == Packing::anaglyph || packing == Packing::anaglyph_gray || packing == Packing::side_by_side_half ||
                         packing == Packing::top_bottom_half;
-  // how halves of 1/255 are rounded is a driver's choice
+  // the rounding of halves of 1/255 depends on the driver
   EXPECT_LE(255 * worst, !computed ? 0 : uses_lavapipe() ? 0.51 : 0.6) << name;
 }
 
-TEST_F(StereoImage, EveryPackingIsMadeOfTheEyesOwnPictures) {
+TEST_F(StereoImage, EveryPackingMatchesTheEyesImages) {
   for (const bool transparent : {true, false}) {
     FramePacket packet = busy_packet();
     if (!transparent) packet.background = {0.1f, 0.15f, 0.3f, 1};
@@ -282,10 +282,10 @@ TEST_F(StereoImage, EveryPackingIsMadeOfTheEyesOwnPictures) {
     ASSERT_GT(max_difference(each[0], each[1]), 100) << "the eyes see the same";
     for (const Named& named : kPackings) {
       packet.packing = named.packing;
-      const Image8 picture = draw(packet, {}, std::string(named.name) + (transparent ? "-transparent" : ""));
-      ASSERT_EQ(picture.width, packet.width * named.width_factor) << named.name;
-      ASSERT_EQ(picture.height, packet.height * named.height_factor) << named.name;
-      expect_packed(named.packing, picture, each, named.name);
+      const Image8 image = draw(packet, {}, std::string(named.name) + (transparent ? "-transparent" : ""));
+      ASSERT_EQ(image.width, packet.width * named.width_factor) << named.name;
+      ASSERT_EQ(image.height, packet.height * named.height_factor) << named.name;
+      expect_packed(named.packing, image, each, named.name);
     }
   }
 }
@@ -299,11 +299,11 @@ TEST_F(StereoImage, ThreeViewsAndOddSizes) {
   for (const Packing packing : {Packing::side_by_side, Packing::side_by_side_half, Packing::top_bottom, Packing::top_bottom_half,
                                 Packing::rows, Packing::columns, Packing::checkerboard}) {
     packet.packing = packing;
-    const Image8 picture = draw(packet, {}, "three-" + std::to_string(int(packing)));
+    const Image8 image = draw(packet, {}, "three-" + std::to_string(int(packing)));
     const PackedSize size = packed_size(packing, 3, 95, 71);
-    ASSERT_EQ(picture.width, size.width);
-    ASSERT_EQ(picture.height, size.height);
-    expect_packed(packing, picture, each, "three");
+    ASSERT_EQ(image.width, size.width);
+    ASSERT_EQ(image.height, size.height);
+    expect_packed(packing, image, each, "three");
   }
   packet.packing = Packing::anaglyph;
   const auto drawn = renderer_->draw(packet);
@@ -311,7 +311,7 @@ TEST_F(StereoImage, ThreeViewsAndOddSizes) {
   EXPECT_NE(drawn.error().message.find("3 views"), std::string::npos) << drawn.error().message;
 }
 
-TEST_F(StereoImage, ThePlainViewComesBackAfterAPair) {
+TEST_F(StereoImage, TheMonoViewReturnsAfterAPair) {
   FramePacket packet = busy_packet();
   const Image8 before = draw(packet);
   packet.eyes = make_stereo_views(packet.view, aspect(packet), {2, 0.3, 8.0});
@@ -321,7 +321,7 @@ TEST_F(StereoImage, ThePlainViewComesBackAfterAPair) {
   EXPECT_EQ(max_difference(before, draw(packet)), 0);
 }
 
-TEST_F(StereoImage, DepthIsTheFirstEyes) {
+TEST_F(StereoImage, DepthIsThatOfTheFirstEye) {
   FramePacket packet = busy_packet();
   packet.eyes = make_stereo_views(packet.view, aspect(packet), {2, 0.3, 8.0});
   FramePacket left = packet;
@@ -338,7 +338,7 @@ TEST_F(StereoImage, DepthIsTheFirstEyes) {
   EXPECT_EQ(alone->depth, pair->depth);
 }
 
-TEST_F(StereoImage, GridsAndTablesAreMadeOnce) {
+TEST_F(StereoImage, GridsAndTablesAreUploadedOnce) {
   FramePacket packet = busy_packet();
   draw(packet);
   const RenderStats mono = renderer_->stats();
@@ -349,8 +349,8 @@ TEST_F(StereoImage, GridsAndTablesAreMadeOnce) {
   EXPECT_EQ(renderer_->stats().resident_grids, mono.resident_grids);
 }
 
-TEST_F(StereoImage, AScreenInTheRoomShowsWhatLiesOnItAtItsPlace) {
-  // pixels that are not square, the eye off the screen's middle
+TEST_F(StereoImage, APointOnADisplayScreenIsAtItsPosition) {
+  // non-square pixels, the eye off the screen's centre
   constexpr double half_width = 0.9, half_height = 0.6;
   const auto view = make_screen_view({{-half_width, 0.0, -half_height}, {half_width, 0.0, -half_height}, {-half_width, 0.0, half_height}},
                                      {1.2, -6.0, 0.3});

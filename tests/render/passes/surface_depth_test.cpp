@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Depth truth: every pixel's depth of an opaque isosurface against an intersection that shares nothing with the shader: in double
-// precision, the ray is cut at all cell faces, the cubic of a cell is fitted through four samples of the trilinear interpolant, and
-// its first root is bisected between its extrema.
+// Depth of every pixel of an opaque isosurface against an independent intersection in double precision: the ray is split at all cell
+// faces, the cubic of a cell is fitted through four samples of the trilinear interpolant, and its first root is bisected between its
+// extrema.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -14,7 +14,7 @@ namespace surface_depth_test {
 
 using namespace catena::render;
 
-/// Voxels and cells of a grid, read once.
+/// Values and valid cells of a grid, read once.
 struct Voxels {
   field::Index3 n;
   std::vector<float> values;
@@ -40,7 +40,7 @@ struct Voxels {
   }
 };
 
-/// What a ray finds: the depths where the level is crossed, and how far the value swings beyond the level behind each crossing.
+/// A crossing of the level along a ray: its depth, and the maximum deviation from the level behind it.
 struct Crossing {
   double t = HUGE_VAL;
   double swing = 0;
@@ -114,9 +114,9 @@ class Truth {
 
 class SurfaceDepth : public ImageTest {
  protected:
-  /// Draws and compares every pixel. A grazing pixel (within 1e-5 of the values' range of the level, but beyond it or not only in exact
-  /// arithmetic) may take either answer; there may be few of them.
-  void compare(const FramePacket& packet, const RenderSettings& settings, const std::string& name, int least_hits) {
+  /// Draws and compares every pixel. For grazing rays (within 1e-5 of the value range from the level) both results are accepted; their
+  /// number is limited.
+  void compare(const FramePacket& packet, const RenderSettings& settings, const std::string& name, int min_hits) {
     const field::ScalarGrid& grid = *packet.isosurfaces[0].grid;
     const double level = packet.isosurfaces[0].level, tolerance = 1e-5 * (grid.max_value() - grid.min_value());
     draw(packet, settings, name);
@@ -151,7 +151,7 @@ class SurfaceDepth : public ImageTest {
           worst = std::max(worst, off);
           continue;
         }
-        // the surface was found where the field only touches the level, or a touch was passed
+        // a tangential touch of the level was found or missed
         bool touches = false;
         if (std::isfinite(found)) {
           const Vec3 p = o + found * d;
@@ -159,7 +159,7 @@ class SurfaceDepth : public ImageTest {
         } else {
           touches = all[0].swing <= tolerance;
         }
-        // or the exact ray leaves the domain beside the crossing
+        // or the ray leaves the domain next to the crossing
         const double end = std::min(std::fabs(found - from), std::fabs(found - to)),
                      other = std::min(std::fabs(expected - from), std::fabs(expected - to));
         if (touches || std::min(end, other) * norm(d) <= 1e-4)
@@ -169,7 +169,7 @@ class SurfaceDepth : public ImageTest {
           if (wrong <= 5) ADD_FAILURE() << name << ": pixel " << x << " " << y << " found " << found << " expected " << expected;
         }
       }
-    EXPECT_GT(hits, least_hits) << name;
+    EXPECT_GT(hits, min_hits) << name;
     EXPECT_EQ(wrong, 0) << name;
     EXPECT_LE(grazing, 10) << name;
     RecordProperty("worst_voxels_" + name, std::to_string(worst));
@@ -206,7 +206,7 @@ FramePacket packet_of_surface(GridPtr grid, double level, const Vec3& towards_ey
   return packet;
 }
 
-TEST_F(SurfaceDepth, WhiteNoise) {
+TEST_F(SurfaceDepth, DepthOfWhiteNoise) {
   const auto grid = random_grid({64, 64, 64}, 1, 0);
   compare(packet_of_surface(grid, 0.5, {1, -0.7, 0.6}, 190), {}, "dense", 8000);
   compare(packet_of_surface(grid, 0.97, {-0.3, -1, 0.4}, 190), {}, "sparse level", 100);
@@ -215,7 +215,7 @@ TEST_F(SurfaceDepth, WhiteNoise) {
   compare(packet_of_surface(grid, 0.9, {1, 0.8, -0.5}, 190), atlas, "atlas", 2000);
 }
 
-TEST_F(SurfaceDepth, WithoutTheMapOfCells) {
+TEST_F(SurfaceDepth, DepthWithoutTheCellMap) {
   const auto grid = random_grid({37, 21, 50}, 6, 0.9);
   for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas}) {
     RenderSettings settings;
@@ -225,14 +225,14 @@ TEST_F(SurfaceDepth, WithoutTheMapOfCells) {
   }
 }
 
-TEST_F(SurfaceDepth, SmoothNoiseOnASmallOddGrid) {
+TEST_F(SurfaceDepth, DepthOfSmoothNoiseOnASmallOddGrid) {
   const auto grid = random_grid({37, 21, 50}, 2, 0.97);
   compare(packet_of_surface(grid, 0.55, {1, -0.7, 0.6}, 110), {}, "smooth", 3000);
   compare(packet_of_surface(grid, 0.5, {0.02, -1, 0.01}, 110), {}, "along an axis", 3000);
   compare(packet_of_surface(grid, 0.5, {0, 1, 0}, 90), {}, "exactly along an axis", 3000);
 }
 
-TEST_F(SurfaceDepth, TurnedAndSheared) {
+TEST_F(SurfaceDepth, DepthOnRotatedAndShearedGrids) {
   const Mat3 linear = Mat3(0.8, 0.3, 0.1, -0.4, 1.1, 0.2, 0.1, 0.05, 1.7);
   const auto grid = random_grid({40, 32, 28}, 3, 0.8, field::Mapping::from_linear(linear, {-300, 40, 3}));
   compare(packet_of_surface(grid, 0.45, {1, -0.7, 0.6}, 120), {}, "perspective", 4000);
@@ -242,7 +242,7 @@ TEST_F(SurfaceDepth, TurnedAndSheared) {
   compare(packet, {}, "orthographic", 4000);
 }
 
-TEST_F(SurfaceDepth, EyeInside) {
+TEST_F(SurfaceDepth, DepthFromInside) {
   const auto grid = random_grid({64, 64, 64}, 4, 0.95);
   compare(packet_of_surface(grid, 0.5, {1, -0.3, 0.2}, 12, 70), {}, "inside", 15000);
   FramePacket packet = packet_of_surface(grid, 0.5, {1, -0.3, 0.2}, 5);
@@ -251,7 +251,7 @@ TEST_F(SurfaceDepth, EyeInside) {
   compare(packet, {}, "inside, orthographic", 15000);
 }
 
-TEST_F(SurfaceDepth, MaskedCells) {
+TEST_F(SurfaceDepth, DepthWithMaskedCells) {
   const auto grid = random_grid({48, 40, 44}, 5, 0.9, {}, 0.02);
   for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas}) {
     RenderSettings settings;
@@ -260,8 +260,8 @@ TEST_F(SurfaceDepth, MaskedCells) {
   }
 }
 
-TEST_F(SurfaceDepth, OfSeveralSurfacesTheNearest) {
-  // each alone, then together, with one that is nowhere and one behind the eye
+TEST_F(SurfaceDepth, DepthOfSeveralSurfacesIsTheNearest) {
+  // each surface alone, then together, with one that has no crossing and one behind the camera
   const auto ball = [](const Vec3& at) {
     return make_grid(
         {24, 24, 24}, [](const Vec3& p) { return norm(p - Vec3(11.5)); }, field::Mapping::from_linear(Mat3(1.0), at));
@@ -306,8 +306,8 @@ TEST_F(SurfaceDepth, OfSeveralSurfacesTheNearest) {
   EXPECT_GT(hits, 1200);
 }
 
-TEST_F(SurfaceDepth, ATentOfOneVoxel) {
-  // one voxel above the level in a constant field: its tent must not be lost, however little it reaches over
+TEST_F(SurfaceDepth, DepthOfASurfaceAroundOneVoxel) {
+  // one voxel slightly above the level in a constant field: its surface must not be missed
   const auto grid = make_grid({20, 20, 20}, [](const Vec3& p) { return p.x == 9 && p.y == 10 && p.z == 8 ? 1.0 : 0.0; });
   FramePacket packet = packet_of_surface(grid, 0.9, {1, -0.7, 0.6}, 60, 2.5);
   packet.view.target = {9, 10, 8};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Translucent meshes and slices, by themselves, with each other, with volumes, isosurfaces and opaque things: against closed forms.
+/// Translucent meshes and slices, alone and with each other, volumes, isosurfaces and opaque objects, against closed forms.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ using namespace catena::render;
 
 class Translucent : public ImageTest {};
 
-/// Along y from -40, orthographic; one pixel is 0.25 units, the middle is (10, 10).
+/// Orthographic view along y from -40; 0.25 units per pixel, centre (10, 10).
 FramePacket along_y() {
   FramePacket packet;
   packet.width = packet.height = 120;
@@ -57,13 +57,13 @@ mesh::TriangleSoup wall(double slope) {
   return soup;
 }
 
-/// Seen at a cosine n: the share of the colour, and the white highlight.
+/// Colour factor and white highlight at cosine n between normal and view.
 struct Light {
   double share, white;
 };
 Light light(double n) { return {0.2 + 0.7 * n, 0.2 * std::pow(std::max(0.0, 2 * n * n - 1), 20)}; }
 
-/// What a ray gathers, front to back, in 255ths.
+/// Colour and transmittance accumulated front to back along a ray, in 255ths.
 struct Ray {
   double through = 1;
   std::array<double, 3> sum{};
@@ -74,9 +74,9 @@ struct Ray {
   void fog(double sigma, double length) { meet({1, 1, 1}, 1 - std::exp(-sigma * length)); }
 };
 
-/// LineSegment alpha, as pictures are.
-void expect_pixel(const Image8& picture, std::uint32_t x, std::uint32_t y, const Ray& ray, double tolerance = 2) {
-  const std::uint8_t* p = picture.pixel(x, y);
+/// Compares a pixel, which has straight alpha, with the ray.
+void expect_pixel(const Image8& image, std::uint32_t x, std::uint32_t y, const Ray& ray, double tolerance = 2) {
+  const std::uint8_t* p = image.pixel(x, y);
   const double alpha = 1 - ray.through;
   EXPECT_NEAR(p[3], 255 * alpha, tolerance) << x << " " << y;
   if (alpha < 0.02) return;
@@ -87,7 +87,7 @@ std::array<double, 3> lit_color(const std::array<double, 3>& color, const Light&
   return {l.share * color[0] + l.white, l.share * color[1] + l.white, l.share * color[2] + l.white};
 }
 
-TEST_F(Translucent, TwoWallsThatCrossWithinAFogAreInOrderOnBothSides) {
+TEST_F(Translucent, TwoCrossingWallsInFogAreInOrderOnBothSides) {
   constexpr double sigma = 0.05, slope = 0.6, a = 0.5, b = 0.3;
   const Light l = light(1 / std::sqrt(1 + slope * slope));
   const auto red = lit_color({1, 0, 0}, l), blue = lit_color({0, 0, 1}, l);
@@ -97,9 +97,9 @@ TEST_F(Translucent, TwoWallsThatCrossWithinAFogAreInOrderOnBothSides) {
       if (fog) packet.volumes = {volume_item(cube(), {{0, sigma}, {20, sigma}})};
       packet.meshes = {mesh_item(wall(slope), {1, 0, 0}, float(a), 1), mesh_item(wall(-slope), {0, 0, 1}, float(b), 2)};
       if (turned) std::swap(packet.meshes[0], packet.meshes[1]);
-      const Image8 picture = draw(packet, {}, std::string(fog ? "fog" : "clear") + (turned ? "_turned" : ""));
+      const Image8 image = draw(packet, {}, std::string(fog ? "fog" : "clear") + (turned ? "_turned" : ""));
       for (std::uint32_t x = 24; x < 98; x += 3) {
-        const double offset = (x + 0.5 - 60) * 0.25 * slope;  // of the red wall, from y = 10
+        const double offset = (x + 0.5 - 60) * 0.25 * slope;  // offset of the red wall from y = 10
         if (std::fabs(offset) < 0.1) continue;
         const double first = 10 - std::fabs(offset), second = 10 + std::fabs(offset);
         const double s = fog ? sigma : 0;
@@ -109,13 +109,13 @@ TEST_F(Translucent, TwoWallsThatCrossWithinAFogAreInOrderOnBothSides) {
         ray.fog(s, second - first);
         offset < 0 ? ray.meet(blue, b) : ray.meet(red, a);
         ray.fog(s, 20 - second);
-        expect_pixel(picture, x, 55, ray);
+        expect_pixel(image, x, 55, ray);
       }
-      expect_pixel(picture, 10, 55, {});
+      expect_pixel(image, 10, 55, {});
     }
 }
 
-TEST_F(Translucent, AClosedMeshCountsTwice) {
+TEST_F(Translucent, AClosedMeshIsBlendedTwice) {
   FramePacket packet = along_y();
   packet.meshes = {mesh_item(box_soup({5, 5, 5}, {15, 15, 15}), {0, 0.5f, 0}, 0.4f)};
   const auto green = lit_color({0, 0.5, 0}, light(1));
@@ -126,7 +126,7 @@ TEST_F(Translucent, AClosedMeshCountsTwice) {
   expect_pixel(whole, 60, 60, both);
   expect_pixel(whole, 45, 70, both);
   expect_pixel(whole, 20, 60, {});
-  // cut open: the inside is seen and lit as well
+  // clipped: the inside is also visible and shaded
   packet.clip_planes = {{{0, 8, 0}, {0, 1, 0}}};
   expect_pixel(draw(packet, {}, "open"), 60, 60, once);
   packet.meshes[0].opacity = 1;
@@ -143,7 +143,7 @@ TEST_F(Translucent, AClosedMeshCountsTwice) {
   EXPECT_NEAR(before->depth[60 * 120 + 60], 45, 1e-4);
 }
 
-TEST_F(Translucent, AnOpaqueSurfaceHidesWhatLiesBehindAndShowsThroughWhatLiesBefore) {
+TEST_F(Translucent, AnOpaqueSurfaceHidesLayersBehindItAndIsVisibleThroughThoseInFront) {
   const auto red = lit_color({1, 0, 0}, light(1));
   for (const double at : {6.0, 14.0}) {
     FramePacket packet = along_y();
@@ -155,13 +155,13 @@ TEST_F(Translucent, AnOpaqueSurfaceHidesWhatLiesBehindAndShowsThroughWhatLiesBef
     mesh::TriangleSoup soup;
     add_quad(soup, {0, at, 0}, {20, at, 0}, {20, at, 20}, {0, at, 20});
     packet.meshes = {mesh_item(soup, {1, 0, 0}, 0.5f)};
-    const Image8 picture = draw(packet, {}, "mesh" + std::to_string(int(at)));
+    const Image8 image = draw(packet, {}, "mesh" + std::to_string(int(at)));
     const auto grey = lit_color({0.5, 0.5, 0.5}, light(1));
     Ray ray;
     if (at < 10) ray.meet(red, 0.5);
     ray.meet({std::min(1.0, grey[0]), std::min(1.0, grey[1]), std::min(1.0, grey[2])}, 1);
-    expect_pixel(picture, 60, 60, ray);
-    // a slice in place of the mesh, which is not lit
+    expect_pixel(image, 60, 60, ray);
+    // an unshaded slice instead of the mesh
     packet.meshes.clear();
     packet.slices = {slice_at(cube(), at, {1, 0, 0}, 0.5f)};
     Ray second;
@@ -191,7 +191,7 @@ TEST_F(Translucent, SlicesAndTranslucentIsosurfacesAreInOrder) {
   ray.meet({0, 0, 1}, 0.7);
   ray.fog(0.02, 5);
   expect_pixel(draw(packet, {}, "exact"), 60, 60, ray);
-  // the fast raycast steps back where there are layers
+  // the fast raycast is replaced by exact rays if there are layers
   packet.isosurfaces.clear();
   RenderSettings settings;
   settings.fast = FastSettings{1, 1, -1, -1};
@@ -204,8 +204,8 @@ TEST_F(Translucent, SlicesAndTranslucentIsosurfacesAreInOrder) {
   expect_pixel(draw(packet, settings, "fast"), 60, 60, without);
 }
 
-/// Up to four things exactly; of more, the fourth and all behind it as passes.h says.
-TEST_F(Translucent, FourLayersAreExactAndTheRestIsTheirMean) {
+/// Up to four layers are exact; of more, the fourth and all behind it are averaged as in passes.h.
+TEST_F(Translucent, FourLayersAreExactAndFurtherOnesAreAveraged) {
   const std::vector<std::array<double, 3>> colors{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}};
   const double alphas[] = {0.3, 0.4, 0.2, 0.5, 0.6, 0.7};
   const auto grid = cube();
@@ -230,11 +230,11 @@ TEST_F(Translucent, FourLayersAreExactAndTheRestIsTheirMean) {
       for (double& m : mean) m /= weight;
       ray.meet(mean, 1 - through);
     }
-    const Image8 picture = draw(packet, {}, std::to_string(count));
-    expect_pixel(picture, 60, 60, ray, 1.5);
+    const Image8 image = draw(packet, {}, std::to_string(count));
+    expect_pixel(image, 60, 60, ray, 1.5);
     std::reverse(packet.slices.begin(), packet.slices.end());
-    EXPECT_LE(max_difference(picture, draw(packet)), 1) << count;
-    // a mesh far off at the side: the same number of layers for every scene with meshes, the same colours
+    EXPECT_LE(max_difference(image, draw(packet)), 1) << count;
+    // with a distant mesh the layer count changes, the colours do not
     mesh::TriangleSoup aside;
     add_quad(aside, {-4, 3, 8}, {-3, 3, 8}, {-3, 3, 12}, {-4, 3, 12});
     packet.meshes = {mesh_item(aside, {1, 1, 1}, 0.5f, 99)};
@@ -242,22 +242,22 @@ TEST_F(Translucent, FourLayersAreExactAndTheRestIsTheirMean) {
   }
 }
 
-TEST_F(Translucent, CoincidentThingsAreBothKept) {
+TEST_F(Translucent, CoincidentLayersAreBothBlended) {
   const auto grid = cube();
   for (const bool turned : {false, true}) {
     FramePacket packet = along_y();
     packet.slices = {slice_at(grid, 10, {1, 0, 0}, 0.5f, 1), slice_at(grid, 10, {0, 1, 0}, 0.5f, 2)};
     if (turned) std::swap(packet.slices[0], packet.slices[1]);
-    const Image8 picture = draw(packet, {}, turned ? "turned" : "same");
+    const Image8 image = draw(packet, {}, turned ? "turned" : "same");
     int off = 0;
     for (std::uint32_t y = 21; y < 99; ++y)
-      for (std::uint32_t x = 21; x < 99; ++x) off += std::abs(picture.pixel(x, y)[3] - 191) > 1;
+      for (std::uint32_t x = 21; x < 99; ++x) off += std::abs(image.pixel(x, y)[3] - 191) > 1;
     EXPECT_EQ(off, 0) << turned;
   }
 }
 
-/// Where nothing is translucent there are neither layers nor a raycast.
-TEST_F(Translucent, LayersExistOnlyWhereSomethingIsTranslucent) {
+/// Without translucent objects there are neither layers nor a raycast.
+TEST_F(Translucent, LayersExistOnlyWithTranslucentObjects) {
   const auto has = [&](const char* name) {
     const auto passes = renderer_->stats().passes;
     return std::find(passes.begin(), passes.end(), name) != passes.end();
@@ -278,7 +278,7 @@ TEST_F(Translucent, LayersExistOnlyWhereSomethingIsTranslucent) {
   const Image8 nothing = draw(packet, {}, "nothing");
   EXPECT_FALSE(has("layers") || has("slices") || has("meshes"));
   for (const std::uint8_t v : nothing.rgba) ASSERT_EQ(v, 0);
-  // the lines of an invisible slice are seen
+  // the contours of an invisible slice are visible
   packet.slices[0].contour_levels = {10};
   packet.slices[0].normal = {0, 0.6, 0.8};
   packet.slices[0].point = {10, 10, 10};
@@ -294,12 +294,12 @@ TEST_F(Translucent, LayersExistOnlyWhereSomethingIsTranslucent) {
   packet.slices[0].point = {0, 10, 0};
   packet.slices[0].normal = {0, 1, 0};
   draw(packet);
-  const std::uint64_t rounding = uses_lavapipe() ? 0 : 1 << 16;  // of a GPU's images
+  const std::uint64_t rounding = uses_lavapipe() ? 0 : 1 << 16;  // alignment of a GPU's images
   EXPECT_LE(renderer_->stats().gpu_bytes, before + 16 * 120 * 120 + rounding) << "the target of the raycast alone stays";
 }
 
-/// Tiles and eyes: a part of the frustum draws the same part of the picture.
-TEST_F(Translucent, AWindowShowsItsPartOfThePicture) {
+/// A window of the frustum draws the corresponding part of the image.
+TEST_F(Translucent, AWindowShowsItsPartOfTheImage) {
   FramePacket packet = make_packet({-14, -30, 26}, {10, 10, 10}, 40);
   packet.volumes = {volume_item(cube(), {{0, 0.02}, {20, 0.05}})};
   packet.meshes = {mesh_item(sphere_soup(4, 7, {10, 10, 10}), {1, 0.4f, 0.1f}, 0.4f, 1)};
@@ -315,11 +315,11 @@ TEST_F(Translucent, AWindowShowsItsPartOfThePicture) {
   packet.height /= 2;
   packet.view.window = {0, 1, 0, 1};  // right and upper half
   const Image8 part = draw(packet, {}, "part");
-  int most = 0;
+  int maximum = 0;
   for (std::uint32_t y = 0; y < part.height; ++y)
     for (std::uint32_t x = 0; x < part.width; ++x)
-      for (int c = 0; c < 4; ++c) most = std::max(most, std::abs(int(part.pixel(x, y)[c]) - int(whole.pixel(x + 80, y)[c])));
-  EXPECT_LE(most, 3);
+      for (int c = 0; c < 4; ++c) maximum = std::max(maximum, std::abs(int(part.pixel(x, y)[c]) - int(whole.pixel(x + 80, y)[c])));
+  EXPECT_LE(maximum, 3);
 }
 
 }  // namespace translucent_test

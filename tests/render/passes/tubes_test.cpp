@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tubes that the vertex shader makes of rings: the picture of the triangles that add_tube makes, in a fraction of their memory.
+// Tubes expanded from rings in the vertex shader: the image of add_tube's triangles with a fraction of their memory.
 #include "render/passes/tubes.h"
 
 #include <cmath>
@@ -30,7 +30,7 @@ TubeItem bent(double radius, const Vec3& middle, double turns, int count) {
   return tube;
 }
 
-/// An open one, a closed one, a ball, two that follow each other, a corner; of 8, 12 and 16 sides.
+/// An open and a closed tube, a ball, two consecutive tubes and a corner, with 8, 12 and 16 sides.
 std::vector<TubeItem> some_tubes() {
   TubeItem ball, corner;
   ball.points = {{9, 2, 9}};
@@ -43,7 +43,7 @@ std::vector<TubeItem> some_tubes() {
           bent(0.05, {0, 0, 0}, 0.7, 30)};
 }
 
-/// The same as meshes, round ones.
+/// The tubes as triangle meshes.
 std::vector<MeshItem> as_meshes(const std::vector<TubeItem>& tubes) {
   std::vector<MeshItem> meshes;
   for (const TubeItem& tube : tubes) {
@@ -65,8 +65,8 @@ std::vector<MeshItem> as_meshes(const std::vector<TubeItem>& tubes) {
   return meshes;
 }
 
-/// Ribbons in a small picture, sides in a large one.
-TEST_F(TubesTest, ThePictureIsThatOfRoundTubes) {
+/// Small images draw ribbons, large ones tubes with sides.
+TEST_F(TubesTest, MatchesTheImageOfTriangulatedTubes) {
   for (const std::uint32_t width : {192u, 1536u})
     for (const bool clipped : {false, true}) {
       FramePacket packet;
@@ -75,7 +75,7 @@ TEST_F(TubesTest, ThePictureIsThatOfRoundTubes) {
       packet.view.position = {3, -30, 12};
       packet.view.target = {0, 0, 0};
       packet.background = {0.1f, 0.1f, 0.15f, 1};
-      // cut open: into the tubes can be seen; lit from the side
+      // clipped open, with light from the side
       if (clipped) {
         packet.clip_planes = {{Vec3(0, 0.1, 0), Vec3(0.1, 1, 0)}};
         packet.lights = {{.direction = {1, -0.5, 0.3}, .color = {1, 1, 1}, .camera_relative = true}};
@@ -89,10 +89,10 @@ TEST_F(TubesTest, ThePictureIsThatOfRoundTubes) {
       int other = 0, drawn = 0;
       for (std::uint32_t y = 0; y < a.height; ++y)
         for (std::uint32_t x = 0; x < a.width; ++x) {
-          int most = 0;
-          for (int c = 0; c < 3; ++c) most = std::max(most, std::abs(a.pixel(x, y)[c] - b.pixel(x, y)[c]));
-          sum += most;
-          other += most > 50;
+          int maximum = 0;
+          for (int c = 0; c < 3; ++c) maximum = std::max(maximum, std::abs(a.pixel(x, y)[c] - b.pixel(x, y)[c]));
+          sum += maximum;
+          other += maximum > 50;
           drawn += std::abs(b.pixel(x, y)[0] - 26) > 3;
         }
       EXPECT_GT(drawn, width * width / 40) << name;
@@ -101,7 +101,7 @@ TEST_F(TubesTest, ThePictureIsThatOfRoundTubes) {
     }
 }
 
-TEST_F(TubesTest, APointOfALineTakesLessThanAHundredBytesOfTheDevice) {
+TEST_F(TubesTest, APointTakesLessThanAHundredBytesOfDeviceMemory) {
   FramePacket packet;
   packet.width = 32;
   packet.height = 24;
@@ -112,7 +112,7 @@ TEST_F(TubesTest, APointOfALineTakesLessThanAHundredBytesOfTheDevice) {
     draw(packet);
     return renderer_->stats().gpu_bytes;
   };
-  // beyond one piece's indices
+  // more points than one draw's indices
   const auto some = bytes(100), more = bytes(300);
   EXPECT_LT(double(more - some) / (200 * 1000), 100) << "triangles take more than 500";
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is drawn over a window's picture: known pixels, to 1/255.
+// UI items over a window's image, against known pixels within 1/255.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ constexpr std::uint32_t rgba(std::uint32_t r, std::uint32_t g, std::uint32_t b, 
 
 constexpr std::array<float, 4> kAll{-1e9f, -1e9f, 1e9f, 1e9f};
 
-/// Two triangles; a draw of its own.
+/// Adds a rectangle of two triangles as one draw.
 void add_rectangle(UiItems& ui, std::array<float, 4> box, std::uint32_t color, std::array<float, 4> clip = kAll,
                    std::shared_ptr<const UiTexture> texture = nullptr) {
   const auto first = std::uint32_t(ui.vertices.size());
@@ -41,7 +41,7 @@ void expect_pixel(const Image8& p, std::uint32_t x, std::uint32_t y, const Color
 
 class Ui : public ImageTest {
  protected:
-  /// One colour everywhere.
+  /// Draws an image of one colour.
   void draw_plain(std::uint32_t width, std::uint32_t height, const Color& color) {
     FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
     packet.width = width;
@@ -49,7 +49,7 @@ class Ui : public ImageTest {
     packet.background = {float(color[0]) / 255, float(color[1]) / 255, float(color[2]) / 255, 1};
     ASSERT_TRUE(renderer_->draw(packet));
   }
-  /// A ball on a dark ground.
+  /// A ball on a dark background.
   Image8 draw_ball(std::uint32_t width, std::uint32_t height) {
     FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
     packet.width = width;
@@ -63,19 +63,19 @@ class Ui : public ImageTest {
   Image8 paint(std::uint32_t width, std::uint32_t height, const UiItems& ui, const std::string& name = "") {
     const auto painted = renderer_->paint_window(width, height, ui);
     EXPECT_TRUE(painted) << (painted ? "" : painted.error().message);
-    auto picture = renderer_->read_back_window();
-    EXPECT_TRUE(picture);
+    auto image = renderer_->read_back_window();
+    EXPECT_TRUE(image);
     if (!name.empty()) {
       const auto* test = testing::UnitTest::GetInstance()->current_test_info();
       const std::string folder = test::binary_dir() + "/pictures";
       std::filesystem::create_directories(folder);
-      EXPECT_TRUE(write_png(folder + "/Ui." + test->name() + "." + name + ".png", *picture, false));
+      EXPECT_TRUE(write_png(folder + "/Ui." + test->name() + "." + name + ".png", *image, false));
     }
-    return *picture;
+    return *image;
   }
 };
 
-TEST_F(Ui, WithoutItemsTheWindowIsThePicture) {
+TEST_F(Ui, WithoutItemsTheWindowShowsTheImage) {
   const Image8 below = draw_ball(64, 48);
   const Image8 window = paint(64, 48, {});
   EXPECT_EQ(window.rgba, below.rgba);
@@ -84,7 +84,7 @@ TEST_F(Ui, WithoutItemsTheWindowIsThePicture) {
   EXPECT_EQ(paint(64, 48, nothing).rgba, below.rgba);
 }
 
-TEST_F(Ui, SolidAndHalfTransparentRectanglesAreBlendedStraight) {
+TEST_F(Ui, SolidAndHalfTransparentRectanglesAreBlended) {
   draw_plain(40, 30, {200, 100, 40});
   UiItems ui;
   add_rectangle(ui, {4, 5, 14, 25}, rgba(10, 250, 60));
@@ -104,7 +104,7 @@ TEST_F(Ui, SolidAndHalfTransparentRectanglesAreBlendedStraight) {
     }
 }
 
-TEST_F(Ui, LaterDrawsLieOverEarlierOnes) {
+TEST_F(Ui, LaterDrawsAreOnTop) {
   draw_plain(12, 8, {0, 0, 0});
   UiItems ui;
   add_rectangle(ui, {0, 0, 8, 8}, rgba(255, 0, 0));
@@ -119,13 +119,13 @@ TEST_F(Ui, LaterDrawsLieOverEarlierOnes) {
   expect_pixel(p, 10, 4, {0, 0, 128});
 }
 
-TEST_F(Ui, AClipKeepsThePixelsWhoseCentresLieWithin) {
+TEST_F(Ui, AClipKeepsThePixelsWithTheirCentresInside) {
   draw_plain(20, 16, {9, 9, 9});
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   UiItems ui;
   add_rectangle(ui, {0, 0, 20, 16}, rgba(255, 255, 255), {3.5f, 2.51f, 7.5f, 6.49f});
   add_rectangle(ui, {0, 0, 20, 16}, rgba(255, 0, 0), {15, 12, 1e30f, std::numeric_limits<float>::max()});
-  add_rectangle(ui, {0, 0, 20, 16}, rgba(0, 255, 0), {-1e30f, -5, -2, 100});  // nothing of these three
+  add_rectangle(ui, {0, 0, 20, 16}, rgba(0, 255, 0), {-1e30f, -5, -2, 100});  // the next three are clipped away
   add_rectangle(ui, {0, 0, 20, 16}, rgba(0, 255, 0), {8, 8, 8, 16});
   add_rectangle(ui, {0, 0, 20, 16}, rgba(0, 255, 0), {kNan, kNan, kNan, kNan});
   const Image8 p = paint(20, 16, ui, "window");
@@ -140,7 +140,7 @@ TEST_F(Ui, AClipKeepsThePixelsWhoseCentresLieWithin) {
     }
 }
 
-TEST_F(Ui, TexturesAreSampledAtTheirTexelsAndBetweenThem) {
+TEST_F(Ui, TexturesAreSampledLinearly) {
   draw_plain(24, 16, {0, 0, 0});
   auto texture = std::make_shared<UiTexture>(UiTexture{2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 0}});
   UiItems ui;
@@ -154,14 +154,14 @@ TEST_F(Ui, TexturesAreSampledAtTheirTexelsAndBetweenThem) {
   expect_pixel(p, 1, 1, {0, 0, 0});
   expect_pixel(p, 4, 0, {64, 0, 0});
   expect_pixel(p, 4, 1, {0, 0, 128});
-  // eight times as large: linear between the texels' centres
+  // magnified eight times: linear between the texels' centres
   for (std::uint32_t x = 8; x < 24; ++x) {
     const double t = std::clamp((x - 8 + 0.5) / 8 - 0.5, 0.0, 1.0);
     expect_pixel(p, x, 0, {int(std::lround(255 * (1 - t))), int(std::lround(255 * t)), 0});
   }
 }
 
-TEST_F(Ui, IndicesCountFromTheFirstVertexOn) {
+TEST_F(Ui, IndicesAreRelativeToTheFirstVertex) {
   draw_plain(64, 64, {0, 0, 0});
   // 70 000 vertices: more than 16 bits count
   UiItems ui;
@@ -177,7 +177,7 @@ TEST_F(Ui, IndicesCountFromTheFirstVertexOn) {
 
 TEST_F(Ui, ThreeThousandQuadsInOneDraw) {
   draw_plain(240, 200, {255, 255, 255});
-  // 4 x 4 pixels each, one pixel apart, one draw
+  // quads of 4 x 4 pixels, one pixel apart, in one draw
   UiItems ui;
   const auto color = [](std::uint32_t i) { return rgba(i % 256, i / 256 * 20, 7 * i % 256); };
   for (std::uint32_t i = 0; i < 3000; ++i) {
@@ -195,8 +195,8 @@ TEST_F(Ui, ThreeThousandQuadsInOneDraw) {
   }
 }
 
-TEST_F(Ui, ASmallPictureIsScaledAndTheUiIsNot) {
-  // left half dark, right half bright, as a clipped rectangle over a plain picture cannot say: the ball's own picture
+TEST_F(Ui, ASmallImageIsScaledAndTheUiIsNot) {
+  // the image of the ball
   const Image8 small = draw_ball(32, 24);
   UiItems ui;
   add_rectangle(ui, {1, 1, 2, 2}, rgba(255, 255, 0));
@@ -204,7 +204,7 @@ TEST_F(Ui, ASmallPictureIsScaledAndTheUiIsNot) {
   ASSERT_EQ(p.width, 64u);
   expect_pixel(p, 1, 1, {255, 255, 0});
   expect_pixel(p, 2, 1, {26, 26, 51});
-  // every window pixel lies a quarter of a texel from a picture's pixel centre
+  // every window pixel is a quarter of a texel from an image's pixel centre
   const auto at = [&](int x, int y, int c) {
     return int(small.pixel(std::uint32_t(std::clamp(x, 0, 31)), std::uint32_t(std::clamp(y, 0, 23)))[c]);
   };
@@ -221,7 +221,7 @@ TEST_F(Ui, ASmallPictureIsScaledAndTheUiIsNot) {
   EXPECT_GT(varied, 100) << "nothing to tell linear from nearest by";
 }
 
-TEST_F(Ui, AnotherUiOverTheSamePictureNeedsNoNewOne) {
+TEST_F(Ui, AnotherUiReusesTheImage) {
   const Image8 below = draw_ball(64, 48);
   UiItems first, second;
   add_rectangle(first, {0, 0, 64, 20}, rgba(255, 0, 0, 200));
@@ -235,13 +235,13 @@ TEST_F(Ui, AnotherUiOverTheSamePictureNeedsNoNewOne) {
   for (std::uint32_t x = 35; x < 64; ++x)
     for (int c = 0; c < 3; ++c) EXPECT_EQ(two.pixel(x, 5)[c], below.pixel(x, 5)[c]);
   EXPECT_EQ(paint(64, 48, first).rgba, one.rgba);
-  // the picture itself is untouched
+  // the image itself is unchanged
   const auto again = renderer_->read_back();
   ASSERT_TRUE(again);
   EXPECT_EQ(again->rgba, below.rgba);
 }
 
-TEST_F(Ui, WindowsOfEverySize) {
+TEST_F(Ui, WindowsOfEverySizeArePainted) {
   draw_plain(16, 12, {50, 60, 70});
   for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 40u}, {333u, 1u}, {17u, 31u}, {256u, 192u}, {1u, 1u}}) {
     UiItems ui;
@@ -260,7 +260,7 @@ TEST_F(Ui, WindowsOfEverySize) {
   expect_pixel(paint(3, 3, {}), 1, 1, {50, 60, 70});
 }
 
-TEST_F(Ui, OverPackedEyesAndFloatPictures) {
+TEST_F(Ui, PaintsOverPackedEyesAndFloatImages) {
   FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
   packet.width = 20;
   packet.height = 16;
@@ -282,7 +282,7 @@ TEST_F(Ui, OverPackedEyesAndFloatPictures) {
   expect_pixel(p, 5, 5, {51, 102, 153});
 }
 
-TEST_F(Ui, ATextureIsUploadedOnceAndGoesWhenItRests) {
+TEST_F(Ui, ATextureIsUploadedOnceAndFreedWhenIdle) {
   draw_plain(32, 32, {0, 0, 0});
   const auto made = [](std::uint8_t grey) {
     return std::make_shared<UiTexture>(UiTexture{64, 64, std::vector<std::uint8_t>(64 * 64 * 4, grey)});
@@ -294,15 +294,15 @@ TEST_F(Ui, ATextureIsUploadedOnceAndGoesWhenItRests) {
   };
   const auto uploads = [&] { return renderer_->stats().uploads; };
   const auto held = [&] { return renderer_->device().counters().allocated_bytes; };
-  auto kept = made(255);
-  paint(32, 32, with(kept));
+  auto reused = made(255);
+  paint(32, 32, with(reused));
   const std::uint64_t uploads_before = uploads(), bytes_before = held();
-  for (int k = 0; k < 20; ++k) paint(32, 32, with(kept));
+  for (int k = 0; k < 20; ++k) paint(32, 32, with(reused));
   EXPECT_EQ(uploads(), uploads_before);
   EXPECT_EQ(held(), bytes_before);
-  // others come and go, one even at the same address
+  // other textures are created and freed, possibly at the same address
   for (int k = 0; k < 40; ++k) {
-    UiItems ui = with(kept);
+    UiItems ui = with(reused);
     add_rectangle(ui, {0, 0, 16, 16}, rgba(255, 0, 0), kAll, made(std::uint8_t(100 + k)));
     const Image8 p = paint(32, 32, ui);
     const double alpha = (100 + k) / 255.0;
@@ -310,12 +310,12 @@ TEST_F(Ui, ATextureIsUploadedOnceAndGoesWhenItRests) {
     EXPECT_LE(held(), bytes_before + (WindowPainter::kTextureIdlePaints + 1) * 65536);
   }
   EXPECT_EQ(uploads(), uploads_before + 40);
-  for (std::uint64_t k = 0; k <= WindowPainter::kTextureIdlePaints; ++k) paint(32, 32, with(kept));
+  for (std::uint64_t k = 0; k <= WindowPainter::kTextureIdlePaints; ++k) paint(32, 32, with(reused));
   EXPECT_EQ(held(), bytes_before);
 }
 
-TEST_F(Ui, AThousandPaintsHoldNoMore) {
-  vk::DeviceOptions options;  // without the validation layer: it keeps books of its own
+TEST_F(Ui, AThousandPaintsHoldNoMoreMemory) {
+  vk::DeviceOptions options;  // without the validation layer, which allocates memory of its own
   options.device_filter = test_device();
   auto renderer = Renderer::create(options);
   ASSERT_TRUE(renderer) << renderer.error().message;
@@ -346,7 +346,7 @@ TEST_F(Ui, AThousandPaintsHoldNoMore) {
   }
 }
 
-TEST(UiFailures, OutOfMemoryAndALostDeviceAreSaidAndThePictureStays) {
+TEST(UiFailures, OutOfMemoryAndALostDeviceAreReportedAndTheImageIsKept) {
   use_lavapipe();
   const auto failing = std::make_shared<FailureInjector>();
   FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
@@ -366,7 +366,7 @@ TEST(UiFailures, OutOfMemoryAndALostDeviceAreSaidAndThePictureStays) {
   ASSERT_TRUE(renderer->paint_window(32, 32, ui));
   const auto whole = renderer->read_back_window();
   ASSERT_TRUE(whole);
-  const int allocations = failing->calls - 1;  // less the read-back's
+  const int allocations = failing->calls - 1;  // without the read-back's
   ASSERT_GE(allocations, 6);
   renderer = start();
   const std::uint64_t held = renderer->device().counters().allocated_bytes;
@@ -386,7 +386,7 @@ TEST(UiFailures, OutOfMemoryAndALostDeviceAreSaidAndThePictureStays) {
     renderer = start();
   }
   for (const vk::DriverCall call : {vk::DriverCall::submit, vk::DriverCall::wait})
-    for (const int n : {1, 2}) {  // the texture's, the paint's
+    for (const int n : {1, 2}) {  // the texture's and the paint's allocation
       renderer = start();
       failing->arm(call, VK_ERROR_DEVICE_LOST, n);
       const auto painted = renderer->paint_window(32, 32, ui);
@@ -397,7 +397,7 @@ TEST(UiFailures, OutOfMemoryAndALostDeviceAreSaidAndThePictureStays) {
   for (const std::string& text : renderer->validation_texts()) ADD_FAILURE() << text;
 }
 
-TEST(UiFailures, MirrorsMakeRoomForTheWindow) {
+TEST(UiFailures, GridsAreFreedToMakeRoomForTheWindow) {
   use_lavapipe();
   vk::DeviceOptions options;
   options.validation = true;
@@ -419,7 +419,7 @@ TEST(UiFailures, MirrorsMakeRoomForTheWindow) {
   const Outcome painted = (*renderer)->paint_window(900, 800, ui);  // 2.9 MB
   ASSERT_TRUE(painted) << painted.error().message;
   EXPECT_EQ((*renderer)->stats().resident_grids, 0u);
-  // the picture is still there, and the next one, and its window
+  // the image is kept, and the next image and window are drawn
   ASSERT_TRUE((*renderer)->read_back());
   ASSERT_TRUE((*renderer)->draw(packet));
   ASSERT_TRUE((*renderer)->paint_window(900, 800, ui));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The picture that narrows while the world moves: every pixel against the angle that it looks along, off the axis too.
+/// The comfort vignette: every pixel against its viewing angle, also for off-axis eyes.
 #include <cmath>
 
 #include "render/frame/camera.h"
@@ -24,11 +24,11 @@ FramePacket packet_of(double strength) {
   return packet;
 }
 
-TEST_F(VignetteImage, DarkensByTheAngleFromTheEyesAxis) {
+TEST_F(VignetteImage, DarkensByTheAngleFromTheViewAxis) {
   for (const double shift : {0.0, 0.5}) {
     FramePacket packet = packet_of(0.75);
-    packet.view.window = {-1 + shift, 1 + shift, -1, 1};  // an eye whose axis is not in the middle
-    const Image8 picture = draw(packet, {}, "vignette");
+    packet.view.window = {-1 + shift, 1 + shift, -1, 1};  // an off-axis eye
+    const Image8 image = draw(packet, {}, "vignette");
     const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
     const Vec3 axis = -camera.back;
     int inside = 0, between = 0, outside = 0;
@@ -38,7 +38,7 @@ TEST_F(VignetteImage, DarkensByTheAngleFromTheEyesAxis) {
         const double inner = std::tan(kVignetteInner_deg * M_PI / 180), outer = std::tan(kVignetteOuter_deg * M_PI / 180);
         const double t = std::clamp((std::tan(angle) - inner) / (outer - inner), 0.0, 1.0), light = 1 - 0.75 * t * t * (3 - 2 * t);
         (t <= 0 ? inside : t >= 1 ? outside : between) += 1;
-        const std::uint8_t* found = picture.pixel(x, y);
+        const std::uint8_t* found = image.pixel(x, y);
         ASSERT_NEAR(found[0], 255 * light, 1.01) << x << " " << y;
         ASSERT_NEAR(found[2], 255 * 0.6 * light, 1.01);
         ASSERT_EQ(found[3], 255);
@@ -49,7 +49,7 @@ TEST_F(VignetteImage, DarkensByTheAngleFromTheEyesAxis) {
   }
 }
 
-TEST_F(VignetteImage, WithoutOneOrWithoutAnglesThePictureIsAsItWas) {
+TEST_F(VignetteImage, WithoutAVignetteOrAnglesTheImageIsUnchanged) {
   const Image8 plain = draw(packet_of(0), {}, "vignette_none");
   EXPECT_EQ(plain.pixel(0, 0)[0], 255);
   FramePacket flat = packet_of(1);

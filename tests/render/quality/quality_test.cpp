@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The estimate against the truth, and goals that are reached.
+/// Estimated against true errors, and quality goals.
 #include "render/quality/quality.h"
 
 #include "render/image/image_error.h"
@@ -32,7 +32,7 @@ class Quality : public ImageTest {
     packet.volumes = {item};
     return packet;
   }
-  /// A few threads of a voxel.
+  /// A few threads one voxel wide.
   static FramePacket threads() {
     FramePacket packet = scene();
     packet.width = 320;
@@ -45,7 +45,7 @@ class Quality : public ImageTest {
     packet.view = View{{250, -170, 140}, {47.5, 47.5, 47.5}, {0, 0, 1}, 32};
     return packet;
   }
-  /// Over what is covered: both are drawn without a background.
+  /// True RMS error over covered pixels; both images are drawn without a background.
   double true_rmse(FramePacket packet, const RenderSettings& settings) {
     const std::array<float, 4> b = packet.background;
     packet.background[3] = 0;
@@ -54,8 +54,8 @@ class Quality : public ImageTest {
   }
 };
 
-/// At or above the truth, and not by much, in views that nobody looked at: coarse and fine, plain and shaded, of much and of little.
-TEST_F(Quality, TheEstimateIsAtOrAboveTheTruth) {
+/// Random views, coarse and fine, plain and shaded, with large and small covered areas.
+TEST_F(Quality, TheEstimateIsAtOrSlightlyAboveTheTrueError) {
   int below = 0, views = 0;
   std::mt19937 random(11);
   const auto in = [&](double lo, double hi) { return lo + (hi - lo) * (double(random()) / 4294967296.0); };
@@ -78,7 +78,7 @@ TEST_F(Quality, TheEstimateIsAtOrAboveTheTruth) {
   EXPECT_LE(below, views / 20);
 }
 
-TEST_F(Quality, AnErrorIsReachedAndLooserIsCoarser) {
+TEST_F(Quality, AnErrorGoalIsReachedAndALooserOneIsCoarser) {
   const FramePacket packet = scene();
   double last_step = 0;
   for (const double e : {0.7, 1.5, 5.0}) {
@@ -94,8 +94,8 @@ TEST_F(Quality, AnErrorIsReachedAndLooserIsCoarser) {
   EXPECT_GT(last_step, 1);
 }
 
-/// The device's own clock sees the work of a picture and nothing else: not the processor's, not other programs'.
-TEST_F(Quality, TheDevicesClockTimesItsWorkAlone) {
+/// GPU timestamps measure only the work of an image, not the processor's time.
+TEST_F(Quality, TheGpuClockTimesOnlyTheGpusWork) {
   if (!renderer_->device().timestamps().is_supported()) GTEST_SKIP() << "this device has no timestamps";
   const FramePacket packet = scene();
   ASSERT_TRUE(renderer_->draw(packet, exact_level(1)));
@@ -114,8 +114,8 @@ TEST_F(Quality, TheDevicesClockTimesItsWorkAlone) {
   EXPECT_LE(idle.elapsed_ms() + 19, wall.elapsed_ms()) << "the pause was none of its work";
 }
 
-/// A thin shell in a small picture: all error is in a few pixels, which a sparse lattice misses.
-TEST_F(Quality, SmallPicturesOfThinThingsAreMeasuredToo) {
+/// A thin shell in a small image: all error is in a few pixels, which a sparse lattice misses.
+TEST_F(Quality, SmallImagesOfThinFeaturesAreMeasured) {
   FramePacket packet = scene();
   packet.width = 64;
   packet.height = 48;
@@ -131,7 +131,7 @@ TEST_F(Quality, SmallPicturesOfThinThingsAreMeasuredToo) {
 }
 
 /// Threads of a voxel's width, bright over haze: interpolation between rays of every 4th pixel loses most of them.
-TEST_F(Quality, WhatIsThinIsKept) {
+TEST_F(Quality, ThinFeaturesAreKept) {
   const FramePacket packet = threads();
   FramePacket alone = packet;
   alone.background[3] = 0;
@@ -147,16 +147,16 @@ TEST_F(Quality, WhatIsThinIsKept) {
   }
   RenderSettings coarse;
   coarse.fast = FastSettings{1, 4, -1, -1};
-  EXPECT_LT(measure_error(draw(alone, coarse, "coarse"), converged).min_thin_retained, 0.5);  // or it would prove nothing
-  // nor does a stricter goal cost less
+  EXPECT_LT(measure_error(draw(alone, coarse, "coarse"), converged).min_thin_retained, 0.5);  // coarse settings lose the threads
+  // a stricter goal does not cost less
   const auto stricter = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 1});
   ASSERT_TRUE(stricter);
   EXPECT_LE(relative_cost(choice->settings, false), 1.01 * relative_cost(stricter->settings, false))
       << describe(choice->settings) << "; " << describe(stricter->settings);
 }
 
-/// Soot is black over black, however wrong its opacity.
-TEST_F(Quality, TransparentPicturesAreJudgedOverAnyBackground) {
+/// Black smoke over black hides errors of its opacity.
+TEST_F(Quality, TransparentImagesAreMeasuredOverAnyBackground) {
   FramePacket packet = scene();
   packet.background = {0, 0, 0, 0};
   packet.volumes[0].transfer.colors = {{0, 0, 0, 0}, {1, 0, 0, 0}};
@@ -165,7 +165,7 @@ TEST_F(Quality, TransparentPicturesAreJudgedOverAnyBackground) {
   const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2});
   const Image8 converged = draw(packet, reference_settings());
   const auto over_white = [&](const RenderSettings& settings) { return measure_error(draw(packet, settings), converged, {1, 1, 1}).rmse; };
-  EXPECT_GT(over_white(fast_level(8, 4, -1, -1)), 4);  // or it would prove nothing
+  EXPECT_GT(over_white(fast_level(8, 4, -1, -1)), 4);  // coarse settings have a large error over white
   for (const auto* one : {&choice, &once}) {
     ASSERT_TRUE(*one);
     EXPECT_LT(over_white((*one)->settings), 2.1) << describe((*one)->settings);
@@ -173,8 +173,8 @@ TEST_F(Quality, TransparentPicturesAreJudgedOverAnyBackground) {
   }
 }
 
-/// A picture that is drawn once is looked at in few rays, and drawn twice at most; nor is its error less true for that.
-TEST_F(Quality, OnePictureIsNotSearchedFor) {
+/// The settings of a single image are chosen from few rays, with at most one rendered image, and the estimate is accurate.
+TEST_F(Quality, ASingleImageNeedsNoSearch) {
   for (const bool shaded : {false, true}) {
     const FramePacket packet = scene(shaded);
     for (const double e : {0.7, 2.0, 5.0}) {
@@ -190,12 +190,12 @@ TEST_F(Quality, OnePictureIsNotSearchedFor) {
   }
 }
 
-TEST_F(Quality, EmptyPicturesAreSaid) {
+TEST_F(Quality, EmptyImagesAreReported) {
   for (const bool once : {false, true}) {
     const QualityGoal goal{QualityGoal::Kind::error, 2, once};
     FramePacket packet = scene();
     EXPECT_FALSE(choose_quality(*renderer_, packet, goal).value().is_empty);
-    packet.view.position = {5e3, -5e3, 0};  // a few pixels
+    packet.view.position = {5e3, -5e3, 0};  // the volume covers a few pixels
     EXPECT_FALSE(choose_quality(*renderer_, packet, goal).value().is_empty);
     packet.view.target = {2e5, 0, 0};
     EXPECT_TRUE(choose_quality(*renderer_, packet, goal).value().is_empty);
@@ -205,19 +205,19 @@ TEST_F(Quality, EmptyPicturesAreSaid) {
   }
 }
 
-TEST_F(Quality, SearchesSayHowFarTheyAre) {
+TEST_F(Quality, SearchesReportTheirProgress) {
   for (const QualityGoal& goal : {QualityGoal{QualityGoal::Kind::error, 2}, QualityGoal{QualityGoal::Kind::time, 1e6}}) {
-    std::vector<double> told;
-    ASSERT_TRUE(choose_quality(*renderer_, scene(), goal, [&](double done) { told.push_back(done); }));
-    EXPECT_GT(told.size(), 3U);
-    EXPECT_TRUE(std::ranges::is_sorted(told));
-    EXPECT_GT(told.front(), 0);
-    EXPECT_LE(told.back(), 1);
+    std::vector<double> progress;
+    ASSERT_TRUE(choose_quality(*renderer_, scene(), goal, [&](double done) { progress.push_back(done); }));
+    EXPECT_GT(progress.size(), 3U);
+    EXPECT_TRUE(std::ranges::is_sorted(progress));
+    EXPECT_GT(progress.front(), 0);
+    EXPECT_LE(progress.back(), 1);
   }
 }
 
-/// Opacity that rises within a tenth of a voxel: exact rays of the usual steps have not converged, and must not judge.
-TEST_F(Quality, SteepTransferFunctionsAreJudgedByRaysThatHaveConverged) {
+/// Opacity that rises within a tenth of a voxel: exact rays with default steps have not converged and cannot be the reference.
+TEST_F(Quality, SteepTransferFunctionsAreMeasuredAgainstConvergedRays) {
   FramePacket packet = scene(true);
   packet.volumes[0].transfer.extinctions = {{0, 0}, {0.5, 0}, {0.51, 3}, {1, 4}};
   const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2});
@@ -233,8 +233,8 @@ TEST_F(Quality, SteepTransferFunctionsAreJudgedByRaysThatHaveConverged) {
   EXPECT_LE(measure_error(draw(packet, once->settings), truth).rmse, 2.2) << describe(once->settings);
 }
 
-/// The gradient of the cell costs half of what central differences do, and is as good where the field is smooth.
-TEST_F(Quality, LightIsByTheGradientOfTheCellWhereThatIsGoodEnough) {
+/// The gradient of the cell costs half of central differences and is as accurate where the field is smooth.
+TEST_F(Quality, CellGradientsAreUsedWhereTheyAreAccurateEnough) {
   const FramePacket smooth = scene(true);
   FramePacket rough = smooth;
   std::mt19937 random(3);
@@ -257,7 +257,7 @@ TEST_F(Quality, ATinyErrorFallsBackToExactRays) {
   EXPECT_LT(choice->settings.step_voxels, 1);
 }
 
-TEST_F(Quality, TimeTakesTheBestOfWhatIsQuickEnough) {
+TEST_F(Quality, ATimeGoalTakesTheBestSettingsWithinIt) {
   const FramePacket packet = scene();
   const auto plenty = choose_quality(*renderer_, packet, {QualityGoal::Kind::time, 1e6});
   const auto none = choose_quality(*renderer_, packet, {QualityGoal::Kind::time, 1e-6});
@@ -269,8 +269,8 @@ TEST_F(Quality, TimeTakesTheBestOfWhatIsQuickEnough) {
   EXPECT_LT(plenty->estimated_rmse, none->estimated_rmse);
 }
 
-TEST_F(Quality, MoreTimeIsNeverWorseAndNeverLonger) {
-  // times by the ladder's own costs: the same on every machine
+TEST_F(Quality, ALongerTimeGoalIsNeverWorse) {
+  // times by the levels' relative costs, equal on every machine
   for (const bool shade : {false, true}) {
     const FramePacket packet = scene(shade);
     const RenderTimeFn timer = [&](const RenderSettings& s) -> Result<double> { return 100 * relative_cost(s, shade); };
@@ -288,8 +288,8 @@ TEST_F(Quality, MoreTimeIsNeverWorseAndNeverLonger) {
   }
 }
 
-/// Refinement marches nearly all of what is thin, and more: where it takes too long, every pixel's rays may not.
-TEST_F(Quality, WhatTheLadderLeavesUnusedGoesToEveryPixel) {
+/// With thin features, refinement may take longer than a ray per pixel.
+TEST_F(Quality, RemainingTimeIsSpentOnRaysPerPixel) {
   const RenderTimeFn timer = [](const RenderSettings& s) -> Result<double> {
     if (!s.fast) return 500.0;
     if (s.fast->spacing == 1) return 30 + 20 / s.fast->step_voxels;
@@ -305,7 +305,7 @@ TEST_F(Quality, WhatTheLadderLeavesUnusedGoesToEveryPixel) {
   EXPECT_LT(choice->estimated_rmse, 0.5 * *coarse);
 }
 
-TEST(QualityWithin, TheLeastErrorInTimeElseTheQuickest) {
+TEST(QualityWithin, TheSmallestErrorWithinTheTimeElseTheFastest) {
   const std::vector<SettingsTrial> tried{{10, 3}, {20, 1}, {15, 2}, {40, 0.5}, {60, 0.6}};
   EXPECT_EQ(best_within(tried, 5), 0u);
   EXPECT_EQ(best_within(tried, 16), 2u);
@@ -313,7 +313,7 @@ TEST(QualityWithin, TheLeastErrorInTimeElseTheQuickest) {
   EXPECT_EQ(best_within(tried, 100), 3u);
 }
 
-TEST_F(Quality, ScenesWithoutVolumesAreExactAlready) {
+TEST_F(Quality, ScenesWithoutVolumesHaveZeroError) {
   FramePacket packet = make_packet({20, -20, 20}, {4, 4, 4});
   packet.isosurfaces = {{make_grid({8, 8, 8}, [](const Vec3& p) { return p.x; }), 3.5, {1, 1, 1}, 1}};
   const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 0.5});

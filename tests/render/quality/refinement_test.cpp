@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The ladder, the times expected of it, and the pictures that a viewer is told to draw.
+/// Quality levels, their expected times, and the refinement steps of a viewer.
 #include "render/quality/refinement.h"
 
 #include <gtest/gtest.h>
@@ -12,10 +12,10 @@ namespace refinement_test {
 
 using namespace catena::render;
 
-/// A machine on which a unit of cost takes `unit_ms`, whatever else.
+/// Time of an image on a machine with `unit_ms` per unit of cost.
 double time_of(const RenderSettings& settings, double unit_ms, bool shaded = false) { return unit_ms * relative_cost(settings, shaded); }
 
-/// The picture that a moving camera settles on.
+/// The level on which a moving camera settles.
 RefinementStep settle(Refinement& refinement, double unit_ms, bool shaded = false) {
   RefinementStep step;
   for (int k = 0; k < 60; ++k) {
@@ -25,7 +25,7 @@ RefinementStep settle(Refinement& refinement, double unit_ms, bool shaded = fals
   return step;
 }
 
-TEST(QualityLevels, RisesInCostAndEndsWithExactRays) {
+TEST(QualityLevels, RiseInCostAndEndWithExactRays) {
   for (const bool fast : {false, true})
     for (const bool shaded : {false, true}) {
       const auto ladder = quality_levels({fast, shaded});
@@ -36,7 +36,7 @@ TEST(QualityLevels, RisesInCostAndEndsWithExactRays) {
     }
 }
 
-TEST(QualityLevels, CostsFollowRaysStepsAndShading) {
+TEST(QualityLevels, CostsDependOnRaysStepsAndShading) {
   RenderSettings coarse, fine;
   coarse.fast = FastSettings{4, 4, -1, -1};
   fine.fast = FastSettings{4, 1, 0, -1};
@@ -50,8 +50,8 @@ TEST(QualityLevels, CostsFollowRaysStepsAndShading) {
   EXPECT_GT(relative_cost({}, true), relative_cost(fine, true));
 }
 
-/// Long steps are lit by the gradient of the cell, which is as good there; no rung after the first smooth one is.
-TEST(QualityLevels, TheCheapestLitRungsGoByTheGradientOfTheCell) {
+/// The cheapest shaded levels use the gradient of the cell; all levels after the first with smooth gradients use those.
+TEST(QualityLevels, TheCheapestShadedLevelsUseCellGradients) {
   const auto ladder = quality_levels({true, true});
   const auto smooth = [](const RenderSettings& s) { return !s.fast || s.fast->smooth_gradients; };
   EXPECT_FALSE(smooth(ladder.front()));
@@ -59,28 +59,28 @@ TEST(QualityLevels, TheCheapestLitRungsGoByTheGradientOfTheCell) {
   for (const RenderSettings& plain : quality_levels({true, false})) EXPECT_FALSE(plain.fast && plain.fast->smooth_gradients);
 }
 
-TEST(TimeModel, FollowsTheMachineAndForgetsPipelines) {
+TEST(TimeModel, FollowsMeasurementsAndIgnoresPipelineCreation) {
   TimeModel times({0.1, 1}, 100);
   EXPECT_DOUBLE_EQ(times.expected_ms(0), 10);
-  times.add_measurement(0, 80);  // the first picture made a pipeline
+  times.add_measurement(0, 80);  // the first image created a pipeline
   EXPECT_DOUBLE_EQ(times.expected_ms(0), 10);
   for (int k = 0; k < 20; ++k) times.add_measurement(0, 20);
   EXPECT_NEAR(times.expected_ms(0), 20, 1e-6);
-  EXPECT_GT(times.expected_ms(1), 110);  // what one rung says of the machine holds for the others
+  EXPECT_GT(times.expected_ms(1), 110);  // a measurement of one level scales the others
   times.add_measurement(0, 20);
   EXPECT_NEAR(times.expected_ms(0), 20, 1e-6);
   TimeModel quick({0.1, 1}, 100);
-  quick.add_measurement(0, 5);  // quicker than expected: that is no pipeline
+  quick.add_measurement(0, 5);  // faster than expected: not caused by a pipeline
   EXPECT_LT(quick.expected_ms(0), 10);
 }
 
-TEST(TimeModel, WhatWasNeverDrawnIsLikeItsNeighbour) {
+TEST(TimeModel, UnmeasuredLevelsAreEstimatedFromTheirNeighbours) {
   TimeModel times({1, 2, 4, 8}, 10);
-  for (int k = 0; k < 20; ++k) times.add_measurement(1, 5);  // four times as quick as guessed
+  for (int k = 0; k < 20; ++k) times.add_measurement(1, 5);  // four times faster than the initial estimate
   EXPECT_NEAR(times.expected_ms(1), 5, 1e-6);
   EXPECT_NEAR(times.expected_ms(2), 10, 1e-6);
   EXPECT_NEAR(times.expected_ms(0), 2.5, 1e-6);
-  // between two of which one is slow for its cost: as slow
+  // between two measured levels the slower scale applies
   for (int k = 0; k < 40; ++k) times.add_measurement(3, 40), times.add_measurement(1, 5);
   EXPECT_NEAR(times.expected_ms(3), 40, 0.1);
   EXPECT_NEAR(times.expected_ms(2), 20, 0.1);
@@ -99,15 +99,15 @@ TEST(Refinement, AMovingCameraStaysWithinItsBudget) {
   EXPECT_GT(last_cost, 0.1);
 }
 
-TEST(Refinement, ASlowMachineGetsTheCheapestPicture) {
+TEST(Refinement, ASlowMachineGetsTheCheapestLevel) {
   Refinement refinement(5, {true, true});
   const RefinementStep step = settle(refinement, 1e5, true);
   EXPECT_EQ(step.settings.fast->step_voxels, 8);
   EXPECT_EQ(step.settings.fast->spacing, 4u);
-  EXPECT_GT(step.expected_ms, 5);  // and is not lied about
+  EXPECT_GT(step.expected_ms, 5);  // the expected time exceeds the budget
 }
 
-TEST(Refinement, AStillPictureGoesFromQuarterToHalfToEveryPixelAndEnds) {
+TEST(Refinement, AStillViewRefinesToEveryPixelAndEnds) {
   for (const bool shaded : {false, true}) {
     Refinement refinement(20, {true, shaded});
     const RefinementStep moving = settle(refinement, 600, shaded);
@@ -130,15 +130,15 @@ TEST(Refinement, AStillPictureGoesFromQuarterToHalfToEveryPixelAndEnds) {
     EXPECT_EQ(spacings.back(), 1u);
     EXPECT_TRUE(std::is_sorted(spacings.rbegin(), spacings.rend()));
     EXPECT_LE(spacings.size(), 5u);
-    // what moves starts anew
+    // a moving view restarts
     const auto again = refinement.next(true);
     ASSERT_TRUE(again);
     EXPECT_LE(relative_cost(again->settings, shaded), relative_cost(moving.settings, shaded));
   }
 }
 
-TEST(Refinement, TheSettingDoesNotComeAndGo) {
-  // a machine whose times waver by a tenth: after a while one rung and its neighbour at most
+TEST(Refinement, TheLevelIsStableUnderNoise) {
+  // with times that vary by a tenth, at most two neighbouring levels remain
   Refinement refinement(66, {true, false});
   std::map<double, int> seen;
   for (int k = 0; k < 200; ++k) {

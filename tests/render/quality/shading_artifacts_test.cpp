@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-/// What is seen sooner than its size tells: rings of exact rays and facets of the cell's gradient on what is lit may take half of the
-/// error; and of steps that cost the same the shortest is taken.
+/// Visible artifacts on shaded volumes: rings of exact rays and facets of the cell's gradient may use half of the allowed error; of
+/// steps at equal cost the shortest is chosen.
 #include "render/image/image_error.h"
 #include "render/quality/quality.h"
 #include "render/quality/refinement.h"
 #include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
-namespace lit_steps_test {
+namespace shading_artifacts_test {
 
 using namespace catena::render;
 
 class ShadingArtifacts : public ImageTest {
  protected:
-  /// An opaque ball on a grid of that many nodes an edge, with nothing around it.
+  /// An opaque ball on a grid of `nodes` nodes per edge in empty space.
   static FramePacket ball(std::uint32_t nodes, bool shade) {
     const double middle = 0.5 * (nodes - 1), radius = 0.35 * nodes;
     const int n = int(nodes);
@@ -34,18 +34,18 @@ class ShadingArtifacts : public ImageTest {
   }
 };
 
-TEST_F(ShadingArtifacts, RingsOfExactRaysMayTakeHalfOfTheError) {
+TEST_F(ShadingArtifacts, ShadedExactRaysKeepHalfOfTheErrorForRings) {
   for (const bool shade : {false, true}) {
     FramePacket packet = ball(64, shade);
-    packet.volumes.push_back(packet.volumes[0]);  // two volumes: exact rays alone draw them
+    packet.volumes.push_back(packet.volumes[0]);  // two volumes are drawn by exact rays only
     const QualityChoice choice = chosen(packet, 4);
     ASSERT_FALSE(choice.settings.fast);
     EXPECT_LE(choice.estimated_rmse, shade ? 2 : 4) << describe(choice.settings);
   }
 }
 
-/// On few nodes the cell's gradient errs by 2.3 and 1.9 of the 3 that are allowed, on more by half of them and less.
-TEST_F(ShadingArtifacts, FacetsMayTakeHalfOfTheError) {
+/// On few nodes the cell gradient's error is 2.3 and 1.9 of the allowed 3, on more nodes half of it or less.
+TEST_F(ShadingArtifacts, CellGradientsKeepHalfOfTheErrorForFacets) {
   for (const std::uint32_t nodes : {16u, 20u, 32u}) {
     const QualityChoice choice = chosen(ball(nodes, true), 3);
     ASSERT_TRUE(choice.settings.fast);
@@ -53,11 +53,11 @@ TEST_F(ShadingArtifacts, FacetsMayTakeHalfOfTheError) {
   }
 }
 
-TEST_F(ShadingArtifacts, OfUnlitStepsThatCostTheSameTheShortestIsTaken) {
+TEST_F(ShadingArtifacts, OfUnshadedStepsAtEqualCostTheShortestIsTaken) {
   const QualityChoice choice = chosen(ball(96, false), 4);
   ASSERT_TRUE(choice.settings.fast);
   EXPECT_LE(choice.settings.fast->step_voxels, 3) << describe(choice.settings);
 }
 
-}  // namespace lit_steps_test
+}  // namespace shading_artifacts_test
 }  // namespace catena::test

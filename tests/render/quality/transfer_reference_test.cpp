@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Stated errors against a marcher that shares no code with the renderer but the rays: in double precision, by cells, with the transfer
-/// function's own points. Random functions over ranges up to 1e6 with parts of all widths. CATENA_TRANSFER_FUNCTIONS=100 tries as many
-/// and prints them.
+/// Stated errors against an independent marcher that shares only the rays with the renderer: double precision, per cell, with the
+/// transfer function's own points. Random functions over ranges up to 1e6 with features of all widths. CATENA_TRANSFER_FUNCTIONS=100
+/// sets their number and prints them.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -14,14 +14,14 @@
 #include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
-namespace transfer_truth_test {
+namespace transfer_reference_test {
 
 using namespace catena::render;
 using Rows2 = std::vector<std::array<double, 2>>;
 using Rows4 = std::vector<std::array<double, 4>>;
 
 constexpr int kNodes = 14;
-constexpr double kStep = 1.0 / 96;  // voxels
+constexpr double kStep = 1.0 / 96;  // in voxels
 
 template <class Rows>
 double between(const Rows& rows, double v, std::size_t column, bool log) {
@@ -39,8 +39,8 @@ struct Case {
   std::vector<float> voxels;
   Rows2 extinctions;
   Rows4 colors;
-  double ratio = 1;  ///< of the range's ends
-  bool log = false;  ///< the mapping
+  double ratio = 1;  ///< ratio of the range's ends
+  bool log = false;  ///< true: logarithmic mapping
 };
 
 double trilinear(const Case& c, const Vec3& p) {
@@ -59,11 +59,11 @@ double trilinear(const Case& c, const Vec3& p) {
   return sum;
 }
 
-/// LineSegment alpha, 8 bits, as the renderer's.
+/// Image with straight alpha and 8 bits per channel, as the renderer's.
 Image8 marched(const Case& c, const FramePacket& packet) {
   Bounds none;
   const Camera camera = make_camera(packet.view, packet.width, packet.height, none);
-  Image8 picture{packet.width, packet.height, {}};
+  Image8 rendered{packet.width, packet.height, {}};
   for (std::uint32_t y = 0; y < packet.height; ++y)
     for (std::uint32_t x = 0; x < packet.width; ++x) {
       const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
@@ -83,17 +83,17 @@ Image8 marched(const Case& c, const FramePacket& packet) {
         through = after;
       }
       for (const double component : sum)
-        picture.rgba.push_back(through < 1 ? std::uint8_t(std::lround(255 * component / (1 - through))) : std::uint8_t(0));
-      picture.rgba.push_back(std::uint8_t(std::lround(255 * (1 - through))));
+        rendered.rgba.push_back(through < 1 ? std::uint8_t(std::lround(255 * component / (1 - through))) : std::uint8_t(0));
+      rendered.rgba.push_back(std::uint8_t(std::lround(255 * (1 - through))));
     }
-  return picture;
+  return rendered;
 }
 
 class TransferReference : public ImageTest {
  protected:
   double in(double lo, double hi) { return lo + (hi - lo) * (double(random_()) / 4294967296.0); }
 
-  /// Smooth values, spread evenly or over all decades; rises and falls as narrow as a millionth of the range.
+  /// Smooth values, spread uniformly or over all decades; rises and falls as narrow as a millionth of the range.
   Case make_case(bool log) {
     Case c;
     c.log = log;
@@ -112,9 +112,9 @@ class TransferReference : public ImageTest {
       knots.insert(knots.end(), {at, at + width});
     }
     std::ranges::sort(knots);
-    const double most = std::pow(10, in(-1, 0.8)) / kNodes;
+    const double max_spacing = std::pow(10, in(-1, 0.8)) / kNodes;
     for (const double at : knots) {
-      if (c.extinctions.empty() || at > c.extinctions.back()[0]) c.extinctions.push_back({at, random_() % 3 == 0 ? 0 : in(0, most)});
+      if (c.extinctions.empty() || at > c.extinctions.back()[0]) c.extinctions.push_back({at, random_() % 3 == 0 ? 0 : in(0, max_spacing)});
       if (c.colors.empty() || at > c.colors.back()[0]) c.colors.push_back({at, in(0, 1), in(0, 1), in(0, 1)});
     }
     return c;
@@ -126,7 +126,7 @@ class TransferReference : public ImageTest {
     const field::Index3 size{kNodes, kNodes, kNodes};
     VolumeItem item;
     item.grid = field::make_scalar_grid("f", {}, size, c.voxels, {});
-    // as render/extract makes it of a scene
+    // as render/extract derives it from a scene
     const double below = item.transfer.linear_below = c.log ? std::min(c.colors.front()[0], c.extinctions.front()[0]) : 0;
     item.transfer.colors = refine_for_symlog(c.colors, below, 1.0 / 32768);
     item.transfer.extinctions = refine_for_symlog(c.extinctions, below, 1.0 / 32768);
@@ -141,7 +141,7 @@ class TransferReference : public ImageTest {
   std::mt19937 random_{20};
 };
 
-TEST_F(TransferReference, StatedErrorsAreTrue) {
+TEST_F(TransferReference, StatedErrorsMatchAnIndependentMarcher) {
   const char* wanted = std::getenv("CATENA_TRANSFER_FUNCTIONS");
   const int count = wanted ? std::atoi(wanted) : 6;
   for (int k = 0; k < count; ++k) {
@@ -150,9 +150,9 @@ TEST_F(TransferReference, StatedErrorsAreTrue) {
     const Image8 truth = marched(c, packet);
     const auto reference = half_step_difference(*renderer_, packet, reference_settings());
     ASSERT_TRUE(reference);
-    const double least = 0.4;  // of rounding to 8 bits (kMinReportedRmse)
+    const double min_rmse = 0.4;  // error of rounding to 8 bits (kMinReportedRmse)
     const double off = true_rmse(packet, reference_settings(), truth);
-    EXPECT_LT(off, 1.5 * std::max(*reference, least)) << k;
+    EXPECT_LT(off, 1.5 * std::max(*reference, min_rmse)) << k;
     if (wanted)
       std::printf("%3d %s 1e%.1f points %zu reference stated %.3f true %.3f", k, c.log ? "log" : "linear", std::log10(c.ratio),
                   c.extinctions.size(), *reference, off);
@@ -160,7 +160,7 @@ TEST_F(TransferReference, StatedErrorsAreTrue) {
       const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, goal, once});
       ASSERT_TRUE(choice);
       const double reached = true_rmse(packet, choice->settings, truth);
-      EXPECT_LT(reached, 1.5 * std::max(choice->estimated_rmse, least)) << k << " " << describe(choice->settings);
+      EXPECT_LT(reached, 1.5 * std::max(choice->estimated_rmse, min_rmse)) << k << " " << describe(choice->settings);
       if (wanted)
         std::printf(" | error=%g%s stated %.3f true %.3f %s", goal, once ? " once" : "", choice->estimated_rmse, reached,
                     choice->settings.fast ? "fast" : "exact");
@@ -169,5 +169,5 @@ TEST_F(TransferReference, StatedErrorsAreTrue) {
   }
 }
 
-}  // namespace transfer_truth_test
+}  // namespace transfer_reference_test
 }  // namespace catena::test

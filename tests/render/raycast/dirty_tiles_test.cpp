@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// While a cursor moves over a volume that stands still, only the tiles near it are marched again, and the picture is that of a new
-/// renderer, to the bit.
+/// While a cursor moves over a static volume, only the tiles near it are marched, and the image is bit-identical to a new renderer's.
 #include <cmath>
 
 #include "tests/render/support/image_fixture.h"
@@ -35,7 +34,7 @@ class DirtyTileImages : public ImageTest {
     settings.reuse_rays = true;
     return settings;
   }
-  /// What a renderer that has drawn nothing else of it makes of the packet.
+  /// Image of the packet by a new renderer.
   Image8 fresh(RenderSettings settings) {
     settings.reuse_rays = false;
     EXPECT_TRUE(other_->draw(packet_, settings));
@@ -45,7 +44,7 @@ class DirtyTileImages : public ImageTest {
   FramePacket packet_;
 };
 
-TEST_F(DirtyTileImages, AMovingCursorLeavesTheRestAsItIsToTheBit) {
+TEST_F(DirtyTileImages, AMovingCursorLeavesOtherTilesUnchangedBitForBit) {
   for (const auto& settings : {keeping(1, 0, -1), keeping(2, 0, -1), keeping(2, 0, 3), keeping(4, 1, 3), keeping(4, -1, -1)}) {
     Vec3 at(5, -3, 40);
     for (int k = 0; k < 6; ++k) {
@@ -58,7 +57,7 @@ TEST_F(DirtyTileImages, AMovingCursorLeavesTheRestAsItIsToTheBit) {
   }
 }
 
-/// The tiles of 16 x 16 pixels whose ids differ between two pictures, and those `reach` tiles around.
+/// The tiles of 16 x 16 pixels with different ids in two images, and those within `reach` tiles of them.
 std::uint32_t tiles_near(const IdImage& a, const IdImage& b, int reach) {
   const int across = int(a.width + 15) / 16, down = int(a.height + 15) / 16;
   std::vector<std::uint8_t> changed(std::size_t(across) * std::size_t(down));
@@ -78,7 +77,7 @@ std::uint32_t tiles_near(const IdImage& a, const IdImage& b, int reach) {
   return count;
 }
 
-TEST_F(DirtyTileImages, ExactRaysAreMarchedUnderTheCursorsOldAndNewOutlineAlone) {
+TEST_F(DirtyTileImages, ExactRaysAreMarchedOnlyUnderTheCursorsOldAndNewOutline) {
   packet_.cursors[0].id = 1;
   packet_.width = 240;
   packet_.height = 180;
@@ -120,7 +119,7 @@ TEST_F(DirtyTileImages, ExactRaysAreMarchedUnderTheCursorsOldAndNewOutlineAlone)
   }
 }
 
-TEST_F(DirtyTileImages, EveryEyeKeepsItsOwn) {
+TEST_F(DirtyTileImages, EveryEyeKeepsItsOwnTiles) {
   packet_.width = 160;
   packet_.height = 120;
   packet_.packing = Packing::side_by_side;
@@ -142,14 +141,14 @@ TEST_F(DirtyTileImages, EveryEyeKeepsItsOwn) {
       const MarchedTiles tiles = renderer_->marched_tiles().value();
       EXPECT_EQ(tiles.marched<tiles.total, k> 0) << k;
     }
-    // one eye has moved, and the other has not
+    // only one eye has moved
     packet_.eyes[1].position.x += 1;
     ASSERT_EQ(max_difference(draw(packet_, settings), fresh(settings)), 0);
     EXPECT_TRUE(renderer_->stats().rays_reused) << "the first eye's";
   }
 }
 
-TEST_F(DirtyTileImages, TranslucentMeshesAndSlicesAreMarchedUnderTheCursorAlone) {
+TEST_F(DirtyTileImages, TranslucentMeshesAndSlicesAreMarchedOnlyUnderTheCursor) {
   packet_.width = 160;
   packet_.height = 120;
   SliceItem slice;
@@ -192,7 +191,7 @@ TEST_F(DirtyTileImages, TranslucentMeshesAndSlicesAreMarchedUnderTheCursorAlone)
   expect_whole("layers again");
 }
 
-TEST_F(DirtyTileImages, OpaqueSurfacesAreFoundOnceAndSeenAmongWhatMoves) {
+TEST_F(DirtyTileImages, OpaqueSurfacesAreFoundOnceAndDrawnAmongMovingObjects) {
   packet_.width = 240;
   packet_.height = 180;
   IsosurfaceItem surface;
@@ -229,7 +228,7 @@ TEST_F(DirtyTileImages, OpaqueSurfacesAreFoundOnceAndSeenAmongWhatMoves) {
   }
 }
 
-TEST(SameRays, DifferByWhatRaysMeetAndNotByWhatIsOpaque) {
+TEST(RaysMatch, IgnoreOpaqueObjectsAndDetectOtherChanges) {
   const auto grid = make_grid({8, 8, 8}, [](const Vec3& p) { return 0.1 * p.x; });
   FramePacket first = make_packet({30, -20, 10}, {4, 4, 4});
   first.volumes = {volume_item(grid, {{0, 0}, {1, 0.1}})};
@@ -264,7 +263,7 @@ TEST(SameRays, DifferByWhatRaysMeetAndNotByWhatIsOpaque) {
   EXPECT_FALSE(same([](FramePacket& p) { p.eyes[1].position.x += 1; }));
 }
 
-TEST_F(DirtyTileImages, FastRaysAreMarchedAsNearToTheOutlineAsTheyAreInterpolated) {
+TEST_F(DirtyTileImages, FastRaysAreMarchedWithinTheirInterpolationDistanceOfTheOutline) {
   packet_.cursors[0].id = 1;
   for (const auto& [settings, reach] : {std::pair{keeping(1, 0, -1), 1}, {keeping(2, 0, 3), 3}, {keeping(4, 1, 3), 6}}) {
     draw(packet_, settings);
@@ -277,7 +276,7 @@ TEST_F(DirtyTileImages, FastRaysAreMarchedAsNearToTheOutlineAsTheyAreInterpolate
   }
 }
 
-TEST_F(DirtyTileImages, WhatElseChangesIsDrawnWhole) {
+TEST_F(DirtyTileImages, OtherChangesRedrawTheWholeImage) {
   const RenderSettings settings = keeping(2, 0, 3);
   draw(packet_, settings);
   const auto expect_whole = [&](const char* what) {
@@ -297,7 +296,7 @@ TEST_F(DirtyTileImages, WhatElseChangesIsDrawnWhole) {
   expect_whole("the size");
   packet_.volumes[0].grid = make_grid({48, 40, 44}, [](const Vec3& p) { return 0.5 + 0.5 * std::sin(0.5 * p.x); });
   expect_whole("the grid");
-  // rays of another kind have drawn into the same image
+  // another ray type has drawn into the same image
   draw(packet_);
   expect_whole("exact rays between");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The fast raycast: known pictures within 2/255 at every spacing, agreement with the exact one, opaque things inside the volume.
+/// The fast raycast: known images within 2/255 at every spacing, agreement with the exact raycast, opaque objects inside the volume.
 #include <cmath>
 #include <numbers>
 
@@ -21,15 +21,15 @@ class FastVolume : public ImageTest {
   }
 };
 
-/// The worst difference between alpha and 1 - exp(-tau(ray)) over the pixels.
-double worst_alpha(const Image8& picture, const FramePacket& packet, const std::function<double(const Ray&)>& depth) {
+/// Maximum difference between alpha and 1 - exp(-tau(ray)) over the pixels.
+double worst_alpha(const Image8& rendered, const FramePacket& packet, const std::function<double(const Ray&)>& depth) {
   Bounds none;
   const Camera camera = make_camera(packet.view, packet.width, packet.height, none);
   double worst = 0;
-  for (std::uint32_t y = 0; y < picture.height; ++y)
-    for (std::uint32_t x = 0; x < picture.width; ++x) {
+  for (std::uint32_t y = 0; y < rendered.height; ++y)
+    for (std::uint32_t x = 0; x < rendered.width; ++x) {
       const double expected = 255 * (1 - std::exp(-depth(pixel_ray(camera, x + 0.5, y + 0.5))));
-      worst = std::max(worst, std::fabs(picture.pixel(x, y)[3] - expected));
+      worst = std::max(worst, std::fabs(rendered.pixel(x, y)[3] - expected));
     }
   return worst;
 }
@@ -40,9 +40,9 @@ double rmse(const Image8& a, const Image8& b) {
   return std::sqrt(sum / double(a.rgba.size()));
 }
 
-int covered(const Image8& picture) {
+int covered(const Image8& rendered) {
   int count = 0;
-  for (std::size_t i = 3; i < picture.rgba.size(); i += 4) count += picture.rgba[i] > 0;
+  for (std::size_t i = 3; i < rendered.rgba.size(); i += 4) count += rendered.rgba[i] > 0;
   return count;
 }
 
@@ -57,27 +57,27 @@ VolumeItem coloured(GridPtr grid, bool shade = false) {
   return item;
 }
 
-TEST_F(FastVolume, HomogeneousBoxWhateverTheStep) {
+TEST_F(FastVolume, AHomogeneousBoxIsExactForAnyStep) {
   const auto grid = make_grid({20, 33, 12}, [](const Vec3&) { return 0.5; });
   FramePacket packet = make_packet({52, -41, 37}, {9.5, 16, 5.5}, 40);
   for (const double sigma : {0.02, 0.1, 1.0}) {
     packet.volumes = {volume_item(grid, {{0, sigma}, {1, sigma}}, {0.2f, 0.5f, 0.9f})};
     for (const double step : {0.5, 4.0}) {
-      const Image8 picture = draw(packet, fast(step, 1), step == 4 && sigma == 0.1 ? "box" : "");
-      EXPECT_LE(worst_alpha(picture, packet, [&](const Ray& ray) { return sigma * chord_length(*grid, ray.origin, ray.direction); }), 1);
-      EXPECT_GT(covered(picture), 2500);
-      for (std::uint32_t y = 0; y < picture.height; ++y)
-        for (std::uint32_t x = 0; x < picture.width; ++x)
-          if (picture.pixel(x, y)[3] > 8) {
-            ASSERT_NEAR(picture.pixel(x, y)[0], 51, 1);
-            ASSERT_NEAR(picture.pixel(x, y)[2], 229.5, 1.5);
+      const Image8 rendered = draw(packet, fast(step, 1), step == 4 && sigma == 0.1 ? "box" : "");
+      EXPECT_LE(worst_alpha(rendered, packet, [&](const Ray& ray) { return sigma * chord_length(*grid, ray.origin, ray.direction); }), 1);
+      EXPECT_GT(covered(rendered), 2500);
+      for (std::uint32_t y = 0; y < rendered.height; ++y)
+        for (std::uint32_t x = 0; x < rendered.width; ++x)
+          if (rendered.pixel(x, y)[3] > 8) {
+            ASSERT_NEAR(rendered.pixel(x, y)[0], 51, 1);
+            ASSERT_NEAR(rendered.pixel(x, y)[2], 229.5, 1.5);
           }
     }
   }
 }
 
-/// A ray that ends early says of the rest what it has met: it shows no less of an even body, and no edge where rays begin to end early.
-TEST_F(FastVolume, WhatAnEndedRayLeavesOutIsTold) {
+/// A ray that ends early extrapolates the rest: a homogeneous body has the full alpha, without an edge where early termination starts.
+TEST_F(FastVolume, AnEndedRayExtrapolatesTheRest) {
   const auto grid = make_grid({20, 33, 12}, [](const Vec3&) { return 0.5; });
   FramePacket packet = make_packet({52, -41, 37}, {9.5, 16, 5.5}, 40);
   for (const bool shade : {false, true})
@@ -86,15 +86,15 @@ TEST_F(FastVolume, WhatAnEndedRayLeavesOutIsTold) {
       packet.volumes[0].is_shaded = shade;
       RenderSettings settings = fast(0.5, 1);
       settings.fast->termination = 1.0 / 16;
-      const Image8 picture = draw(packet, settings);
-      EXPECT_LE(worst_alpha(picture, packet, [&](const Ray& ray) { return sigma * chord_length(*grid, ray.origin, ray.direction); }), 1)
+      const Image8 rendered = draw(packet, settings);
+      EXPECT_LE(worst_alpha(rendered, packet, [&](const Ray& ray) { return sigma * chord_length(*grid, ray.origin, ray.direction); }), 1)
           << sigma;
       const Image8 whole = draw(packet, fast(0.5, 1));
-      int most = 0;
-      for (std::size_t i = 0; i < whole.rgba.size(); ++i) most = std::max(most, std::abs(int(whole.rgba[i]) - int(picture.rgba[i])));
-      EXPECT_LE(most, 2) << sigma;
+      int maximum = 0;
+      for (std::size_t i = 0; i < whole.rgba.size(); ++i) maximum = std::max(maximum, std::abs(int(whole.rgba[i]) - int(rendered.rgba[i])));
+      EXPECT_LE(maximum, 2) << sigma;
     }
-  // and of what is not even it says no more than a part of what is left
+  // in an inhomogeneous volume the error is below a part of the remaining transmittance
   packet = make_packet({120, -90, 80}, {23.5, 19.5, 21.5}, 30);
   packet.volumes = {coloured(waves())};
   packet.volumes[0].transfer.extinctions = {{0, 0}, {0.3, 0}, {1, 0.6}};
@@ -104,16 +104,16 @@ TEST_F(FastVolume, WhatAnEndedRayLeavesOutIsTold) {
   EXPECT_LT(measure_error(draw(packet, settings), whole).rmse, 255.0 / 32 / 4);
 }
 
-TEST_F(FastVolume, BoxFromCoarseRaysRefinedAtItsEdges) {
+TEST_F(FastVolume, ABoxByCoarseRaysIsRefinedAtItsEdges) {
   const auto grid = make_grid({40, 33, 32}, [](const Vec3&) { return 0.5; });
   FramePacket packet = make_packet({92, -71, 67}, {19.5, 16, 15.5}, 35);
   packet.volumes = {volume_item(grid, {{0, 0.05}, {1, 0.05}})};
   const auto depth = [&](const Ray& ray) { return 0.05 * chord_length(*grid, ray.origin, ray.direction); };
   for (const std::uint32_t spacing : {2u, 4u}) {
-    const Image8 picture = draw(packet, fast(4, spacing, 0, 0), "box");
-    EXPECT_LE(worst_alpha(picture, packet, depth), 1);  // threshold 0: every block that is not flat is marched
+    const Image8 rendered = draw(packet, fast(4, spacing, 0, 0), "box");
+    EXPECT_LE(worst_alpha(rendered, packet, depth), 1);  // threshold 0: every block that is not uniform is marched
     const Image8 rough = draw(packet, fast(4, spacing, -1, -1), "unrefined");
-    EXPECT_GT(worst_alpha(rough, packet, depth), 4);  // or the refinement would prove nothing
+    EXPECT_GT(worst_alpha(rough, packet, depth), 4);  // without refinement the error is larger
   }
 }
 
@@ -139,8 +139,8 @@ TEST_F(FastVolume, LinearSigmaIsExact) {
         << step;
 }
 
-TEST_F(FastVolume, GaussianMatchesItsIntegralAtEverySpacing) {
-  const double s = 4.5;  // 9 voxels wide
+TEST_F(FastVolume, AGaussianMatchesItsIntegralAtEverySpacing) {
+  const double s = 4.5;  // width 9 voxels
   const Vec3 c(31.5);
   const auto grid = make_grid({64, 64, 64}, [&](const Vec3& p) { return std::exp(-dot(p - c, p - c) / (2 * s * s)); });
   FramePacket packet = make_packet({120, -80, 90}, c, 25);
@@ -155,7 +155,7 @@ TEST_F(FastVolume, GaussianMatchesItsIntegralAtEverySpacing) {
   EXPECT_LE(worst_alpha(draw(packet, fast(3, 4, -1, -1), "unrefined"), packet, depth), 3);
 }
 
-TEST_F(FastVolume, EyeInside) {
+TEST_F(FastVolume, CameraInsideTheVolume) {
   const auto grid = make_grid({24, 24, 24}, [](const Vec3&) { return 0.5; });
   FramePacket packet = make_packet({11.3, 9.7, 12.1}, {20, 14, 9}, 90);
   packet.volumes = {volume_item(grid, {{0, 0.07}, {1, 0.07}})};
@@ -164,7 +164,7 @@ TEST_F(FastVolume, EyeInside) {
   EXPECT_LE(worst_alpha(draw(packet, fast(2, 4), "box"), packet, depth), 2);
 }
 
-TEST_F(FastVolume, OrthographicRotatedAnisotropic) {
+TEST_F(FastVolume, OrthographicOfARotatedAnisotropicGrid) {
   const double a = 0.4;
   const Mat3 linear = Mat3(std::cos(a), std::sin(a), 0, -std::sin(a), std::cos(a), 0, 0, 0, 1) * Mat3(0.5, 0, 0, 0, 1.25, 0, 0.3, 0, 3);
   const auto grid = make_grid(
@@ -174,12 +174,12 @@ TEST_F(FastVolume, OrthographicRotatedAnisotropic) {
   packet.view.orthographic = true;
   packet.view.height = 45;
   packet.volumes = {volume_item(grid, {{0, 0.08}, {1, 0.08}})};
-  const Image8 picture = draw(packet, fast(1, 1), "box");
-  EXPECT_LE(worst_alpha(picture, packet, [&](const Ray& ray) { return 0.08 * chord_length(*grid, ray.origin, ray.direction); }), 1);
-  EXPECT_GT(covered(picture), 2000);
+  const Image8 rendered = draw(packet, fast(1, 1), "box");
+  EXPECT_LE(worst_alpha(rendered, packet, [&](const Ray& ray) { return 0.08 * chord_length(*grid, ray.origin, ray.direction); }), 1);
+  EXPECT_GT(covered(rendered), 2000);
 }
 
-TEST_F(FastVolume, AgreesWithTheExactOne) {
+TEST_F(FastVolume, MatchesTheExactRaycast) {
   FramePacket packet = make_packet({130, -100, 90}, {23.5, 19.5, 21.5});
   packet.background = {0.2f, 0.3f, 0.1f, 1};
   for (const bool shade : {false, true}) {
@@ -187,13 +187,13 @@ TEST_F(FastVolume, AgreesWithTheExactOne) {
     const Image8 exact = draw(packet, reference_settings(), shade ? "shaded" : "plain");
     for (const std::uint32_t spacing : {1u, 2u, 4u}) {
       EXPECT_LT(rmse(draw(packet, fast(2, spacing), shade ? "shaded-fast" : "plain-fast"), exact), shade ? 1.3 : 0.6)
-          << spacing << shade;  // lit by the cell's gradient
+          << spacing << shade;  // shaded by the cell's gradient
       EXPECT_LT(rmse(draw(packet, fast(2, spacing, 0.3, -1)), exact), 1.5) << spacing << shade;
     }
   }
 }
 
-TEST_F(FastVolume, SmoothGradientsShadeAsTheExactOne) {
+TEST_F(FastVolume, SmoothGradientsMatchTheExactShading) {
   FramePacket packet = make_packet({130, -100, 90}, {23.5, 19.5, 21.5});
   packet.background = {0, 0, 0, 1};
   packet.volumes = {coloured(waves(), true)};
@@ -204,15 +204,15 @@ TEST_F(FastVolume, SmoothGradientsShadeAsTheExactOne) {
   const double smooth = rmse(draw(packet, settings, "smooth"), exact);
   EXPECT_LT(smooth, 0.5);
   EXPECT_LT(smooth, 0.7 * by_cell);
-  // where nothing varies only the ambient share is left
+  // in homogeneous regions only the ambient light remains
   packet.volumes = {volume_item(make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; }), {{0, 0.5}, {1, 0.5}})};
   packet.volumes[0].is_shaded = true;
   EXPECT_LE(max_difference(draw(packet, settings), draw(packet)), 1);
 }
 
-/// An opaque body with a grain of one voxel, as an MR scan has it, and in the other half faint noise about strong thin tubes: the light of
-/// short steps is that of the exact raycast.
-TEST_F(FastVolume, LightOfOpaqueThingsConvergesToTheExactOne) {
+/// An opaque body with noise of one voxel, as in an MR scan, and in the other half faint noise about opaque thin tubes: the shading of
+/// short steps converges to the exact raycast's.
+TEST_F(FastVolume, ShadingOfOpaqueVolumesConvergesToTheExactRaycast) {
   const auto grain = [](const Vec3& p) {
     return std::fmod(std::fabs(std::sin(12.9898 * p.x + 78.233 * p.y + 37.719 * p.z) * 43758.5453), 1.0);
   };
@@ -234,14 +234,14 @@ TEST_F(FastVolume, LightOfOpaqueThingsConvergesToTheExactOne) {
       settings.fast->smooth_gradients = true;
       return measure_error(draw(packet, settings), truth).rmse;
     };
-    // long steps, too, are short where the light falls first
+    // long steps are refined at the first visible surface
     EXPECT_LT(error_at(0.25), 0.4);
     EXPECT_LT(error_at(1), 0.5);
     EXPECT_LT(error_at(0.5), 0.75 * error_at(4));
   }
 }
 
-/// Steps six times as long as a wall is thick: what is seen first is not leapt over.
+/// Steps of six times a wall's thickness do not skip the wall.
 TEST_F(FastVolume, LongStepsFindThinWalls) {
   const auto shell = make_grid({48, 48, 48}, [](const Vec3& p) {
     const double off = norm(p - Vec3(23.5)) - 16;
@@ -254,11 +254,11 @@ TEST_F(FastVolume, LongStepsFindThinWalls) {
     const Image8 truth = draw(packet, reference_settings());
     RenderSettings settings = fast(6, 1);
     settings.fast->smooth_gradients = shade;
-    EXPECT_LT(measure_error(draw(packet, settings), truth).rmse, 6) << shade;  // 80 and more without what is found
+    EXPECT_LT(measure_error(draw(packet, settings), truth).rmse, 6) << shade;  // above 80 without the wall
   }
 }
 
-TEST_F(FastVolume, LeapsChangeLittle) {
+TEST_F(FastVolume, EmptySpaceSkippingChangesLittle) {
   const Vec3 c(20, 40, 30);
   const auto grid =
       make_grid({64, 56, 48}, [&](const Vec3& p) { return std::max(0.0, 1 - norm(p - c) / 11) + (p.x > 55 && p.z < 9 ? 0.7 : 0.0); });
@@ -273,8 +273,8 @@ TEST_F(FastVolume, LeapsChangeLittle) {
   EXPECT_GT(covered(with), 500);
 }
 
-TEST_F(FastVolume, MarchesEndAtTheOpaqueDepth) {
-  // a plane of value 20 inside a haze: what is behind it must not be seen, whatever is interpolated
+TEST_F(FastVolume, RaysEndAtTheOpaqueDepth) {
+  // a plane of value 20 inside a haze hides everything behind it, also in interpolated pixels
   const auto haze = make_grid({40, 40, 40}, [](const Vec3&) { return 0.5; });
   const auto plane = make_grid({40, 40, 40}, [](const Vec3& p) { return p.x > 12 && p.x < 27 ? p.y : 0.0; });
   FramePacket packet = make_packet({19.5, -70, 19.5}, {19.5, 19.5, 19.5});
@@ -286,7 +286,7 @@ TEST_F(FastVolume, MarchesEndAtTheOpaqueDepth) {
   const Image8 exact = draw(packet, {}, "exact");
   for (const std::uint32_t spacing : {1u, 2u, 4u}) {
     EXPECT_LE(max_difference(draw(packet, fast(4, spacing, 0.2, 0.2), "fast"), exact), 2) << spacing;
-    // unrefined too, around the plane; the box's own outline is another matter
+    // also without refinement, around the plane; the box's outline is excluded
     const Image8 coarse = draw(packet, fast(4, spacing, -1, -1), "unrefined");
     for (std::uint32_t y = 22; y < 98; ++y)
       for (std::uint32_t x = 50; x < 110; ++x)
@@ -294,15 +294,15 @@ TEST_F(FastVolume, MarchesEndAtTheOpaqueDepth) {
   }
 }
 
-TEST_F(FastVolume, WhatItCannotDrawIsDrawnExactly) {
+TEST_F(FastVolume, UnsupportedVolumesAreDrawnByExactRays) {
   FramePacket packet = make_packet({55, -40, 35}, {10, 8, 8});
   const auto plain = make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; });
   packet.volumes = {volume_item(plain, {{0, 0.2}, {1, 0.2}}), volume_item(plain, {{0, 0.1}, {1, 0.1}})};
   EXPECT_EQ(max_difference(draw(packet, fast(4, 4)), draw(packet)), 0);
 }
 
-TEST_F(FastVolume, PlateausBesideEdgesAreLitAsTheExactOneLightsThem) {
-  // slopes of a thousandth of the edge's, whose directions are all that the light asks for
+TEST_F(FastVolume, PlateausBesideEdgesMatchTheExactShading) {
+  // slopes of a thousandth of the edge's, of which shading uses only the direction
   const auto grid = make_grid({48, 48, 48}, [](const Vec3& p) {
     const double edge = std::sqrt((p.x - 24) * (p.x - 24) + (p.y - 24) * (p.y - 24) + (p.z - 24) * (p.z - 24)) - 17;
     return 0.8 / (1 + std::exp(4 * edge)) + 0.002 * std::sin(0.3 * p.x) * std::sin(0.35 * p.y + 0.2) * std::sin(0.25 * p.z + 1);
@@ -317,7 +317,7 @@ TEST_F(FastVolume, PlateausBesideEdgesAreLitAsTheExactOneLightsThem) {
   EXPECT_LT(rmse(draw(packet, settings, "plateau-fast"), exact), 1);
 }
 
-TEST_F(FastVolume, WhatDoesNotFitInMemoryIsDrawnExactlyAndSaid) {
+TEST_F(FastVolume, VolumesBeyondTheMemoryAreDrawnByExactRaysWithANote) {
   FramePacket packet = make_packet({130, -100, 90}, {23.5, 19.5, 21.5});
   packet.volumes = {coloured(waves(), true)};
   const Image8 exact = draw(packet);
@@ -329,7 +329,7 @@ TEST_F(FastVolume, WhatDoesNotFitInMemoryIsDrawnExactlyAndSaid) {
   ASSERT_EQ(renderer_->stats().warnings.size(), 1u);
   EXPECT_NE(renderer_->stats().warnings[0].find("\"density\" is drawn by exact rays"), std::string::npos) << renderer_->stats().warnings[0];
   EXPECT_FALSE(renderer_->can_draw_fast(packet));
-  // it fits without gradients of its own, but not with them
+  // the volume fits without its gradients only
   settings.fast->max_bytes += 1;
   EXPECT_GT(max_difference(draw(packet, settings), exact), 0);
   EXPECT_TRUE(renderer_->stats().warnings.empty());
@@ -337,12 +337,12 @@ TEST_F(FastVolume, WhatDoesNotFitInMemoryIsDrawnExactlyAndSaid) {
   settings.fast->smooth_gradients = true;
   EXPECT_EQ(max_difference(draw(packet, settings), exact), 0);
   EXPECT_EQ(renderer_->stats().warnings.size(), 1u);
-  draw(packet);  // exact rays were asked for: nothing to say
+  draw(packet);  // exact rays were requested, so that there is no note
   EXPECT_TRUE(renderer_->stats().warnings.empty());
 }
 
-TEST_F(FastVolume, LitPlainRegionsAreNotLeaptOver) {
-  // one colour and density all through, so that the light alone varies
+TEST_F(FastVolume, ShadedHomogeneousRegionsAreNotSkipped) {
+  // constant colour and density, so that only the shading varies
   const auto grid =
       make_grid({40, 40, 40}, [](const Vec3& p) { return 0.5 + 0.3 * std::sin(0.5 * p.x) * std::sin(0.4 * p.y + 0.3 * p.z); });
   FramePacket packet = make_packet({100, -70, 60}, {19.5, 19.5, 19.5});
@@ -354,24 +354,24 @@ TEST_F(FastVolume, LitPlainRegionsAreNotLeaptOver) {
   EXPECT_LT(rmse(draw(packet, fast(2, 1)), exact), 1.2);
 }
 
-TEST_F(FastVolume, LightIsThatOfTheDerivativeAlongTheRay) {
-  // five codes a voxel along x: the light is one number a ray, the cosine of ray and x
+TEST_F(FastVolume, ShadingUsesTheDerivativeAlongTheRay) {
+  // five codes per voxel along x: the shading of a ray is constant, the cosine of ray and x
   const auto grid = make_grid({52, 41, 41}, [](const Vec3& p) { return p.x / 51; });
   FramePacket packet = make_packet({95, -60, 40}, {25, 20, 20}, 35);
   packet.background = {0, 0, 0, 1};
-  packet.volumes = {volume_item(grid, {{0, 0.5}, {1, 0.5}})};  // nothing gets through
+  packet.volumes = {volume_item(grid, {{0, 0.5}, {1, 0.5}})};  // opaque
   packet.volumes[0].is_shaded = true;
   Bounds none;
   const Camera camera = make_camera(packet.view, packet.width, packet.height, none);
   for (const bool smooth : {false, true}) {
     RenderSettings settings = fast(3, 1);
     settings.fast->smooth_gradients = smooth;
-    const Image8 picture = draw(packet, settings, smooth ? "smooth" : "cell");
+    const Image8 rendered = draw(packet, settings, smooth ? "smooth" : "cell");
     for (std::uint32_t y = 40; y < 80; ++y)
       for (std::uint32_t x = 60; x < 100; ++x) {
         const double n = std::fabs(pixel_ray(camera, x + 0.5, y + 0.5).direction.x);
         const double light = 0.2 + 0.7 * n + 0.2 * std::pow(std::max(0.0, 2 * n * n - 1), 20);
-        ASSERT_NEAR(picture.pixel(x, y)[1], 255 * std::min(1.0, light), 2) << x << " " << y << smooth;
+        ASSERT_NEAR(rendered.pixel(x, y)[1], 255 * std::min(1.0, light), 2) << x << " " << y << smooth;
       }
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Fewer rays away from where the eye looks: as it would be without within the fovea, interpolated far from it.
+/// Foveated rendering: unchanged within the fovea, interpolated from fewer rays far from it.
 #include <cmath>
 
 #include "render/frame/camera.h"
@@ -31,15 +31,16 @@ class Foveation : public ImageTest {
 };
 
 struct Counts {
-  int inside = 0, inside_other = 0;  ///< within the fovea; of these, unlike the picture that is refined everywhere
-  int outside = 0, outside_refined = 0, outside_interpolated = 0;  ///< where the refined and the interpolated picture differ
+  int inside = 0, inside_other = 0;  ///< pixels in the fovea; those that differ from the fully refined image
+  int outside = 0, outside_refined = 0,
+      outside_interpolated = 0;  ///< pixels far from the fovea where the refined and the interpolated image differ
 };
 
 bool same(const Image8& a, const Image8& b, std::uint32_t x, std::uint32_t y) {
   return std::equal(a.pixel(x, y), a.pixel(x, y) + 4, b.pixel(x, y));
 }
 
-TEST_F(Foveation, RefinesWhereTheEyeLooksAndNotFarFromIt) {
+TEST_F(Foveation, RefinesTheFoveaAndNotFarFromIt) {
   for (const auto& [spacing, half, full] : {std::tuple{2u, 0.0, 0.3}, std::tuple{4u, 0.3, 0.3}}) {
     const Image8 refined = draw(packet_, settings(spacing, half, full), "everywhere");
     const Image8 rough = draw(packet_, settings(spacing, half > 0 ? -1 : 0, -1), "nowhere");
@@ -48,7 +49,7 @@ TEST_F(Foveation, RefinesWhereTheEyeLooksAndNotFarFromIt) {
       some.fast->fovea_tangent = std::tan(12 * M_PI / 180);
       some.fast->gaze_right = right;
       some.fast->gaze_up = up;
-      const Image8 picture = draw(packet_, some, right > 0 ? "gaze" : "middle");
+      const Image8 image = draw(packet_, some, right > 0 ? "gaze" : "middle");
       const Camera camera = make_camera(packet_.view, packet_.width, packet_.height, {});
       Counts c;
       for (std::uint32_t y = 0; y < packet_.height; ++y)
@@ -56,14 +57,14 @@ TEST_F(Foveation, RefinesWhereTheEyeLooksAndNotFarFromIt) {
           const Vec3 d = pixel_ray(camera, x + 0.5, y + 0.5).direction;
           const double ahead = -dot(d, camera.back);
           const double off = std::hypot(dot(d, camera.right) / ahead - right, dot(d, camera.up) / ahead - up) / some.fast->fovea_tangent;
-          // a block's middle counts for all of it, of either lattice
+          // the block's centre decides for the whole block, on both lattices
           if (off < 0.6) {
             ++c.inside;
-            c.inside_other += same(picture, refined, x, y) ? 0 : 1;
+            c.inside_other += same(image, refined, x, y) ? 0 : 1;
           } else if (off > 2 && !same(refined, rough, x, y)) {
             ++c.outside;
-            c.outside_refined += same(picture, refined, x, y) ? 1 : 0;
-            c.outside_interpolated += same(picture, rough, x, y) ? 1 : 0;
+            c.outside_refined += same(image, refined, x, y) ? 1 : 0;
+            c.outside_interpolated += same(image, rough, x, y) ? 1 : 0;
           }
         }
       EXPECT_GT(c.inside, 300) << spacing << " " << right;
@@ -75,7 +76,7 @@ TEST_F(Foveation, RefinesWhereTheEyeLooksAndNotFarFromIt) {
   }
 }
 
-TEST_F(Foveation, WithoutAFoveaOrWithoutAnglesItIsThePictureAsItWas) {
+TEST_F(Foveation, WithoutAFoveaOrAnglesTheImageIsUnchanged) {
   packet_.view.orthographic = true;
   packet_.view.height = 40;
   const Image8 plain = draw(packet_, settings(2, 0, 0.3), "flat");

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A voxel of 1e20 among values from 0 to 1 spoils its own cells, and not the picture: neither texels of 16 bits nor codes of 8 are scaled
-/// by it.
+/// A voxel of 1e20 among values from 0 to 1 changes only its own cells: neither 16-bit texels nor 8-bit codes are scaled to it.
 #include <cmath>
 
 #include "tests/render/support/image_fixture.h"
@@ -19,7 +18,7 @@ int different_pixels(const Image8& a, const Image8& b) {
   return count;
 }
 
-TEST_F(RaycastOutliers, ThePictureStaysAsItIs) {
+TEST_F(RaycastOutliers, AnOutlierChangesOnlyItsOwnCells) {
   const auto wave = [](const Vec3& p) { return 0.5 + 0.4 * std::sin(0.5 * p.x) * std::cos(0.4 * p.y + 0.3 * p.z); };
   const auto clean = make_grid({24, 24, 24}, wave);
   RenderSettings fast;
@@ -34,7 +33,7 @@ TEST_F(RaycastOutliers, ThePictureStaysAsItIs) {
         const RenderSettings settings = exact ? RenderSettings{} : fast;
         const Image8 expected = draw(packet, settings);
         packet.volumes[0].grid = spoiled;
-        // the outlier's cells are two voxels wide, a fiftieth of the picture of the box
+        // the outlier's cells are two voxels wide, a fiftieth of the box's image
         EXPECT_LT(different_pixels(draw(packet, settings, exact ? "exact" : "fast"), expected), 250) << outlier << shade << exact;
       }
   }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the fast raycast packs beside whole grids: grids with invalid cells, and large ones as bricks. Known pictures, and agreement with
-/// exact rays.
+/// Packed formats of the fast raycast: grids with invalid cells, and large grids as bricks. Known images, and agreement with exact rays.
 #include <cmath>
 
 #include "render/frame/camera.h"
@@ -8,7 +7,7 @@
 #include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
-namespace packed_forms_test {
+namespace packed_formats_test {
 
 using namespace catena::render;
 
@@ -23,7 +22,7 @@ double covered_rmse(const Image8& found, const Image8& expected) { return measur
 
 class PackedFormats : public ImageTest {};
 
-TEST_F(PackedFormats, AHomogeneousBodyEndsWhereItsCellsAreValid) {
+TEST_F(PackedFormats, AHomogeneousBoxEndsAtItsInvalidCells) {
   const auto valid = [](const Vec3& p) { return p.x <= 15; };
   const auto masked = make_grid(
       {32, 16, 16}, [](const Vec3& p) { return p.x <= 15 ? 0.5 : std::nan(""); }, {}, valid);
@@ -34,18 +33,18 @@ TEST_F(PackedFormats, AHomogeneousBodyEndsWhereItsCellsAreValid) {
   const Image8 found = draw(packet, fast(0.25), "half");
   packet.volumes = {volume_item(half, {{0, 0.2}, {1, 0.2}})};
   const Image8 expected = draw(packet, fast(0.25));
-  // a segment that the mask cuts counts by halves: an eighth of a voxel
+  // tolerance: a segment cut by the mask counts half, an eighth of a voxel
   EXPECT_LE(max_difference(found, expected), 0.125 * 0.2 * 255 + 1);
   EXPECT_LT(covered_rmse(found, expected), 2);
 }
 
-TEST_F(PackedFormats, WhatIsMaskedOutIsNotSeenAndDoesNotLightItsNeighbours) {
+TEST_F(PackedFormats, MaskedCellsAreInvisibleAndDoNotAffectNeighbouringShading) {
   const Vec3 c(23.5, 19.5, 21.5);
   const auto valid = [&](const Vec3& p) { return p.y > 12 || length(p - c) < 10; };
   const auto grid = make_grid(
       {48, 40, 44},
       [&](const Vec3& p) {
-        if (!valid(p)) return 7.0;  // never to be seen
+        if (!valid(p)) return 7.0;  // invisible
         return 0.5 + 0.5 * std::sin(0.31 * p.x) * std::cos(0.27 * p.y + 0.2 * p.z);
       },
       {}, valid);
@@ -61,7 +60,7 @@ TEST_F(PackedFormats, WhatIsMaskedOutIsNotSeenAndDoesNotLightItsNeighbours) {
   }
 }
 
-/// Longer than a texture may be, so that it cannot be packed whole.
+/// A grid larger than a texture's maximum size, so that it is packed as bricks.
 class Bricks : public PackedFormats {
  protected:
   static double wave(const Vec3& p) {
@@ -75,7 +74,7 @@ class Bricks : public PackedFormats {
   }
 };
 
-TEST_F(Bricks, AreDrawnAsExactRaysDrawThem) {
+TEST_F(Bricks, MatchTheExactRaycast) {
   FramePacket packet = looking();
   for (const bool shade : {false, true}) {
     packet.volumes = {volume_item(long_grid(), {{0, 0}, {0.55, 0}, {1, 0.3}})};
@@ -90,21 +89,21 @@ TEST_F(Bricks, AreDrawnAsExactRaysDrawThem) {
   }
 }
 
-TEST_F(Bricks, ThatATransferFunctionAsksForLaterArePackedThen) {
+TEST_F(Bricks, AreRepackedForANewTransferFunction) {
   FramePacket packet = looking();
   const GridPtr grid = long_grid();
-  const auto picture = [&](double from) {
+  const auto rendered = [&](double from) {
     packet.volumes = {volume_item(grid, {{0, 0}, {from, 0}, {1, 0.3}})};
     return draw(packet, fast(1));
   };
-  const Image8 little = picture(0.9), much = picture(0.6), again = picture(0.9);
+  const Image8 little = rendered(0.9), much = rendered(0.6), again = rendered(0.9);
   EXPECT_EQ(max_difference(little, again), 0);
   EXPECT_GT(max_difference(little, much), 20);
   packet.volumes[0].transfer.extinctions = {{0, 0}, {0.6, 0}, {1, 0.3}};
   EXPECT_LT(covered_rmse(much, draw(packet, reference_settings())), 1.0);
 }
 
-TEST_F(Bricks, ThatDoNotFitAreDrawnExactlyAndSaid) {
+TEST_F(Bricks, BeyondTheMemoryAreDrawnByExactRaysWithANote) {
   FramePacket packet = looking();
   packet.volumes = {volume_item(long_grid(), {{0, 0}, {0.6, 0}, {1, 0.3}})};
   RenderSettings settings = fast(1);
@@ -115,8 +114,8 @@ TEST_F(Bricks, ThatDoNotFitAreDrawnExactlyAndSaid) {
   EXPECT_EQ(max_difference(found, draw(packet)), 0);
 }
 
-TEST_F(Bricks, HaveGradientsAsFineAsTheDeviceHasRoomFor) {
-  // noise: a gradient a voxel says more than one of every second
+TEST_F(Bricks, HaveGradientsAsFineAsTheMemoryAllows) {
+  // noise: a gradient per voxel is more accurate than one per two voxels
   std::uint32_t state = 1;
   const GridPtr whole = long_grid();
   const auto noise = make_grid({std::int32_t(whole->index_box().hi.x) + 1, 40, 36}, [&](const Vec3& p) {
@@ -144,5 +143,5 @@ TEST_F(Bricks, HaveGradientsAsFineAsTheDeviceHasRoomFor) {
   EXPECT_GT(covered_rmse(coarse, exact), covered_rmse(fine, exact));
 }
 
-}  // namespace packed_forms_test
+}  // namespace packed_formats_test
 }  // namespace catena::test

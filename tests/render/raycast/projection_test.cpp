@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Projections of a volume: the greatest, the least and the mean value along every ray, against dense sampling in double precision.
+/// Projections of a volume: the maximum, minimum and mean along every ray, against dense sampling in double precision.
 #include <cmath>
 
 #include "render/frame/camera.h"
@@ -11,11 +11,11 @@ namespace projection_test {
 using namespace catena::render;
 
 struct Found {
-  double greatest = -HUGE_VAL, least = HUGE_VAL, mean = 0;
+  double max_value = -HUGE_VAL, min_value = HUGE_VAL, mean = 0;
   bool any = false;
 };
 
-/// Over the ray's part in the domain, in valid cells, not behind `end`.
+/// Values along the ray within the domain, in valid cells, up to `end`.
 Found along(const field::ScalarGrid& grid, const Ray& ray, double from = 0, double end = 1e9) {
   const Vec3 o = grid.mapping().index_from_world(ray.origin), d = grid.mapping().index_from_world_linear * ray.direction;
   double enter = from, leave = end;
@@ -32,8 +32,8 @@ Found along(const field::ScalarGrid& grid, const Ray& ray, double from = 0, doub
   for (int k = 0; k < steps; ++k) {
     const auto sample = grid.sample(ray.origin + (enter + (k + 0.5) * (leave - enter) / steps) * ray.direction, cursor);
     if (!sample.inside) continue;
-    found.greatest = std::max(found.greatest, sample.value);
-    found.least = std::min(found.least, sample.value);
+    found.max_value = std::max(found.max_value, sample.value);
+    found.min_value = std::min(found.min_value, sample.value);
     found.mean += sample.value;
     ++count;
   }
@@ -43,7 +43,7 @@ Found along(const field::ScalarGrid& grid, const Ray& ray, double from = 0, doub
 }
 
 double of(const Found& found, Projection projection) {
-  return projection == Projection::maximum ? found.greatest : projection == Projection::minimum ? found.least : found.mean;
+  return projection == Projection::maximum ? found.max_value : projection == Projection::minimum ? found.min_value : found.mean;
 }
 
 GridPtr rough_grid(const std::function<bool(const Vec3&)>& valid = nullptr) {
@@ -53,7 +53,7 @@ GridPtr rough_grid(const std::function<bool(const Vec3&)>& valid = nullptr) {
       field::Mapping::from_linear(Mat3(0.8, 0.3, 0, -0.4, 1.1, 0.2, 0.1, 0, 1.3), {-50, 40, 3}), valid);
 }
 
-/// Grey by value, opacity 1/2 over half a unit everywhere.
+/// Grey by value, with opacity 1/2 over half a unit everywhere.
 VolumeItem grey_item(GridPtr grid, Projection projection) {
   VolumeItem item = volume_item(std::move(grid), {{0, std::log(4.0)}, {1, std::log(4.0)}});
   item.transfer.colors = {{0, 0, 0, 0}, {1, 1, 1, 1}};
@@ -68,15 +68,15 @@ const char* name_of(Projection projection) {
 
 class ProjectionTest : public ImageTest {
  protected:
-  /// Largest difference of colours, over rays that meet something; alpha is checked on all.
-  double worst(const Image8& picture, const FramePacket& packet, Projection projection, const std::function<Found(const Ray&)>& found) {
+  /// Maximum difference of colours over rays that hit the volume; alpha is checked for all rays.
+  double worst(const Image8& image, const FramePacket& packet, Projection projection, const std::function<Found(const Ray&)>& found) {
     const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
     double worst = 0;
     int hits = 0, disagree = 0;
     for (std::uint32_t y = 0; y < packet.height; y += 2)
       for (std::uint32_t x = 0; x < packet.width; x += 2) {
         const Found f = found(pixel_ray(camera, x + 0.5, y + 0.5));
-        const int alpha = picture.pixel(x, y)[3];
+        const int alpha = image.pixel(x, y)[3];
         if (f.any != (alpha > 0)) {
           ++disagree;  // grazing rays
           continue;
@@ -84,7 +84,7 @@ class ProjectionTest : public ImageTest {
         if (!f.any) continue;
         EXPECT_NEAR(alpha, 127.5, 1);
         ++hits;
-        worst = std::max(worst, std::fabs(picture.pixel(x, y)[0] - 255 * of(f, projection)));
+        worst = std::max(worst, std::fabs(image.pixel(x, y)[0] - 255 * of(f, projection)));
       }
     EXPECT_GT(hits, 500);
     EXPECT_LE(disagree, 2);
@@ -92,7 +92,7 @@ class ProjectionTest : public ImageTest {
   }
 };
 
-TEST_F(ProjectionTest, ExtremesAreExactWhateverTheStep) {
+TEST_F(ProjectionTest, ExtremesAreExactForAnyStep) {
   const auto grid = rough_grid();
   const Vec3 centre = grid->mapping().world_from_index({19.5, 17.5, 15.5});
   FramePacket packet = make_packet(centre + Vec3(70, -60, 50), centre, 32);
@@ -103,12 +103,12 @@ TEST_F(ProjectionTest, ExtremesAreExactWhateverTheStep) {
     for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas}) {
       settings.layout = layout;
       packet.volumes = {grey_item(grid, projection)};
-      const Image8 picture = draw(packet, settings, name_of(projection));
-      EXPECT_LE(worst(picture, packet, projection, [&](const Ray& ray) { return along(*grid, ray); }), 1.01) << name_of(projection);
+      const Image8 image = draw(packet, settings, name_of(projection));
+      EXPECT_LE(worst(image, packet, projection, [&](const Ray& ray) { return along(*grid, ray); }), 1.01) << name_of(projection);
     }
 }
 
-TEST_F(ProjectionTest, TheMeanIsThatOfTheRay) {
+TEST_F(ProjectionTest, TheMeanMatchesTheMeanAlongTheRay) {
   const auto grid = rough_grid();
   const Vec3 centre = grid->mapping().world_from_index({19.5, 17.5, 15.5});
   FramePacket packet = make_packet(centre + Vec3(70, -60, 50), centre, 32);
@@ -118,11 +118,11 @@ TEST_F(ProjectionTest, TheMeanIsThatOfTheRay) {
   settings.texel_format = TexelFormat::r32f;
   settings.step_voxels = 0.25;
   packet.volumes = {grey_item(grid, Projection::average)};
-  const Image8 picture = draw(packet, settings, "average");
-  EXPECT_LE(worst(picture, packet, Projection::average, [&](const Ray& ray) { return along(*grid, ray); }), 1.01);
+  const Image8 image = draw(packet, settings, "average");
+  EXPECT_LE(worst(image, packet, Projection::average, [&](const Ray& ray) { return along(*grid, ray); }), 1.01);
 }
 
-TEST_F(ProjectionTest, InvalidCellsDoNotCount) {
+TEST_F(ProjectionTest, InvalidCellsAreIgnored) {
   const auto grid = rough_grid([](const Vec3& p) { return p.x < 26 || p.y < 12; });
   const Vec3 centre = grid->mapping().world_from_index({19.5, 17.5, 15.5});
   FramePacket packet = make_packet(centre + Vec3(70, -60, 50), centre, 32);
@@ -131,13 +131,13 @@ TEST_F(ProjectionTest, InvalidCellsDoNotCount) {
   settings.step_voxels = 0.05;
   for (const Projection projection : {Projection::maximum, Projection::average}) {
     packet.volumes = {grey_item(grid, projection)};
-    const Image8 picture = draw(packet, settings, name_of(projection));
-    EXPECT_LE(worst(picture, packet, projection, [&](const Ray& ray) { return along(*grid, ray); }), 2.01) << name_of(projection);
+    const Image8 image = draw(packet, settings, name_of(projection));
+    EXPECT_LE(worst(image, packet, projection, [&](const Ray& ray) { return along(*grid, ray); }), 2.01) << name_of(projection);
   }
 }
 
-TEST_F(ProjectionTest, EndsAtOpaqueThingsAndClipPlanes) {
-  // value y / 20 seen along y: greatest where the ray ends, least where it begins
+TEST_F(ProjectionTest, EndsAtOpaqueObjectsAndClipPlanes) {
+  // value y / 20 seen along y: maximum at the end of the ray, minimum at its start
   const auto grid = make_grid({21, 21, 21}, [](const Vec3& p) { return p.y / 20; });
   FramePacket packet;
   packet.width = packet.height = 64;
@@ -156,16 +156,16 @@ TEST_F(ProjectionTest, EndsAtOpaqueThingsAndClipPlanes) {
   const double lambert = 1 / std::sqrt(1.04), mirrored = 2 * lambert * lambert - 1, behind = 0.2 * std::pow(mirrored, 20);
   for (const Projection projection : {Projection::maximum, Projection::minimum, Projection::average}) {
     packet.volumes = {grey_item(grid, projection)};
-    const Image8 picture = draw(packet, {}, name_of(projection));
+    const Image8 image = draw(packet, {}, name_of(projection));
     for (std::uint32_t x = 4; x < 64; x += 8) {
       const double world = 10 + (x + 0.5 - 32) * 0.25, end = 14 - 0.2 * (world - 10);
       const double value = projection == Projection::maximum ? end : projection == Projection::minimum ? 3 : 0.5 * (3 + end);
-      EXPECT_NEAR(picture.pixel(x, 32)[0], 255 * (0.5 * value / 20 + 0.5 * behind), 1.5) << name_of(projection) << x;
+      EXPECT_NEAR(image.pixel(x, 32)[0], 255 * (0.5 * value / 20 + 0.5 * behind), 1.5) << name_of(projection) << x;
     }
   }
 }
 
-TEST_F(ProjectionTest, StandsAloneOrIsRefusedWithASentence) {
+TEST_F(ProjectionTest, IsRefusedTogetherWithOtherVolumes) {
   const auto grid = make_grid({8, 8, 8}, [](const Vec3& p) { return p.x / 8; });
   FramePacket packet = make_packet({20, -20, 20}, {4, 4, 4});
   packet.volumes = {grey_item(grid, Projection::maximum), grey_item(grid, Projection::composite)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The mirror against the truth: values that the GPU reads against those of the grid on the CPU, at 10,000 random points.
+/// Values sampled on the GPU against the grid's values on the CPU, at 10,000 random points.
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -63,15 +63,15 @@ class Sampling : public DeviceFixture {
     return out;
   }
 
-  /// What the filter of a GPU may be off by, which weighs in 256ths along each axis. Cubic cells and lavapipe weigh in floats.
+  /// Maximum error of a GPU's texture filter, whose weights are multiples of 1/256 per axis. Cubic cells and lavapipe use float weights.
   static double of_weights(const field::ScalarGrid& grid, const Vec3& index, field::Cursor& cursor) {
     if (uses_lavapipe() || grid.interpolation() != field::Interpolation::linear) return 0;
     const field::ScalarCell cell = grid.cell(grid.cell_base(index), cursor);
-    const auto [least, most] = std::minmax_element(std::begin(cell.corner), std::end(cell.corner));
-    return 3.0 / 512 * (*most - *least);
+    const auto [min_corner, max_corner] = std::minmax_element(std::begin(cell.corner), std::end(cell.corner));
+    return 3.0 / 512 * (*max_corner - *min_corner);
   }
 
-  /// The worst error at 10,000 random points of the domain, against `tolerance(value)`.
+  /// Checks the error at 10,000 random points of the domain against `tolerance(value)`.
   void expect_close(const field::ScalarGrid& grid, const ResidencyOptions& options, const std::function<double(double)>& tolerance) {
     auto mirror = make_resident_grid(*device_, grid, options);
     ASSERT_TRUE(mirror);
@@ -84,10 +84,10 @@ class Sampling : public DeviceFixture {
     for (int i = 0; i < 10000; ++i) {
       std::uniform_real_distribution<double> unit(0, 1);
       Vec3 p = lo + size * Vec3(unit(random), unit(random), unit(random));
-      if (i % 10 == 0) p = glm::dvec3(std::round(p.x), p.y, std::round(p.z));  // faces and edges of cells too
+      if (i % 10 == 0) p = glm::dvec3(std::round(p.x), p.y, std::round(p.z));  // includes faces and edges of cells
       if (i < 8) p = lo + size * Vec3(i & 1, i >> 1 & 1, i >> 2);
       local.emplace_back(p);
-      // the truth at the very place that the GPU was given
+      // the reference at the same float position as on the GPU
       const Vec3 index = Vec3(local.back()) + Vec3(mirror->origin.x, mirror->origin.y, mirror->origin.z);
       world.push_back(grid.mapping().world_from_index(index));
     }
@@ -98,7 +98,7 @@ class Sampling : public DeviceFixture {
     for (std::size_t i = 0; i < local.size(); ++i) {
       const field::ScalarSample truth = grid.sample(world[i], cursor);
       if (mirror->masked && (values[i] > 1e29 || !truth.inside)) {
-        // at a face between a valid and an invalid cell either may answer
+        // on a face between a valid and an invalid cell either result is correct
         if (i % 10 != 0 && i >= 8) {
           EXPECT_EQ(values[i] > 1e29, !truth.inside);
         }
@@ -138,10 +138,10 @@ TEST_F(Sampling, Float32) {
     expect_close(*grid, {true, layout}, [&](double) { return 1e-5 * range; });
 }
 
-TEST_F(Sampling, HalfRounding) {
+TEST_F(Sampling, HalfFloatsAreRounded) {
   const auto grid = make_grid({64, 64, 64}, wavy);
   const double largest = std::max(std::fabs(grid->min_value()), std::fabs(grid->max_value()));
-  // half an ulp of the largest corner: 2^-12 of the power of two above it
+  // half an ulp of the largest corner value: 2^-12 of the next power of two
   for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas})
     expect_close(*grid, {false, layout}, [&](double) { return std::exp2(std::ceil(std::log2(largest)) - 12) + 1e-6 * largest; });
 }
@@ -170,7 +170,7 @@ TEST_F(Sampling, MaskedCells) {
   for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas}) expect_close(*grid, {true, layout}, [&](double) { return 1e-3; });
 }
 
-TEST_F(Sampling, CubicIsThatOfTheFieldPaddedAndMasked) {
+TEST_F(Sampling, CubicMatchesTheFieldWithPaddingAndMask) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(0, 1);
   const auto rough = [&](const Vec3&) { return uniform(random); };
@@ -186,14 +186,14 @@ TEST_F(Sampling, CubicIsThatOfTheFieldPaddedAndMasked) {
   }
 }
 
-TEST_F(Sampling, CubicOfEqualSamplesIsThem) {
+TEST_F(Sampling, CubicOfAConstantIsExact) {
   const auto grid = make_grid({9, 9, 9}, [](const Vec3&) { return 0.1f; })->as_cubic();
   ASSERT_TRUE(grid);
   expect_close(**grid, {true, GridLayout::dense}, [](double) { return 1e-30; });
 }
 
-/// The range of a brick holds every value that its cells can take.
-TEST_F(Sampling, RangesOfCubicBricksHoldWhatGoesBeyondTheSamples) {
+/// The range of a brick includes every value in its cells.
+TEST_F(Sampling, RangesOfCubicBricksIncludeOvershoots) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(0, 1);
   for (const double masked : {0.0, 0.02}) {

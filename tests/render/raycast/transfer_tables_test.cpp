@@ -14,7 +14,7 @@ namespace transfer_tables_test {
 
 using namespace catena::render;
 
-/// As the shader reads it (shaders/lib/tables.glsl).
+/// Table lookup as in the shader (shaders/lib/tables.glsl).
 double read(const TransferLut& lut, double value, int channel) {
   const float v = float(value);
   const float x = std::fmin(std::fmax((float(symlog(v, lut.linear_below)) - lut.lo) * lut.entries_per_unit, 0.0f), float(lut.last_index()));
@@ -49,7 +49,7 @@ TEST(TransferLut, FollowsTheTable) {
   EXPECT_EQ(table_value(table(), 0, 2), 1);
 }
 
-TEST(TransferLut, SpendsItsSamplesOnTheValuesThatAreThere) {
+TEST(TransferLut, PlacesItsSamplesAtTheOccurringValues) {
   TransferTable wide;
   wide.colors = {{-1e6, 0, 0, 0}, {1e6, 1, 1, 1}};
   wide.extinctions = {{-1e6, 0}, {1, 0}, {2, 1}, {1e6, 1}};
@@ -57,9 +57,9 @@ TEST(TransferLut, SpendsItsSamplesOnTheValuesThatAreThere) {
   for (const double v : {0.5, 1.25, 1.5, 1.75, 3.0}) EXPECT_NEAR(read(lut, v, 3), table_value(wide, v, 3), 1e-3);
 }
 
-/// Random functions over ranges up to 1e6, parts of any width at any place of them: at every point, beside it and between, as a float has
-/// it, no error is greater than twice what is allowed (rounding of a place to floats comes to it).
-TEST(TransferLut, ErrsNowhereByMoreThanItSays) {
+/// Random functions over ranges up to 1e6 with features of any width and position: at and between all points, in floats, the error is at
+/// most twice the stated bound (including the rounding of positions to floats).
+TEST(TransferLut, ErrorIsBelowItsStatedBound) {
   std::mt19937 random(5);
   const auto in = [&](double lo, double hi) { return lo + (hi - lo) * (double(random()) / 4294967296.0); };
   int with_points = 0;
@@ -96,7 +96,7 @@ TEST(TransferLut, ErrsNowhereByMoreThanItSays) {
   TransferTable wide;
   wide.extinctions = {{0, 0}, {0.5, 1}, {1, 2}};
   EXPECT_FALSE(make_transfer_lut(wide, {0, 1}, 1).has_control_points()) << "samples suffice";
-  // a foot beside which few values lie may err a little; a rise within a sample may not
+  // a kink near few values may have a small error, a rise within a sample not
   const std::vector<float> there(100, 0.4001f);
   TransferTable tent;
   tent.extinctions = {{0, 0}, {0.4001, 0}, {0.45, 4}, {0.5, 0}, {1, 0}};
@@ -109,8 +109,8 @@ TEST(TransferLut, ErrsNowhereByMoreThanItSays) {
   EXPECT_TRUE(make_transfer_lut(tent, {0, 1}, 2, spread).has_control_points());
 }
 
-/// NumberArray of an atlas: too far apart for an entry each.
-TEST(TransferLut, LabelsFarApartKeepTheirColours) {
+/// Label numbers of an atlas, too far apart for one entry each.
+TEST(TransferLut, LabelsFarApartKeepTheirColors) {
   TransferTable t;
   t.is_categorical = true;
   for (const double label : {1.0, 2.0, 7.0, 997.0, 312782546.0, 614454277.0}) {
@@ -127,7 +127,7 @@ TEST(TransferLut, LabelsFarApartKeepTheirColours) {
   }
 }
 
-TEST(TransferLut, PointsSayWhatIsVisibleAndWhatIsAlike) {
+TEST(TransferLut, PointsGiveVisibleAndEqualRanges) {
   TransferTable t;
   t.colors = {{0, 0, 0, 0}, {20, 1, 0.5, 0}, {400, 0, 1, 0.5}};
   t.extinctions = {{0.01, 0}, {0.02, 3}, {0.03, 0}, {200, 0}, {200, 1}, {365, 1}};
@@ -142,13 +142,13 @@ TEST(TransferLut, PointsSayWhatIsVisibleAndWhatIsAlike) {
   EXPECT_GT(lut.appearance({300, 300}), 1);
 }
 
-TEST(TransferLut, AConstantFieldHasOneColour) {
+TEST(TransferLut, AConstantFieldHasOneColor) {
   const TransferLut lut = make_transfer_lut(table(), {0.45f, 0.45f}, 1);
   EXPECT_NEAR(read(lut, 0.45, 3), 3, 1e-5);
   EXPECT_TRUE(lut.any_visible({0.45f, 0.45f}));
 }
 
-TEST(TransferLut, VisibleRanges) {
+TEST(TransferLut, VisibleRangesOfTransferFunctions) {
   const TransferLut lut = make_transfer_lut(table(), {0, 1}, 1);
   EXPECT_FALSE(lut.any_visible({0, 0.3f}));
   EXPECT_FALSE(lut.any_visible({0.1f, 0.1f}));
@@ -158,7 +158,7 @@ TEST(TransferLut, VisibleRanges) {
   EXPECT_TRUE(lut.any_visible({0.44f, 0.441f}));
 }
 
-TEST(TransferLut, LooksAreEqualWhereTheyAreAlike) {
+TEST(TransferLut, AppearanceIdsAreEqualForEqualAppearance) {
   TransferTable t;
   t.colors = {{0, 0.5, 0.5, 0.5}, {1, 0.5, 0.5, 0.5}};
   t.extinctions = {{0, 0}, {0.2, 0}, {0.4, 2}, {0.6, 2}, {1, 3}};
@@ -173,7 +173,7 @@ TEST(TransferLut, LooksAreEqualWhereTheyAreAlike) {
   EXPECT_NE(lut.appearance({0.7f, 0.7f}), lut.appearance({0.5f, 0.5f}));
 }
 
-TEST(TransferLut, FactorsAreHeldBeyondTheirEndsAndNarrowOnesAreKept) {
+TEST(TransferLut, FactorsAreConstantBeyondTheirEndsAndKeepNarrowFeatures) {
   const TransferLut lut = make_gradient_factor_lut({{1, 0.2}, {3, 1}, {5, 0.5}});
   for (const auto& [g, factor] : {std::pair{0.0, 0.2}, {1.0, 0.2}, {2.0, 0.6}, {4.0, 0.75}, {5.0, 0.5}, {50.0, 0.5}})
     EXPECT_NEAR(read(lut, g, 0), factor, 1e-3) << g;

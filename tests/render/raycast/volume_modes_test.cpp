@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What the exact raycast can do beyond one table: opacity by the gradient, colours by another field, jitter, plain bricks, transforms
-/// and clip planes of each volume, many surfaces. Against closed forms and sums in double precision.
+/// Modes of the exact raycast: opacity by the gradient, colours by another field, jitter, homogeneous bricks, transforms and clip planes
+/// of each volume, many surfaces. Against closed forms and sums in double precision.
 #include <cmath>
 #include <numeric>
 
@@ -18,25 +18,25 @@ using OfRay = std::function<double(const Ray&)>;
 
 Camera camera_of(const FramePacket& packet) { return make_camera(packet.view, packet.width, packet.height, Bounds{}); }
 
-void expect_alpha(const Image8& picture, const FramePacket& packet, double tolerance_255, const OfRay& depth) {
+void expect_alpha(const Image8& image, const FramePacket& packet, double tolerance_255, const OfRay& depth) {
   const Camera camera = camera_of(packet);
   double worst = 0;
   int seen = 0;
-  for (std::uint32_t y = 0; y < picture.height; ++y)
-    for (std::uint32_t x = 0; x < picture.width; ++x) {
+  for (std::uint32_t y = 0; y < image.height; ++y)
+    for (std::uint32_t x = 0; x < image.width; ++x) {
       const double expected = 255 * (1 - std::exp(-depth(pixel_ray(camera, x + 0.5, y + 0.5))));
-      worst = std::max(worst, std::fabs(picture.pixel(x, y)[3] - expected));
+      worst = std::max(worst, std::fabs(image.pixel(x, y)[3] - expected));
       seen += expected > 5;
     }
   EXPECT_LE(worst, tolerance_255);
   EXPECT_GT(seen, 1000);
 }
 
-/// [enter, leave] of a ray in a grid's domain and behind the planes.
+/// Entry and exit of a ray in a grid's domain, clipped by the planes.
 std::array<double, 2> interval_of(const field::ScalarGrid& grid, const Ray& ray, const std::vector<Plane>& clip = {}) {
   const Vec3 o = grid.mapping().index_from_world(ray.origin), d = grid.mapping().index_from_world_linear * ray.direction;
   double enter = 0, leave = 1e9;
-  const auto cut = [&](double at, double along) {  // keeps at + t along >= 0
+  const auto cut = [&](double at, double along) {  // keeps the part with at + t along >= 0
     if (std::fabs(along) < 1e-12) {
       if (at < 0) leave = -1;
     } else if (along > 0) {
@@ -70,7 +70,7 @@ RenderSettings fine_settings(double step = 0.25) {
 // ---- opacity by the gradient
 
 TEST_F(VolumeModes, TheFactorFollowsTheGradientInWorldUnits) {
-  // slope 0.02 a voxel of half a unit up to x = 16, flat behind: |grad| = 0.04, then 0; seen along x
+  // slope 0.02 per voxel of half a unit up to x = 16, then constant: |grad| = 0.04, then 0; seen along x
   const auto grid = make_grid(
       {33, 20, 20}, [](const Vec3& p) { return 0.02 * std::min(p.x, 16.0); },
       field::Mapping::from_linear(Mat3(0.5, 0, 0, 0, 1, 0, 0, 0, 2), {}));
@@ -81,18 +81,18 @@ TEST_F(VolumeModes, TheFactorFollowsTheGradientInWorldUnits) {
   packet.volumes[0].transfer.gradient_factors = {{0, 0}, {0.08, 1}};
   for (const bool shade : {false, true}) {
     packet.volumes[0].is_shaded = shade;
-    const Image8 picture = draw(packet, fine_settings(), shade ? "shaded" : "plain");
-    // the factor falls from one half to zero over x = 15 .. 17: half of it counts
-    expect_alpha(picture, packet, 1, [&](const Ray& ray) { return length_of(interval_of(*grid, ray)) > 0 ? 0.3 * 0.5 * 8 : 0; });
+    const Image8 image = draw(packet, fine_settings(), shade ? "shaded" : "plain");
+    // the factor falls from one half to zero over x = 15 .. 17: its mean applies
+    expect_alpha(image, packet, 1, [&](const Ray& ray) { return length_of(interval_of(*grid, ray)) > 0 ? 0.3 * 0.5 * 8 : 0; });
   }
-  packet.volumes[0].transfer.gradient_factors = {{0.01, 0}, {0.03, 0.25}};  // held beyond its ends
+  packet.volumes[0].transfer.gradient_factors = {{0.01, 0}, {0.03, 0.25}};  // constant beyond its ends
   expect_alpha(draw(packet, fine_settings()), packet, 2, [&](const Ray& ray) {
     // 0.25 where |grad| >= 0.03, linear down to 0.01: x = 15 .. 15.5 full, .. 16.5 falling
     return length_of(interval_of(*grid, ray)) > 0 ? 0.3 * 0.25 * 0.5 * (15.5 + 0.5) : 0;
   });
 }
 
-TEST_F(VolumeModes, TheFastPathLeavesThemToTheExactOne) {
+TEST_F(VolumeModes, GradientFactorsAreDrawnByExactRays) {
   const auto grid =
       make_grid({24, 24, 24}, [](const Vec3& p) { return 0.5 + 0.4 * std::sin(0.5 * p.x) * std::cos(0.4 * p.y + 0.3 * p.z); });
   FramePacket packet = make_packet({60, -40, 45}, {11.5, 11.5, 11.5});
@@ -112,9 +112,9 @@ TEST_F(VolumeModes, TheFastPathLeavesThemToTheExactOne) {
 
 // ---- one scalar coloured by another
 
-TEST_F(VolumeModes, AVolumeIsColouredByAnotherFieldAtTheSamePlace) {
+TEST_F(VolumeModes, AVolumeIsColoredByAnotherFieldAtTheSamePosition) {
   const auto grid = make_grid({24, 24, 24}, [](const Vec3&) { return 0.5; });
-  // covers a part only, turned and finer
+  // covers a part only, rotated and finer
   const auto other = make_grid(
       {30, 26, 28}, [](const Vec3& p) { return (p.x + 2 * p.y - p.z + 27) / 106; },
       field::Mapping::from_linear(turned(0.5, -0.3) * Mat3(0.6), {8, 2, 3}));
@@ -122,12 +122,12 @@ TEST_F(VolumeModes, AVolumeIsColouredByAnotherFieldAtTheSamePlace) {
   FramePacket packet = make_packet({60, -40, 45}, {11.5, 11.5, 11.5});
   packet.volumes = {volume_item(grid, {{0, 0.06}, {1, 0.06}}, {0, 1, 0})};
   packet.volumes[0].color_by = ColorSource{other, {{0, 1, 0, 0}, {1, 0, 0, 1}}};
-  const Image8 picture = draw(packet, fine_settings(0.1), "by other");
+  const Image8 image = draw(packet, fine_settings(0.1), "by other");
   const Camera camera = camera_of(packet);
   int both = 0;
   double worst = 0;
-  for (std::uint32_t y = 0; y < picture.height; y += 3)
-    for (std::uint32_t x = 0; x < picture.width; x += 3) {
+  for (std::uint32_t y = 0; y < image.height; y += 3)
+    for (std::uint32_t x = 0; x < image.width; x += 3) {
       const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
       const auto [enter, leave] = interval_of(*grid, ray);
       const int steps = 2000;
@@ -145,14 +145,14 @@ TEST_F(VolumeModes, AVolumeIsColouredByAnotherFieldAtTheSamePlace) {
       }
       both += inside && outside;
       const double alpha = 1 - std::exp(-0.06 * (leave - enter));
-      for (int c = 0; c < 3; ++c) worst = std::max(worst, std::fabs(picture.pixel(x, y)[c] - 255 * sum[c] / alpha));
+      for (int c = 0; c < 3; ++c) worst = std::max(worst, std::fabs(image.pixel(x, y)[c] - 255 * sum[c] / alpha));
     }
   EXPECT_GT(both, 150);
   EXPECT_LE(worst, 3);
 }
 
-TEST_F(VolumeModes, ASurfaceIsColouredByAnotherField) {
-  // the plane y = 10 seen along y; the other field, value x / 20 of the world, covers x >= 6.3 only
+TEST_F(VolumeModes, ASurfaceIsColoredByAnotherField) {
+  // the plane y = 10 seen along y; the other field, world x / 20, covers only x >= 6.3
   const auto plane = make_grid({21, 21, 21}, [](const Vec3& p) { return p.y; });
   const auto other = make_grid(
       {30, 30, 30}, [](const Vec3& p) { return (6.3 + 0.7 * p.x) / 20; }, field::Mapping::from_linear(Mat3(0.7), {6.3, 0, 0}));
@@ -172,21 +172,21 @@ TEST_F(VolumeModes, ASurfaceIsColouredByAnotherField) {
   for (const float opacity : {1.0f, 0.5f}) {
     item.opacity = opacity;
     packet.isosurfaces = {item};
-    const Image8 picture = draw(packet, {}, opacity < 1 ? "translucent" : "opaque");
+    const Image8 image = draw(packet, {}, opacity < 1 ? "translucent" : "opaque");
     for (std::uint32_t x = 22; x < 98; x += 3) {
       const double world = 10 + (x + 0.5 - 60) * 0.25;
       const auto lit = [](double c) { return 255 * std::min(1.0, 0.9 * c + 0.2); };
       const bool covered = world > 6.3;
-      EXPECT_NEAR(picture.pixel(x, 60)[0], lit(covered ? 0.8 * world / 20 : 0), 1.5) << x;
-      EXPECT_NEAR(picture.pixel(x, 60)[1], lit(covered ? 0 : 0.5), 1.5) << x;
-      EXPECT_NEAR(picture.pixel(x, 60)[3], 255 * opacity, 1);
+      EXPECT_NEAR(image.pixel(x, 60)[0], lit(covered ? 0.8 * world / 20 : 0), 1.5) << x;
+      EXPECT_NEAR(image.pixel(x, 60)[1], lit(covered ? 0 : 0.5), 1.5) << x;
+      EXPECT_NEAR(image.pixel(x, 60)[3], 255 * opacity, 1);
     }
   }
 }
 
 // ---- jitter
 
-TEST_F(VolumeModes, JitterLeavesHomogeneousFogAsItIs) {
+TEST_F(VolumeModes, JitterDoesNotChangeHomogeneousFog) {
   const auto grid = make_grid({20, 33, 12}, [](const Vec3&) { return 0.5; });
   const auto second = make_grid(
       {12, 12, 12}, [](const Vec3&) { return 0.5; }, field::Mapping::from_linear(turned(0.4, 0.9) * Mat3(1.3), {4, 9, -5}));
@@ -204,7 +204,7 @@ TEST_F(VolumeModes, JitterLeavesHomogeneousFogAsItIs) {
   }
 }
 
-TEST_F(VolumeModes, JitterTurnsRingsIntoGrain) {
+TEST_F(VolumeModes, JitterTurnsRingsIntoNoise) {
   const Vec3 c(23.5);
   const auto grid = make_grid({48, 48, 48}, [&](const Vec3& p) { return std::exp(-0.3 * std::pow(norm(p - c) - 17, 2)); });
   FramePacket packet = make_packet({120, -80, 90}, c, 22);
@@ -217,7 +217,7 @@ TEST_F(VolumeModes, JitterTurnsRingsIntoGrain) {
   const Image8 grain = draw(packet, coarse, "grain");
   EXPECT_EQ(max_difference(grain, draw(packet, coarse)), 0) << "the same picture every time";
   EXPECT_GT(max_difference(grain, rings), 20);
-  // what is left after a blur over 8 x 8 pixels
+  // remaining error after a blur over 8 x 8 pixels
   const auto blurred_error = [&](const Image8& p) {
     double sum = 0;
     for (std::uint32_t y = 0; y + 8 <= p.height; y += 8)
@@ -231,10 +231,10 @@ TEST_F(VolumeModes, JitterTurnsRingsIntoGrain) {
   EXPECT_LT(blurred_error(grain), 0.6 * blurred_error(rings));
 }
 
-// ---- plain bricks
+// ---- homogeneous bricks
 
-TEST_F(VolumeModes, LeapsOverPlainBricksChangeNothing) {
-  // plateaus of three heights with slopes between them, and a table that is flat over the lowest two of the rises
+TEST_F(VolumeModes, SkippingHomogeneousBricksChangesNothing) {
+  // plateaus of three heights with slopes between them, and a table that is constant over the lower two rises
   const auto grid = make_grid({64, 56, 48}, [](const Vec3& p) {
     const double s = norm(p - Vec3(30, 28, 24));
     return s < 14 ? 1.0 : s < 17 ? 1 - 0.5 * (s - 14) / 3 : p.x < 20 ? 0.25 : p.x < 22 ? 0.25 + 0.125 * (p.x - 20) : 0.5;
@@ -256,7 +256,7 @@ TEST_F(VolumeModes, LeapsOverPlainBricksChangeNothing) {
         settings.skip_empty = false;
         EXPECT_LE(max_difference(with, draw(packet, settings)), 1);
       }
-  // shaded volumes and those with a factor are not plain where their value is
+  // shaded volumes and volumes with a gradient factor are not homogeneous at a constant value
   packet.volumes.resize(1);
   packet.volumes[0].is_shaded = true;
   packet.volumes[0].transfer.gradient_factors = {{0, 0.3}, {0.2, 1}};
@@ -317,14 +317,14 @@ TEST_F(VolumeModes, AClippedSurfaceShowsTheVolumeBehindIt) {
   for (const float opacity : {1.0f, 0.4f}) {
     item.opacity = opacity;
     packet.isosurfaces = {item};
-    const Image8 picture = draw(packet, {}, opacity < 1 ? "translucent" : "opaque");
-    EXPECT_NEAR(picture.pixel(40, 60)[3], 255 * (1 - std::exp(-0.05 * 20)), 1);
-    EXPECT_NEAR(picture.pixel(80, 60)[3], 255 * (1 - std::exp(-0.05 * (opacity < 1 ? 20 : 5)) * (1 - opacity)), 1);
+    const Image8 image = draw(packet, {}, opacity < 1 ? "translucent" : "opaque");
+    EXPECT_NEAR(image.pixel(40, 60)[3], 255 * (1 - std::exp(-0.05 * 20)), 1);
+    EXPECT_NEAR(image.pixel(80, 60)[3], 255 * (1 - std::exp(-0.05 * (opacity < 1 ? 20 : 5)) * (1 - opacity)), 1);
     const double behind = opacity < 1 ? std::exp(-0.25) * (1 - opacity) * (1 - std::exp(-0.75)) : 0;
-    const double alpha = picture.pixel(80, 60)[3] / 255.0;
+    const double alpha = image.pixel(80, 60)[3] / 255.0;
     const double blue = (1 - std::exp(-0.25)) + behind + std::exp(-0.25) * opacity * 0.2, red = std::exp(-0.25) * opacity;
-    EXPECT_NEAR(picture.pixel(80, 60)[2], 255 * blue / alpha, 2);
-    EXPECT_NEAR(picture.pixel(80, 60)[0], 255 * std::min(1.0, 1.1 * red / alpha), 2);
+    EXPECT_NEAR(image.pixel(80, 60)[2], 255 * blue / alpha, 2);
+    EXPECT_NEAR(image.pixel(80, 60)[0], 255 * std::min(1.0, 1.1 * red / alpha), 2);
   }
 }
 
@@ -340,7 +340,7 @@ TEST_F(VolumeModes, EightTranslucentSurfacesInOrder) {
   packet.view.orthographic = true;
   packet.view.height = 16;
   double through = 1, red = 0;
-  for (const int i : {5, 2, 7, 0, 3, 1, 6, 4}) {  // in no order
+  for (const int i : {5, 2, 7, 0, 3, 1, 6, 4}) {  // in random order
     IsosurfaceItem item;
     item.grid = plane;
     item.level = 2 + 2 * i;
@@ -352,9 +352,9 @@ TEST_F(VolumeModes, EightTranslucentSurfacesInOrder) {
     red += through * (0.1 + 0.05 * i) * (0.9 * 0.1 * i + 0.2);
     through *= 1 - (0.1 + 0.05 * i);
   }
-  const Image8 picture = draw(packet);
-  EXPECT_NEAR(picture.pixel(32, 32)[3], 255 * (1 - through), 1);
-  EXPECT_NEAR(picture.pixel(32, 32)[0], 255 * red / (1 - through), 1.5);
+  const Image8 image = draw(packet);
+  EXPECT_NEAR(image.pixel(32, 32)[3], 255 * (1 - through), 1);
+  EXPECT_NEAR(image.pixel(32, 32)[0], 255 * red / (1 - through), 1.5);
   packet.volumes = {volume_item(plane, {{0, 0.1}, {1, 0.1}})};
   const auto drawn = renderer_->draw(packet);
   ASSERT_FALSE(drawn);

@@ -13,25 +13,25 @@ using namespace catena::render;
 class Volume : public ImageTest {};
 
 /// Compares alpha with 1 - exp(-tau(ray)) at every pixel.
-void expect_alpha(const Image8& picture, const FramePacket& packet, double tolerance_255, const std::function<double(const Ray&)>& depth) {
+void expect_alpha(const Image8& image, const FramePacket& packet, double tolerance_255, const std::function<double(const Ray&)>& depth) {
   Bounds none;
   const Camera camera = make_camera(packet.view, packet.width, packet.height, none);
   double worst = 0;
-  for (std::uint32_t y = 0; y < picture.height; ++y)
-    for (std::uint32_t x = 0; x < picture.width; ++x) {
+  for (std::uint32_t y = 0; y < image.height; ++y)
+    for (std::uint32_t x = 0; x < image.width; ++x) {
       const double expected = 255 * (1 - std::exp(-depth(pixel_ray(camera, x + 0.5, y + 0.5))));
-      worst = std::max(worst, std::fabs(picture.pixel(x, y)[3] - expected));
+      worst = std::max(worst, std::fabs(image.pixel(x, y)[3] - expected));
     }
   EXPECT_LE(worst, tolerance_255);
 }
 
-int covered(const Image8& picture) {
+int covered(const Image8& image) {
   int count = 0;
-  for (std::size_t i = 3; i < picture.rgba.size(); i += 4) count += picture.rgba[i] > 0;
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) count += image.rgba[i] > 0;
   return count;
 }
 
-TEST_F(Volume, HomogeneousBoxSeenObliquely) {
+TEST_F(Volume, AHomogeneousBoxSeenObliquelyIsExact) {
   const auto grid = make_grid({20, 33, 12}, [](const Vec3&) { return 0.5; });
   FramePacket packet = make_packet({52, -41, 37}, {9.5, 16, 5.5}, 40);
   for (const double sigma : {0.02, 0.1, 1.0}) {
@@ -39,31 +39,31 @@ TEST_F(Volume, HomogeneousBoxSeenObliquely) {
     for (const double step : {0.25, 0.5, 1.0}) {
       RenderSettings settings;
       settings.step_voxels = step;
-      const Image8 picture = draw(packet, settings, step == 1 && sigma == 0.1 ? "box" : "");
-      expect_alpha(picture, packet, 1, [&](const Ray& ray) { return sigma * chord_length(*grid, ray.origin, ray.direction); });
-      EXPECT_GT(covered(picture), 2500);
-      EXPECT_LT(covered(picture), 15000);
+      const Image8 image = draw(packet, settings, step == 1 && sigma == 0.1 ? "box" : "");
+      expect_alpha(image, packet, 1, [&](const Ray& ray) { return sigma * chord_length(*grid, ray.origin, ray.direction); });
+      EXPECT_GT(covered(image), 2500);
+      EXPECT_LT(covered(image), 15000);
     }
   }
-  // straight alpha: the colour is the table's wherever enough of it is there
-  const Image8 picture = draw(packet);
-  for (std::uint32_t y = 0; y < picture.height; ++y)
-    for (std::uint32_t x = 0; x < picture.width; ++x)
-      if (picture.pixel(x, y)[3] > 8) {
-        ASSERT_NEAR(picture.pixel(x, y)[0], 51, 1);
-        ASSERT_NEAR(picture.pixel(x, y)[1], 127.5, 1.5);
-        ASSERT_NEAR(picture.pixel(x, y)[2], 229.5, 1.5);
+  // straight alpha: the colour is the table's at any sufficient alpha
+  const Image8 image = draw(packet);
+  for (std::uint32_t y = 0; y < image.height; ++y)
+    for (std::uint32_t x = 0; x < image.width; ++x)
+      if (image.pixel(x, y)[3] > 8) {
+        ASSERT_NEAR(image.pixel(x, y)[0], 51, 1);
+        ASSERT_NEAR(image.pixel(x, y)[1], 127.5, 1.5);
+        ASSERT_NEAR(image.pixel(x, y)[2], 229.5, 1.5);
       }
 }
 
-TEST_F(Volume, EyeInsideTheBox) {
+TEST_F(Volume, CameraInsideTheBox) {
   const auto grid = make_grid({24, 24, 24}, [](const Vec3&) { return 0.5; });
   FramePacket packet = make_packet({11.3, 9.7, 12.1}, {20, 14, 9}, 90);
   packet.volumes = {volume_item(grid, {{0, 0.07}, {1, 0.07}})};
   expect_alpha(draw(packet), packet, 1, [&](const Ray& ray) { return 0.07 * chord_length(*grid, ray.origin, ray.direction); });
 }
 
-TEST_F(Volume, AnisotropicRotatedAndFarFromTheOrigin) {
+TEST_F(Volume, AnAnisotropicRotatedGridFarFromTheOrigin) {
   const double a = 0.4, b = -0.9;
   const Mat3 turn = Mat3(std::cos(a), std::sin(a), 0, -std::sin(a), std::cos(a), 0, 0, 0, 1) *
                     Mat3(1, 0, 0, 0, std::cos(b), std::sin(b), 0, -std::sin(b), std::cos(b));
@@ -74,9 +74,9 @@ TEST_F(Volume, AnisotropicRotatedAndFarFromTheOrigin) {
   const Vec3 centre = grid->mapping().world_from_index({14.5, 6.5, 4});
   FramePacket packet = make_packet(centre + Vec3(31, -44, 25), centre, 35);
   packet.volumes = {volume_item(grid, {{0, 0.08}, {1, 0.08}})};
-  const Image8 picture = draw(packet, {}, "box");
-  expect_alpha(picture, packet, 1, [&](const Ray& ray) { return 0.08 * chord_length(*grid, ray.origin, ray.direction); });
-  EXPECT_GT(covered(picture), 2000);
+  const Image8 image = draw(packet, {}, "box");
+  expect_alpha(image, packet, 1, [&](const Ray& ray) { return 0.08 * chord_length(*grid, ray.origin, ray.direction); });
+  EXPECT_GT(covered(image), 2000);
 }
 
 TEST_F(Volume, Orthographic) {
@@ -85,9 +85,9 @@ TEST_F(Volume, Orthographic) {
   packet.view.orthographic = true;
   packet.view.height = 30;
   packet.volumes = {volume_item(grid, {{0, 0.1}, {1, 0.1}})};
-  const Image8 picture = draw(packet, {}, "box");
-  expect_alpha(picture, packet, 1, [&](const Ray& ray) { return 0.1 * chord_length(*grid, ray.origin, ray.direction); });
-  EXPECT_GT(covered(picture), 3000);
+  const Image8 image = draw(packet, {}, "box");
+  expect_alpha(image, packet, 1, [&](const Ray& ray) { return 0.1 * chord_length(*grid, ray.origin, ray.direction); });
+  EXPECT_GT(covered(image), 3000);
 }
 
 TEST_F(Volume, AlongAnAxis) {
@@ -114,7 +114,7 @@ TEST_F(Volume, LinearSigmaIsExact) {
     expect_alpha(draw(packet, settings), packet, 1, [&](const Ray& ray) {
       const double length = chord_length(*grid, ray.origin, ray.direction);
       if (!(length > 0)) return 0.0;
-      // the mean of a linear function is its value at the middle
+      // the mean of a linear function is its value at the midpoint
       double enter = 0, leave = 1000;
       for (int k = 0; k < 3; ++k) {
         const double s = (0 - ray.origin[k]) / ray.direction[k], t = (16 - ray.origin[k]) / ray.direction[k];
@@ -127,8 +127,8 @@ TEST_F(Volume, LinearSigmaIsExact) {
   }
 }
 
-/// PlaneConstraints of values from 1e-6 to 1e3: what is narrow at one end of them is seen as what is wide at the other.
-TEST_F(Volume, NarrowPartsOfWideTablesAreSeen) {
+/// Values from 1e-6 to 1e3: narrow features at one end are as visible as wide ones at the other.
+TEST_F(Volume, NarrowFeaturesOfWideTablesAreVisible) {
   const auto grid = make_grid({12, 12, 10}, [](const Vec3& p) { return std::pow(10, std::lround(p.z) - 6); });
   FramePacket packet = make_packet({5.5, 5.5, 40}, {5.5, 5.5, 4.5});
   packet.view.up = {0, 1, 0};
@@ -139,7 +139,7 @@ TEST_F(Volume, NarrowPartsOfWideTablesAreSeen) {
   RenderSettings settings;
   settings.step_voxels = 0.02;
   settings.texel_format = TexelFormat::r32f;
-  // two triangles of height 1 over eight ninths of a cell each
+  // two triangles of height 1, each over eight ninths of a cell
   expect_alpha(draw(packet, settings), packet, 1, [](const Ray&) { return 8.0 / 9; });
   EXPECT_FALSE(renderer_->can_draw_fast(packet)) << "256 codes take one of them";
   packet.volumes[0].transfer.extinctions = {{0, 0}, {10, 0}, {50, 1}, {90, 0}, {1000, 0}};
@@ -147,8 +147,8 @@ TEST_F(Volume, NarrowPartsOfWideTablesAreSeen) {
   expect_alpha(draw(packet, settings), packet, 1, [](const Ray&) { return 4.0 / 9; });
 }
 
-TEST_F(Volume, GaussianMatchesItsIntegral) {
-  const double s = 4.5;  // 9 voxels wide
+TEST_F(Volume, AGaussianMatchesItsIntegral) {
+  const double s = 4.5;  // width 9 voxels
   const Vec3 c(31.5);
   const auto grid = make_grid({64, 64, 64}, [&](const Vec3& p) { return std::exp(-dot(p - c, p - c) / (2 * s * s)); });
   FramePacket packet = make_packet({120, -80, 90}, c, 25);
@@ -165,7 +165,7 @@ TEST_F(Volume, GaussianMatchesItsIntegral) {
   expect_alpha(draw(packet, fine), packet, 2, depth);
 }
 
-TEST_F(Volume, SkippingChangesNothing) {
+TEST_F(Volume, EmptySpaceSkippingChangesNothing) {
   const Vec3 c(20, 40, 30);
   const auto grid =
       make_grid({64, 56, 48}, [&](const Vec3& p) { return std::max(0.0, 1 - norm(p - c) / 11) + (p.x > 55 && p.z < 9 ? 0.7 : 0.0); });
@@ -185,7 +185,7 @@ TEST_F(Volume, SkippingChangesNothing) {
     }
 }
 
-TEST_F(Volume, DenseAndAtlasDrawTheSame) {
+TEST_F(Volume, DenseAndAtlasStorageDrawTheSameImage) {
   const auto grid =
       make_grid({37, 45, 29}, [](const Vec3& p) { return 0.5 + 0.5 * std::sin(0.4 * p.x) * std::cos(0.3 * p.y + 0.2 * p.z); });
   FramePacket packet = make_packet({80, -70, 60}, {18, 22, 14});
@@ -199,7 +199,7 @@ TEST_F(Volume, DenseAndAtlasDrawTheSame) {
 }
 
 TEST_F(Volume, MaskedCellsAreTransparent) {
-  // cells with a corner at x > 15 do not count: the box ends at x = 15
+  // cells with a corner at x > 15 are masked: the box ends at x = 15
   const auto valid = [](const Vec3& p) { return p.x <= 15; };
   const auto grid = make_grid(
       {32, 16, 16}, [](const Vec3&) { return 0.5; }, {}, valid);
@@ -215,7 +215,7 @@ TEST_F(Volume, MaskedCellsAreTransparent) {
   }
 }
 
-TEST_F(Volume, NotANumberIsTransparent) {
+TEST_F(Volume, NanIsTransparent) {
   const auto grid = make_grid({24, 24, 24}, [](const Vec3& p) { return p.z == 12 ? std::nan("") : p.z == 5 ? HUGE_VAL : 0.5; });
   FramePacket packet = make_packet({60, -40, 45}, {11.5, 11.5, 11.5});
   packet.volumes = {volume_item(grid, {{0, 0.2}, {1, 0.2}})};
@@ -223,12 +223,12 @@ TEST_F(Volume, NotANumberIsTransparent) {
   for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas}) {
     RenderSettings settings;
     settings.layout = layout;
-    const Image8 picture = draw(packet, settings, "slabs");
-    EXPECT_GT(covered(picture), 2000);
+    const Image8 image = draw(packet, settings, "slabs");
+    EXPECT_GT(covered(image), 2000);
   }
 }
 
-TEST_F(Volume, EarlyTerminationCostsLittle) {
+TEST_F(Volume, EarlyTerminationChangesLittle) {
   const auto grid =
       make_grid({48, 48, 48}, [](const Vec3& p) { return 0.5 + 0.5 * std::sin(0.5 * p.x + 0.3 * p.y) * std::cos(0.4 * p.z); });
   FramePacket packet = make_packet({120, -80, 90}, {23.5, 23.5, 23.5});
@@ -240,7 +240,7 @@ TEST_F(Volume, EarlyTerminationCostsLittle) {
   EXPECT_LE(max_difference(draw(packet, {}, "early"), draw(packet, all)), 1);
 }
 
-TEST_F(Volume, TwoVolumesAddTheirSigmas) {
+TEST_F(Volume, TheExtinctionsOfTwoVolumesAdd) {
   const auto a = make_grid({20, 20, 20}, [](const Vec3&) { return 0.5; });
   const auto b = make_grid(
       {20, 20, 20}, [](const Vec3&) { return 0.5; }, field::Mapping::from_linear(Mat3(1.5), {9.3, 4, -2}));
@@ -261,7 +261,7 @@ TEST_F(Volume, GridsTooThinForACellAreNotDrawn) {
   EXPECT_EQ(covered(draw(packet)), 0);
 }
 
-TEST_F(Volume, TooManyAreRefusedWithASentence) {
+TEST_F(Volume, TooManyVolumesAreAnError) {
   const auto grid = make_grid({8, 8, 8}, [](const Vec3&) { return 1.0; });
   FramePacket packet = make_packet({20, -20, 20}, {4, 4, 4});
   packet.volumes.assign(5, volume_item(grid, {{0, 1}, {1, 1}}));

@@ -14,7 +14,7 @@ namespace brick_map_test {
 
 using namespace catena::render;
 
-TEST(BrickMap, DistancesAreThoseOfASearch) {
+TEST(BrickMap, DistancesMatchASearch) {
   std::mt19937 random(5);
   for (const int density : {0, 1, 3, 100}) {
     const std::array<std::int32_t, 3> n{9, 7, 11};
@@ -77,7 +77,7 @@ TEST_F(GridResidency, ThinGridsAreNotDrawable) {
   EXPECT_FALSE(mirror->is_drawable);
 }
 
-TEST_F(GridResidency, ActiveBricksAreThoseAsked) {
+TEST_F(GridResidency, ActiveBricksAreTheRequestedOnes) {
   const auto grid = grid_of(33, [](int x, int, int) { return float(x); });
   const auto mirror = make_resident_grid(*device_, *grid, {true, GridLayout::dense});
   ASSERT_TRUE(mirror);

@@ -12,12 +12,12 @@ using namespace catena::render;
 
 class BrickSlotAllocation : public DeviceFixture {};
 
-TEST_F(BrickSlotAllocation, EveryBrickHasItsOwnWithinTheImage) {
+TEST_F(BrickSlotAllocation, EveryBrickHasItsOwnSlotWithinTheImage) {
   for (const std::uint64_t count : {1u, 2u, 7u, 8u, 9u, 1000u, 4099u}) {
     const auto slots = assign_brick_slots(*device_, count, 9);
     ASSERT_TRUE(slots);
     const auto [x, y, z] = slots->slots_per_axis;
-    // at most one layer, row or column is begun and not full
+    // at most one layer, row or column is partially filled
     EXPECT_LT(std::uint64_t(x) * y * (z - 1), count);
     std::set<std::uint32_t> words;
     for (std::uint64_t slot = 0; slot < count; ++slot) {
@@ -29,13 +29,13 @@ TEST_F(BrickSlotAllocation, EveryBrickHasItsOwnWithinTheImage) {
   }
 }
 
-TEST_F(BrickSlotAllocation, MoreThanFitAreAnError) {
-  const std::uint64_t most = std::min(255u, device_->info().limits.maxImageDimension3D / 9);
-  EXPECT_TRUE(assign_brick_slots(*device_, most * most * most, 9));
-  const auto slots = assign_brick_slots(*device_, most * most * most + 1, 9);
+TEST_F(BrickSlotAllocation, TooManyBricksAreAnError) {
+  const std::uint64_t max_slots = std::min(255u, device_->info().limits.maxImageDimension3D / 9);
+  EXPECT_TRUE(assign_brick_slots(*device_, max_slots * max_slots * max_slots, 9));
+  const auto slots = assign_brick_slots(*device_, max_slots * max_slots * max_slots + 1, 9);
   ASSERT_FALSE(slots);
-  EXPECT_EQ(slots.error().message,
-            std::to_string(most * most * most + 1) + " bricks, at most " + std::to_string(most * most * most) + " fit");
+  EXPECT_EQ(slots.error().message, std::to_string(max_slots * max_slots * max_slots + 1) + " bricks, at most " +
+                                       std::to_string(max_slots * max_slots * max_slots) + " fit");
 }
 
 }  // namespace brick_slots_test

@@ -44,13 +44,13 @@ Values random_values(const field::Index3& n, unsigned seed, double masked) {
   return v;
 }
 
-/// The cell's bit, by index.
+/// Bit of a cell, by index.
 bool bit_of(const CellMap& map, const ResidentGrid& mirror, int x, int y, int z) {
   const int lx = x - mirror.origin.x, ly = y - mirror.origin.y, lz = z - mirror.origin.z;
   return map.texels[map.block_index(lx / 2, ly / 2, lz / 2)] >> ((lx & 1) + 2 * (ly & 1) + 4 * (lz & 1)) & 1;
 }
 
-/// CellCache that hold the level, by the grid's own cells.
+/// Cells that contain the level, by the grid's own cells.
 template <class Each>
 void for_each_cell(const field::ScalarGrid& grid, const field::Index3& n, Each&& each) {
   std::vector<float> v(std::size_t(n.x) * n.y * n.z);
@@ -60,17 +60,17 @@ void for_each_cell(const field::ScalarGrid& grid, const field::Index3& n, Each&&
   for (int z = 0; z + 1 < n.z; ++z)
     for (int y = 0; y + 1 < n.y; ++y)
       for (int x = 0; x + 1 < n.x; ++x) {
-        float least = HUGE_VALF, greatest = -HUGE_VALF;
+        float minimum = HUGE_VALF, maximum = -HUGE_VALF;
         for (int c = 0; c < 8; ++c) {
           const float value = v[(std::size_t(z + (c >> 2)) * n.y + y + (c >> 1 & 1)) * n.x + x + (c & 1)];
-          least = std::min(least, value);
-          greatest = std::max(greatest, value);
+          minimum = std::min(minimum, value);
+          maximum = std::max(maximum, value);
         }
-        each(x, y, z, valid[(std::size_t(z) * n.y + y) * n.x + x] != 0, least, greatest);
+        each(x, y, z, valid[(std::size_t(z) * n.y + y) * n.x + x] != 0, minimum, maximum);
       }
 }
 
-TEST_F(CellMaps, BitsAreThoseOfTheCorners) {
+TEST_F(CellMaps, BitsMatchTheCellCorners) {
   for (const double masked : {0.0, 0.05}) {
     const Values values = random_values({29, 18, 41}, 3, masked);
     const auto grid = values.grid();
@@ -79,8 +79,8 @@ TEST_F(CellMaps, BitsAreThoseOfTheCorners) {
       const float level = 0.12f;
       const CellMap map = make_cell_map(*grid, mirror, level);
       std::uint64_t cells = 0;
-      for_each_cell(*grid, values.n, [&](int x, int y, int z, bool valid, float least, float greatest) {
-        const bool holds = valid && least < level && greatest >= level;
+      for_each_cell(*grid, values.n, [&](int x, int y, int z, bool valid, float minimum, float maximum) {
+        const bool holds = valid && minimum < level && maximum >= level;
         cells += holds;
         ASSERT_EQ(bit_of(map, mirror, x, y, z), holds) << x << " " << y << " " << z;
       });
@@ -102,8 +102,8 @@ TEST_F(CellMaps, ALevelOnAVoxelCountsAsAbove) {
   EXPECT_EQ(map.hi.y, 9);
 }
 
-TEST_F(CellMaps, HalvesAreAskedAsTheyAreStored) {
-  // halves round by up to 2^-12 here: only what the texels say counts
+TEST_F(CellMaps, HalfFloatsAreTestedAsStored) {
+  // half floats round by up to 2^-12: the stored texels decide
   const Values values = random_values({20, 20, 20}, 7, 0);
   const auto grid = values.grid();
   const ResidentGrid mirror = mirror_of(*grid, {false, GridLayout::dense});
@@ -112,12 +112,12 @@ TEST_F(CellMaps, HalvesAreAskedAsTheyAreStored) {
   const CellMap map = make_cell_map(*grid, mirror, level), exact = make_cell_map(*grid, mirror_of(*grid, {true, GridLayout::dense}), level);
   const float spacing = 0.05f / 1024;
   std::uint64_t differ = 0;
-  for_each_cell(*grid, values.n, [&](int x, int y, int z, bool, float least, float greatest) {
+  for_each_cell(*grid, values.n, [&](int x, int y, int z, bool, float minimum, float maximum) {
     const bool here = bit_of(map, mirror, x, y, z);
-    if (least < level - spacing && greatest > level + spacing) {
+    if (minimum < level - spacing && maximum > level + spacing) {
       ASSERT_TRUE(here);
     }
-    if (least > level + spacing || greatest < level - spacing) {
+    if (minimum > level + spacing || maximum < level - spacing) {
       ASSERT_FALSE(here);
     }
     differ += here != bit_of(exact, mirror, x, y, z);
@@ -125,7 +125,7 @@ TEST_F(CellMaps, HalvesAreAskedAsTheyAreStored) {
   EXPECT_LT(differ, 20u);
 }
 
-TEST_F(CellMaps, DistancesAreThoseToTheNextBrickWithTheLevel) {
+TEST_F(CellMaps, DistancesAreToTheNextBrickWithTheLevel) {
   std::vector<float> values(33 * 33 * 33);
   for (const int at : {5 + 33 * (6 + 33 * 30), 20 + 33 * (29 + 33 * 2)}) values[at] = 1;
   const auto grid = field::make_scalar_grid("dots", {}, {33, 33, 33}, values);
@@ -154,7 +154,7 @@ TEST_F(CellMaps, DistancesAreThoseToTheNextBrickWithTheLevel) {
       }
 }
 
-TEST_F(CellMaps, NoneAndTooMany) {
+TEST_F(CellMaps, NoLevelsAndTooManyLevels) {
   const Values values = random_values({16, 16, 16}, 1, 0);
   const auto grid = values.grid();
   const ResidentGrid mirror = mirror_of(*grid, {true, GridLayout::dense});

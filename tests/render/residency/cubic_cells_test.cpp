@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CellCache that a cubic may take a value in: none is left out that does, by dense sampling, and few are named that do not.
+// Cells in which a cubic field may have a value: by dense sampling none is missing, and few are superfluous.
 #include "render/residency/cubic_cells.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ std::vector<float> made_of(const std::function<double(const Vec3&)>& f) {
   return samples;
 }
 
-TEST(CubicCells, NoiseBeyondTheSamplesToo) {
+TEST(CubicCells, IncludeCellsWhoseOvershootReachesTheValue) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(0, 1);
   for (const float value : {0.5f, 0.9f, 1.05f, -0.05f}) {
@@ -59,13 +59,13 @@ TEST(CubicCells, NoiseBeyondTheSamplesToo) {
   }
 }
 
-TEST(CubicCells, OfASmoothSurfaceHardlyMoreThanItPasses) {
+TEST(CubicCells, OfASmoothSurfaceFewExtraCellsAreIncluded) {
   const Count found = count(made_of([](const Vec3& p) { return norm(p - Vec3(4.3, 5.1, 4.7)); }), 3.6f);
   EXPECT_GT(found.holding, 200);
   EXPECT_LT(found.named, 1.15 * found.holding);
 }
 
-TEST(CubicCells, AConstantHoldsItsValueAndNoOther) {
+TEST(CubicCells, OfAConstantOnlyItsValueIsIncluded) {
   const auto same = made_of([](const Vec3&) { return 0.1f; });
   EXPECT_EQ(count(same, 0.1f).named, kBrickSize * kBrickSize * kBrickSize);
   EXPECT_EQ(count(same, 0.11f).named, 0);

@@ -11,7 +11,7 @@ namespace packed_atlas_test {
 
 using namespace catena::render;
 
-/// Values 0 but for some voxels of 1; visible above a half.
+/// Values 0 except some voxels of 1; visible above one half.
 CodeAppearance visible_above_half(const CodeScale& codes) {
   CodeAppearance looks;
   for (int c = 0; c < 256; ++c) {
@@ -24,7 +24,7 @@ CodeAppearance visible_above_half(const CodeScale& codes) {
 class Atlas : public DeviceFixture {
  protected:
   void TearDown() override { expect_no_validation_messages(); }
-  std::uint64_t kept(const std::function<double(const Vec3&)>& f) {
+  std::uint64_t count_kept_bricks(const std::function<double(const Vec3&)>& f) {
     const auto grid = make_grid({64, 64, 64}, f);
     const BrickScan scan = scan_bricks(*grid, {0, 1}, false);
     const CodeScale codes(scan.range, false);
@@ -34,33 +34,33 @@ class Atlas : public DeviceFixture {
   }
 };
 
-TEST_F(Atlas, KeepsTheBricksThatHaveSomethingToShow) {
+TEST_F(Atlas, KeepsTheVisibleBricks) {
   const auto one_at = [](int place) { return [place](const Vec3& p) { return p == Vec3(place) ? 1.0 : 0.0; }; };
-  EXPECT_EQ(kept(one_at(20)), 1u);  // within the third brick an axis
-  EXPECT_EQ(kept(one_at(16)), 8u);  // on the corner of eight
-  EXPECT_EQ(kept([](const Vec3&) { return 0.0; }), 0u);
-  EXPECT_EQ(kept([](const Vec3&) { return 1.0; }), 0u) << "of one code: the map says it";
+  EXPECT_EQ(count_kept_bricks(one_at(20)), 1u);  // within the third brick of each axis
+  EXPECT_EQ(count_kept_bricks(one_at(16)), 8u);  // on the common corner of eight bricks
+  EXPECT_EQ(count_kept_bricks([](const Vec3&) { return 0.0; }), 0u);
+  EXPECT_EQ(count_kept_bricks([](const Vec3&) { return 1.0; }), 0u) << "of one code: the map says it";
 }
 
-TEST_F(Atlas, KeepsWhatARayMeetsOnItsWayIn) {
-  // what is invisible varies, too
-  EXPECT_EQ(kept([](const Vec3& p) { return p == Vec3(20) ? 1.0 : 0.004 * p.x; }), 27u);
+TEST_F(Atlas, KeepsTheNeighboursOfVisibleBricks) {
+  // the invisible values vary
+  EXPECT_EQ(count_kept_bricks([](const Vec3& p) { return p == Vec3(20) ? 1.0 : 0.004 * p.x; }), 27u);
 }
 
 TEST_F(Atlas, ScansOnlyTheGridsOwnVoxels) {
-  // from an index that is no multiple of 8 on
+  // the size is not a multiple of 8
   const auto grid = make_grid({19, 9, 30}, [](const Vec3& p) { return 0.2 + 0.01 * p.x; });
   const BrickScan scan = scan_bricks(*grid, {0.3, 0.305}, true);
   EXPECT_EQ(scan.bricks, (std::array<std::int32_t, 3>{3, 1, 4}));
   EXPECT_FLOAT_EQ(scan.values[0].min, 0.2f);
   EXPECT_FLOAT_EQ(scan.values[0].max, 0.28f);
   EXPECT_FLOAT_EQ(scan.values[2].max, 0.38f);
-  // the cells that the range touches, whole
+  // includes all values of the cells that the range touches
   EXPECT_NEAR(scan.range.min, 0.3, 1e-6);
   EXPECT_NEAR(scan.range.max, 0.31, 1e-6);
 }
 
-TEST_F(Atlas, FourthOfAVoxelsGradientsDoForWhatIsSmooth) {
+TEST_F(Atlas, CoarseGradientsSufficeForSmoothFields) {
   const auto smooth = make_grid({40, 40, 40}, [](const Vec3& p) { return 0.5 + 0.5 * std::sin(0.2 * p.x) * std::sin(0.2 * p.y); });
   EXPECT_LT(scan_bricks(*smooth, {0, 1}, true).gradient_roughness, 0.01);
   std::uint32_t state = 1;
@@ -71,7 +71,7 @@ TEST_F(Atlas, FourthOfAVoxelsGradientsDoForWhatIsSmooth) {
   EXPECT_GT(scan_bricks(*noise, {0, 1}, true).gradient_roughness, 0.5);
 }
 
-TEST(VoxelCodes, HaveNoneForVoxelsOfInvalidCells) {
+TEST(VoxelCodes, VoxelsOfInvalidCellsHaveNoCode) {
   const auto grid = make_grid(
       {6, 4, 4}, [](const Vec3& p) { return p.x == 3 ? std::nan("") : p.x; }, {}, [](const Vec3& p) { return p.x != 3; });
   EXPECT_TRUE(has_invalid_cells(*grid));
@@ -83,8 +83,8 @@ TEST(VoxelCodes, HaveNoneForVoxelsOfInvalidCells) {
   EXPECT_EQ(row, (std::vector<std::uint8_t>{1, 52, 103, 0, 204, 255}));
 }
 
-TEST(VoxelCodes, KeepCellsWholeThatTheActiveRangeTouches) {
-  // one row of steps, twice in y and z
+TEST(VoxelCodes, CellsThatTouchTheActiveRangeKeepAllTheirVoxels) {
+  // one row of steps, duplicated in y and z
   const std::vector<float> row{0, 0.1f, 0.4f, 0.6f, 0.9f, 1};
   const auto grid = make_grid({6, 2, 2}, [&](const Vec3& p) { return row[std::size_t(p.x)]; });
   VoxelBlock block;

@@ -18,7 +18,7 @@ class PackedVolumeRoundTrip : public DeviceFixture {
   void TearDown() override { expect_no_validation_messages(); }
 };
 
-TEST_F(PackedVolumeRoundTrip, RangesHoldEveryVoxelOfTheirBrick) {
+TEST_F(PackedVolumeRoundTrip, RangesIncludeEveryVoxelOfTheirBrick) {
   const field::Index3 n{13, 9, 6};
   std::vector<float> values;
   for (int i = 0; i < n.x * n.y * n.z; ++i) values.push_back(float(std::fmod(i * 0.37, 1.0)));
@@ -36,7 +36,7 @@ TEST_F(PackedVolumeRoundTrip, RangesHoldEveryVoxelOfTheirBrick) {
       }
 }
 
-TEST_F(PackedVolumeRoundTrip, WhatCannotBePackedIsSaid) {
+TEST_F(PackedVolumeRoundTrip, UnpackableGridsAreErrors) {
   std::vector<float> values(64, 1.0f);
   EXPECT_TRUE(can_pack_dense(*device_, *field::make_scalar_grid("d", {}, {4, 4, 4}, values)));
   EXPECT_FALSE(can_pack_dense(*device_, *field::make_scalar_grid("d", {}, {8, 8, 1}, values)));
@@ -45,7 +45,7 @@ TEST_F(PackedVolumeRoundTrip, WhatCannotBePackedIsSaid) {
       can_pack_dense(*device_, *field::make_scalar_grid("d", {}, {too_long, 2, 2}, std::vector<float>(std::size_t(4) * too_long, 1.0f))));
 }
 
-TEST(EmptySpaceDistances, AreThoseOfBruteForce) {
+TEST(EmptySpaceDistances, MatchBruteForce) {
   const std::array<std::int32_t, 3> n{9, 7, 8};
   std::vector<std::uint16_t> kind;
   for (int i = 0; i < 9 * 7 * 8; ++i) kind.push_back(std::uint16_t(i % 9 < 3 ? 1 : i % 97 == 5 ? 0 : 2));

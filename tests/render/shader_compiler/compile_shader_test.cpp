@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Shaders compiled at run time, and watched.
+/// Shaders compiled at run time, and their file watch.
 #include "render/shader_compiler/compile_shader.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ std::vector<std::string> names() {
   return all;
 }
 
-/// A copy of shaders/ that may be spoilt.
+/// A modifiable copy of shaders/.
 class Shaders : public testing::Test {
  protected:
   void SetUp() override {
@@ -44,7 +44,7 @@ class Shaders : public testing::Test {
   std::string folder_;
 };
 
-TEST_F(Shaders, CompileToTheWordsThatTheBuildEmbeds) {
+TEST_F(Shaders, CompileToTheSpirvOfTheBuild) {
   ASSERT_GE(embedded_shaders().size(), 20u);
   for (const EmbeddedShader& shader : embedded_shaders()) {
     const auto compiled = compile_shader(folder_, "passes/" + std::string(shader.name));
@@ -53,7 +53,7 @@ TEST_F(Shaders, CompileToTheWordsThatTheBuildEmbeds) {
   }
 }
 
-TEST_F(Shaders, ErrorsSayFileAndLine) {
+TEST_F(Shaders, ErrorsNameFileAndLine) {
   write("passes/compose.frag", "#version 460\n\nvoid main() { nonsense; }\n");
   const auto compiled = compile_shader(folder_, "passes/compose.frag");
   ASSERT_FALSE(compiled);
@@ -64,14 +64,14 @@ TEST_F(Shaders, ErrorsSayFileAndLine) {
   EXPECT_FALSE(compile_shader(folder_, "passes/none.frag"));
   EXPECT_FALSE(compile_shader(folder_, "lib/rays.glsl"));
 
-  // within an included file: its own name and line
+  // an error in an included file has that file's name and line
   write("lib/rays.glsl", "\n\nbad bad bad\n" + read_file(folder_ + "/lib/rays.glsl"));
   const auto volume = compile_shader(folder_, "passes/volume.frag");
   ASSERT_FALSE(volume);
   EXPECT_EQ(volume.error().message.find(folder_ + "/lib/rays.glsl:3: "), 0u) << volume.error().message;
 }
 
-TEST_F(Shaders, AWatchCompilesWhatChangedAndWhatIncludesIt) {
+TEST_F(Shaders, AWatchRecompilesChangedFilesAndTheirIncluders) {
   EXPECT_FALSE(ShaderWatcher::open(temporary_ / "nowhere", names()));
   auto watch = ShaderWatcher::open(folder_, {"compose.frag", "volume.frag", "mesh.vert"});
   ASSERT_TRUE(watch);
@@ -113,7 +113,7 @@ class ReloadTest : public ImageTest {
   }
 };
 
-TEST_F(ReloadTest, AReplacedShaderDrawsTheNextPictureAndTheOldOneCanComeBack) {
+TEST_F(ReloadTest, AReplacedShaderDrawsTheNextImageAndCanBeReverted) {
   const FramePacket scene = packet();
   const Image8 before = draw(scene, {}, "before");
   const auto compiled = replace("compose.frag", kGreen);
@@ -124,7 +124,7 @@ TEST_F(ReloadTest, AReplacedShaderDrawsTheNextPictureAndTheOldOneCanComeBack) {
   for (std::size_t i = 0; i < green.rgba.size(); i += 4)
     ASSERT_TRUE(green.rgba[i] == 0 && green.rgba[i + 1] == 255 && green.rgba[i + 2] == 0) << i;
 
-  // what does not compile, is not there or binds what nobody binds changes nothing
+  // shaders with errors, missing shaders and unknown bindings change nothing
   EXPECT_FALSE(replace("compose.frag", "#version 460\nvoid main() { nonsense; }\n"));
   EXPECT_FALSE(replace("none.frag", kGreen));
   const auto bound = replace("compose.frag", R"(#version 460

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Eyes against closed forms: where a point lands in each of them, and the matrices of screens and headsets.
+/// Stereo eyes against closed forms: projected points in each eye, and the matrices of screens and headsets.
 #include "render/stereo/stereo_views.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include "render/stereo/xr_views.h"
 
 namespace catena::render {
-namespace eyes_test {
+namespace stereo_views_test {
 
 constexpr double kWidth = 800, kHeight = 600;
 
@@ -19,10 +19,10 @@ View oblique_view(bool orthographic) { return {{3.0, -11.0, 4.0}, {0.5, 0.2, -0.
 
 Camera camera_of(const View& view) { return make_camera(view, kWidth, kHeight, {}); }
 
-/// A point at the distance `depth` along the view's axis, off it by x and y.
+/// A point at distance `depth` along the view's axis, with offset x and y.
 Vec3 place(const Camera& c, double x, double y, double depth) { return c.position + x * c.right + y * c.up - depth * c.back; }
 
-TEST(Eyes, DisparityIsTheClosedFormAndThereIsNoVerticalParallax) {
+TEST(Eyes, DisparityMatchesTheClosedFormWithoutVerticalParallax) {
   for (const bool orthographic : {false, true}) {
     const View centre = oblique_view(orthographic);
     const Camera c = camera_of(centre);
@@ -42,14 +42,14 @@ TEST(Eyes, DisparityIsTheClosedFormAndThereIsNoVerticalParallax) {
         EXPECT_NEAR(0.5 * (in_right->x + in_left->x), in_centre->x, 1e-9);
         EXPECT_NEAR(in_left->y, in_right->y, 1e-9);
         EXPECT_NEAR(in_left->y, in_centre->y, 1e-9);
-        // the signs: crossed nearer, none at the distance, uncrossed beyond
+        // signs of the disparity: crossed in front of the zero-parallax distance, zero at it, uncrossed behind
         const int sign = depth < zero ? -1 : depth > zero ? 1 : 0;
         EXPECT_GE(sign * (in_right->x - in_left->x), sign == 0 ? -1e-9 : 1);
       }
   }
 }
 
-TEST(Eyes, TheLeftFrustumIsTheBookFormula) {
+TEST(Eyes, TheLeftFrustumMatchesTheTextbookFormula) {
   // l, r = -+ a w + (s / 2) (n / F), w = n tan(fovy / 2), at near n = 1
   const View centre = oblique_view(false);
   constexpr double s = 0.3, f = 7.0, aspect = kWidth / kHeight;
@@ -62,7 +62,7 @@ TEST(Eyes, TheLeftFrustumIsTheBookFormula) {
   EXPECT_NEAR(right.center_x + right.half_width, aspect * w - 0.5 * s / f, 1e-14);
 }
 
-TEST(Eyes, AnyNumberStandsInOneRowWithEqualSteps) {
+TEST(Eyes, AnyNumberOfEyesIsEquallySpacedOnALine) {
   for (const bool orthographic : {false, true})
     for (const std::size_t n : {1u, 3u, 8u}) {
       const View centre = oblique_view(orthographic);
@@ -79,7 +79,7 @@ TEST(Eyes, AnyNumberStandsInOneRowWithEqualSteps) {
     }
 }
 
-TEST(Eyes, OneEyeAndNoSeparationAreTheViewItself) {
+TEST(Eyes, OneEyeOrNoSeparationEqualsTheView) {
   for (const StereoSettings& settings : {StereoSettings{1, {}, {}}, StereoSettings{2, 0.0, {}}})
     for (const bool orthographic : {false, true})
       for (const View& eye : make_stereo_views(oblique_view(orthographic), kWidth / kHeight, settings)) {
@@ -90,20 +90,20 @@ TEST(Eyes, OneEyeAndNoSeparationAreTheViewItself) {
       }
 }
 
-TEST(Eyes, DefaultsAreTheTargetAndAThirtiethOfItsDistance) {
+TEST(Eyes, DefaultsAreZeroParallaxAtTheTargetAndAThirtiethAsSeparation) {
   const View centre = oblique_view(false);
   const std::vector<View> pair = make_stereo_views(centre, kWidth / kHeight);
   const double distance = norm(centre.target - centre.position);
   EXPECT_NEAR(norm(pair[1].position - pair[0].position), distance / 30, 1e-12);
   EXPECT_NEAR(project(camera_of(pair[0]), centre.target)->x, 0.5 * kWidth, 1e-9);
   EXPECT_NEAR(project(camera_of(pair[1]), centre.target)->x, 0.5 * kWidth, 1e-9);
-  // a zero-parallax distance alone takes the separation along
+  // a zero-parallax distance without a separation scales the separation
   const std::vector<View> nearer = make_stereo_views(centre, kWidth / kHeight, {2, {}, 3.0});
   EXPECT_NEAR(norm(nearer[1].position - nearer[0].position), 0.1, 1e-12);
 }
 
-TEST(Eyes, ATileOfAnEyeIsTheEyeOfATile) {
-  // the upper right quarter of each eye's picture, by window
+TEST(Eyes, TilesOfAnEyeEqualEyesOfATile) {
+  // the upper right quarter of each eye's image, as a window
   for (const bool orthographic : {false, true}) {
     const View centre = oblique_view(orthographic);
     View tile = centre;
@@ -119,7 +119,7 @@ TEST(Eyes, ATileOfAnEyeIsTheEyeOfATile) {
   }
 }
 
-TEST(Eyes, AViewAlongItsUpStillHasEyesThatAgree) {
+TEST(Eyes, AViewAlongItsUpVectorHasConsistentEyes) {
   View down = oblique_view(false);
   down.position = {0.0, 0.0, 10.0};
   down.target = Vec3(0.0);
@@ -130,8 +130,8 @@ TEST(Eyes, AViewAlongItsUpStillHasEyesThatAgree) {
   EXPECT_NEAR(norm(right.position - left.position - 0.2 * left.right), 0, 1e-12);
 }
 
-/// What the view looks at is at arm's length, as far below the eyes as the view is above it, and level; a steep view is taken less so.
-TEST(Eyes, APersonFindsTheWorldAsTheViewHasIt) {
+/// The view's target is at arm's length, at the view's elevation angle below the eyes and with up vertical; steep angles are clamped.
+TEST(Eyes, TheRoomPlacesTheWorldAsInTheView) {
   for (const auto& [above_deg, due_deg] : {std::pair{25.0, 25.0}, {0.0, 0.0}, {-10.0, -10.0}, {75.0, 40.0}, {-60.0, -15.0}}) {
     const double above = above_deg * M_PI / 180, due = due_deg * M_PI / 180;
     View view;
@@ -146,5 +146,5 @@ TEST(Eyes, APersonFindsTheWorldAsTheViewHasIt) {
   }
 }
 
-}  // namespace eyes_test
+}  // namespace stereo_views_test
 }  // namespace catena::render

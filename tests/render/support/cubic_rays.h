@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the tests of pictures of cubic grids share: rough grids, and the field itself along a pixel's ray.
+/// Shared helpers for images of cubic grids: rough grids, and the field along a pixel's ray.
 #pragma once
 #include <cmath>
 #include <optional>
@@ -16,7 +16,7 @@ inline GridPtr smoothed_grid(const GridPtr& grid) {
   return made ? *made : nullptr;
 }
 
-/// Noise and waves in 0..1; `waves` is the share of these.
+/// Noise and waves in 0..1; `waves` is the fraction of the waves.
 inline GridPtr noisy_grid(const field::Index3& n, unsigned seed, double waves, const field::Mapping& mapping = {}, double masked = 0) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -49,10 +49,10 @@ inline render::IsosurfaceItem make_isosurface_item(GridPtr grid, double level) {
   return item;
 }
 
-/// A pixel's ray by its depth, in the world, and where it is in the box of a grid.
+/// A pixel's world ray, parametrized by depth, and its range in a grid's box.
 struct PixelRay {
   Vec3 origin, direction;
-  double from = 0, to = HUGE_VAL, voxels = 1;  ///< voxels a unit of depth
+  double from = 0, to = HUGE_VAL, voxels = 1;  ///< range of depth in the box; voxels per unit of depth
 
   PixelRay(const field::ScalarGrid& grid, const render::Camera& camera, std::uint32_t x, std::uint32_t y) {
     const render::Ray ray = render::pixel_ray(camera, x + 0.5, y + 0.5);
@@ -69,7 +69,7 @@ struct PixelRay {
   Vec3 at(double t) const { return origin + t * direction; }
 };
 
-/// The first root of the field's own values, looked for in steps and bisected; HUGE_VAL where there is none.
+/// Depth of the first root of the field along the ray, by steps and bisection; HUGE_VAL if none.
 inline double first_root(const field::ScalarGrid& grid, double level, const PixelRay& ray, double step_voxels, field::Cursor& cursor) {
   double before = ray.from;
   std::optional<bool> was;

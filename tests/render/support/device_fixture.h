@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A bare device with the validation layer on; what it said is a failure.
+/// A device with the validation layer; any validation message is a failure.
 #pragma once
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A driver that fails when it is told to: what vk::DeviceOptions::fail asks.
+/// Driver failures for vk::DeviceOptions::inject_failure.
 #pragma once
 #include <memory>
 
@@ -8,7 +8,7 @@
 
 namespace catena::test {
 
-/// Fails the `at`-th call of one kind from now on (1: the next); 0: none. Counts all calls of that kind.
+/// Fails the `at`-th following call of one kind (1: the next; 0: none). Counts all calls of that kind.
 struct FailureInjector {
   render::vk::DriverCall call = render::vk::DriverCall::allocate;
   VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;

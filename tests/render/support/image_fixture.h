@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the picture tests share: small grids by formula, a renderer with validation, pictures kept in the build folder.
+/// Shared helpers of the image tests: small grids by formula, a renderer with validation, images saved in the build folder.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace catena::test {
 
 using GridPtr = std::shared_ptr<const field::ScalarGrid>;
 
-/// f(index) on n[0] x n[1] x n[2] voxels.
+/// A grid of f(index) on n[0] x n[1] x n[2] voxels.
 inline GridPtr make_grid(const field::Index3& n, const std::function<double(const Vec3&)>& f, const field::Mapping& mapping = {},
                          const std::function<bool(const Vec3&)>& valid = nullptr) {
   std::vector<float> values;
@@ -37,7 +37,7 @@ inline render::VolumeItem volume_item(GridPtr grid, const std::vector<std::array
   return item;
 }
 
-/// Every test ends with no message of the validation layer.
+/// Fails a test with validation messages.
 class ImageTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -55,21 +55,21 @@ class ImageTest : public testing::Test {
     for (const std::string& text : renderer_->validation_texts()) ADD_FAILURE() << text;
   }
 
-  /// Draws, reads back and keeps the picture as pictures/SUITE.CASE.name.png of the build folder.
+  /// Draws an image, reads it back and saves it as pictures/SUITE.CASE.name.png in the build folder.
   render::Image8 draw(const render::FramePacket& packet, const render::RenderSettings& settings = {}, const std::string& name = "") {
     const auto drawn = renderer_->draw(packet, settings);
     EXPECT_TRUE(drawn) << (drawn ? "" : drawn.error().message);
     if (!drawn) return {packet.width, packet.height, std::vector<std::uint8_t>(std::size_t(4) * packet.width * packet.height)};
-    auto picture = renderer_->read_back();
-    EXPECT_TRUE(picture);
+    auto image = renderer_->read_back();
+    EXPECT_TRUE(image);
     if (!name.empty()) {
       const auto* test = testing::UnitTest::GetInstance()->current_test_info();
       const std::string folder = test::binary_dir() + "/pictures";
       std::filesystem::create_directories(folder);
       const std::string path = folder + "/" + test->test_suite_name() + "." + test->name() + "." + name + ".png";
-      EXPECT_TRUE(render::write_png(path, *picture, packet.background[3] < 1));
+      EXPECT_TRUE(render::write_png(path, *image, packet.background[3] < 1));
     }
-    return *picture;
+    return *image;
   }
 
   std::unique_ptr<render::Renderer> renderer_;
@@ -88,12 +88,12 @@ inline render::FramePacket make_packet(const Vec3& position, const Vec3& target,
 }
 
 inline int max_difference(const render::Image8& a, const render::Image8& b) {
-  int most = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); ++i) most = std::max(most, std::abs(int(a.rgba[i]) - int(b.rgba[i])));
-  return most;
+  int maximum = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) maximum = std::max(maximum, std::abs(int(a.rgba[i]) - int(b.rgba[i])));
+  return maximum;
 }
 
-/// Length of a world ray within a grid's domain, between the eye's plane and infinity.
+/// Length of a world ray within a grid's domain, in front of the eye's plane.
 inline double chord_length(const field::ScalarGrid& grid, const Vec3& origin, const Vec3& direction) {
   const Vec3 o = grid.mapping().index_from_world(origin), d = grid.mapping().index_from_world_linear * direction;
   double enter = 0, leave = HUGE_VAL;

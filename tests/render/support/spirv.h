@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Compiled shaders as the build folder holds them, and what they say about their structs.
+/// Compiled shaders of the build folder, and the layout of their structs.
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -13,7 +13,7 @@
 
 namespace catena::test {
 
-/// The words of <build>/spirv/spirv/NAME.inc, which is a list for #include.
+/// The SPIR-V words of <build>/spirv/spirv/NAME.inc, a list for #include.
 inline std::vector<std::uint32_t> shader_words(const std::string& name) {
   std::ifstream in(test::binary_dir() + "/spirv/spirv/" + name + ".inc");
   std::vector<std::uint32_t> words;

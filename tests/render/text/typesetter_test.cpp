@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Placed glyphs against the ink that they leave, and what happens without a font.
+/// Placed glyphs against their rendered pixels, and fallbacks without a font.
 #include "render/text/typesetter.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace typesetter_test {
 
 using namespace catena::render;
 
-/// Rows and columns of a text that hold ink, pixels from the text's box.
+/// Bounds of a text's covered pixels, relative to its box.
 struct Ink {
   double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
 };
@@ -34,7 +34,7 @@ Ink ink_of(Typesetter& typesetter, std::string_view text, const TextStyle& style
   return ink;
 }
 
-TEST(Utf8, DecodesEveryLengthAndMarksWhatIsNone) {
+TEST(Utf8, DecodesEveryLengthAndReplacesInvalidBytes) {
   EXPECT_EQ(decode_utf8("aé€𝄞"), (std::vector<char32_t>{U'a', U'é', U'€', U'\U0001d11e'}));
   EXPECT_EQ(decode_utf8("\xff"
                         "a\xc3"),
@@ -44,7 +44,7 @@ TEST(Utf8, DecodesEveryLengthAndMarksWhatIsNone) {
   EXPECT_EQ(decode_utf8("\xed\xa0\x80").front(), char32_t(0xfffd)) << "a surrogate";
 }
 
-TEST(Typesetter, TheBoxIsTheCapitalsHeightAndTheAdvances) {
+TEST(Typesetter, TheBoxHasTheCapHeightAndTheAdvances) {
   Typesetter typesetter;
   for (const double size : {12.0, 20.5, 60.0}) {
     const TextStyle style{size, false, 0};
@@ -58,13 +58,13 @@ TEST(Typesetter, TheBoxIsTheCapitalsHeightAndTheAdvances) {
     EXPECT_LE(ink.right, extent.width + 0.5);
     EXPECT_GE(ink.right - ink.left, extent.width - 0.25 * size) << "side bearings alone";
     EXPECT_NEAR(extent.height, 0.729 * size, 1e-3 * size) << "DejaVu Sans: capitals of 1493 / 2048";
-    // descenders hang below
+    // descenders extend below the box
     EXPECT_GT(ink_of(typesetter, "gjp", style).bottom, extent.height + 0.15 * size);
     EXPECT_LE(ink_of(typesetter, "gjp", style).bottom, extent.height + extent.descent + 1);
   }
 }
 
-TEST(Typesetter, WidthsAddUpAndKerningTakesAway) {
+TEST(Typesetter, WidthsAddUpAndKerningReducesThem) {
   Typesetter typesetter;
   const TextStyle style{24, false, 0};
   const auto width = [&](std::string_view text) { return typesetter.measure(text, style).width; };
@@ -75,7 +75,7 @@ TEST(Typesetter, WidthsAddUpAndKerningTakesAway) {
   EXPECT_NEAR(typesetter.measure("HH", {48, false, 0}).width, 2 * width("HH"), 1e-9);
 }
 
-TEST(Typesetter, LinesAreAlignedUnderEachOther) {
+TEST(Typesetter, LinesAreAligned) {
   Typesetter typesetter;
   const TextLayout one = typesetter.layout("H", {20, false, 0});
   for (const double align : {0.0, 0.5, 1.0}) {
@@ -88,7 +88,7 @@ TEST(Typesetter, LinesAreAlignedUnderEachOther) {
   }
 }
 
-TEST(GlyphAtlas, EveryGlyphKeepsItsPixelsAndAFullImageStartsAnew) {
+TEST(GlyphAtlas, EveryGlyphKeepsItsPixelsAndAFullAtlasIsReset) {
   Typesetter typesetter;
   const Font* font = typesetter.font(false);
   ASSERT_NE(font, nullptr) << typesetter.error_message();
@@ -112,7 +112,7 @@ TEST(GlyphAtlas, EveryGlyphKeepsItsPixelsAndAFullImageStartsAnew) {
   const std::uint64_t version = atlas.version();
   check(U'A', 30, 0, 0);
   EXPECT_EQ(atlas.version(), version) << "made once";
-  // a halo is as much wider as it says
+  // a halo extends a glyph by its stated width
   const GlyphBitmap plain = font->rasterize(font->glyph_index(U'H'), 30, 0, 0), wide = font->rasterize(font->glyph_index(U'H'), 30, 0, 2);
   EXPECT_NEAR(wide.width, plain.width + 4, 1);
   EXPECT_NEAR(wide.height, plain.height + 4, 1);
@@ -124,7 +124,7 @@ TEST(GlyphAtlas, EveryGlyphKeepsItsPixelsAndAFullImageStartsAnew) {
   check(U'Q', 30, 1, 0);
 }
 
-TEST(Typesetter, WithoutAFontOneSentenceAndNoText) {
+TEST(Typesetter, WithoutAFontThereIsOneNoteAndNoText) {
   const TemporaryFolder folder;
   write_file(folder / "fonts.conf", "<?xml version=\"1.0\"?><!DOCTYPE fontconfig SYSTEM \"fonts.dtd\"><fontconfig></fontconfig>");
   ::setenv("FONTCONFIG_FILE", (folder / "fonts.conf").c_str(), 1);
@@ -137,14 +137,14 @@ TEST(Typesetter, WithoutAFontOneSentenceAndNoText) {
   EXPECT_NE(typesetter.error_message().find("fonts-dejavu-core"), std::string::npos);
   EXPECT_EQ(typesetter.error_message().find('\n'), std::string::npos);
 
-  // a file that is no font
+  // a file that is not a font
   write_file(folder / "no.ttf", "no font");
   const auto font = Font::open({folder / "no.ttf", 0});
   ASSERT_FALSE(font);
   EXPECT_NE(font.error().message.find("no.ttf"), std::string::npos);
 }
 
-TEST(Typesetter, AnUnknownFamilyFallsBackAndAnotherOneStartsAnew) {
+TEST(Typesetter, AnUnknownFamilyFallsBackAndAChangeResetsTheAtlas) {
   Typesetter typesetter;
   const double width = typesetter.measure("Hamburg", {20, false, 0}).width;
   typesetter.set_family("No Such Family 4711");

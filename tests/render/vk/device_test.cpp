@@ -15,7 +15,7 @@ using namespace catena::render;
 
 class Device : public DeviceFixture {};
 
-TEST_F(Device, SaysWhatItIs) {
+TEST_F(Device, ReportsItsProperties) {
   EXPECT_FALSE(device_->info().name.empty());
   EXPECT_FALSE(device_->info().driver.empty());
   EXPECT_EQ(device_->info().is_cpu(), uses_lavapipe());
@@ -25,7 +25,7 @@ TEST_F(Device, SaysWhatItIs) {
   EXPECT_GE(lines->size(), 1u);
 }
 
-TEST_F(Device, AnUnknownChoiceNamesWhatThereIs) {
+TEST_F(Device, AnUnknownDeviceIsAnErrorThatListsTheDevices) {
   const auto other = vk::Device::create({false, "no such device", {}});
   ASSERT_FALSE(other);
   EXPECT_NE(other.error().message.find("no such device"), std::string::npos);
@@ -34,13 +34,13 @@ TEST_F(Device, AnUnknownChoiceNamesWhatThereIs) {
 
 TEST_F(Device, ValidationMessagesAreCounted) {
   EXPECT_EQ(device_->messages().count(), 0u);
-  // a buffer for nothing is misuse that no driver minds
+  // a buffer without usage violates the specification but is accepted by drivers
   const auto buffer = vk::Buffer::create(*device_, 64, 0, vk::Memory::upload);
   EXPECT_GT(device_->messages().count(), 0u);
   EXPECT_FALSE(device_->messages().texts().front().empty());
 }
 
-TEST_F(Device, UploadAndReadBack) {
+TEST_F(Device, UploadsAndReadsBack) {
   vk::ImageInfo info;
   info.extent = {7, 5, 1};
   info.usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
@@ -74,7 +74,7 @@ TEST_F(Device, ResourcesWaitForTheTimeline) {
   ASSERT_TRUE(value);
   *from = vk::Buffer();
   *to = vk::Buffer();
-  // moved-from temporaries carry the old ones away; they are held until the copy has passed
+  // the replaced resources are kept until the copy has completed
   EXPECT_GE(device_->retired_count(), 2u);
   EXPECT_GE(device_->counters().allocated_bytes, before + (2 << 20));
   ASSERT_TRUE(device_->wait(*value));
@@ -83,7 +83,7 @@ TEST_F(Device, ResourcesWaitForTheTimeline) {
   expect_no_validation_messages();
 }
 
-TEST_F(Device, AnImpossibleImageIsOneSentence) {
+TEST_F(Device, AnImpossibleImageIsAnErrorInOneLine) {
   vk::ImageInfo info;
   info.type = VK_IMAGE_TYPE_3D;
   info.format = VK_FORMAT_R32_SFLOAT;

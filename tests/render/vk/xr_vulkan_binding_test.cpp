@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A Vulkan instance and device that somebody else makes and keeps: as a headset's runtime, or a program around Catena.
+/// A Vulkan instance and device created and owned by another component, such as a headset's runtime or a host program.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -11,11 +11,11 @@
 #include "render/vk/device.h"
 
 namespace catena::test {
-namespace maker_test {
+namespace xr_vulkan_binding_test {
 
 using namespace catena::render;
 
-/// Makes what is asked for, keeps it, and destroys it last.
+/// Creates and owns the instance and the device, and destroys them last.
 struct Owner {
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical = VK_NULL_HANDLE;
@@ -57,7 +57,7 @@ struct Owner {
   }
 };
 
-/// Bytes through the device and back.
+/// Copies bytes to the device and back; true if they match.
 Outcome copies(vk::Device& device) {
   CATENA_TRY(auto from, vk::Buffer::create(device, 256, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, vk::Memory::upload));
   CATENA_TRY(auto to, vk::Buffer::create(device, 256, VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::readback));
@@ -68,7 +68,7 @@ Outcome copies(vk::Device& device) {
   return std::memcmp(from.bytes().data(), to.bytes().data(), 256) == 0 ? Outcome(Done{}) : Outcome(Error{"the bytes differ"});
 }
 
-TEST(VulkanBinding, AnOwnerKeepsWhatItMade) {
+TEST(VulkanBinding, TheOwnerKeepsInstanceAndDevice) {
   Owner owner;
   {
     auto device = vk::Device::create(owner.options());
@@ -79,10 +79,10 @@ TEST(VulkanBinding, AnOwnerKeepsWhatItMade) {
     EXPECT_TRUE(copied) << copied.error().message;
     EXPECT_EQ((*device)->messages().count(), 0u);
   }
-  EXPECT_EQ(vkDeviceWaitIdle(owner.device), VK_SUCCESS);  // it is still there
+  EXPECT_EQ(vkDeviceWaitIdle(owner.device), VK_SUCCESS);  // the device is still valid
 }
 
-TEST(VulkanBinding, TheQueueIsUsedInTurns) {
+TEST(VulkanBinding, TheQueueIsUsedUnderTheOwnersLock) {
   Owner owner;
   auto device = vk::Device::create(owner.options());
   ASSERT_TRUE(device) << device.error().message;
@@ -99,7 +99,7 @@ TEST(VulkanBinding, TheQueueIsUsedInTurns) {
   EXPECT_TRUE(done);
 }
 
-TEST(VulkanBinding, WhatItCannotMakeIsOneSentence) {
+TEST(VulkanBinding, AFailedCreationIsAnErrorInOneLine) {
   for (int which = 0; which < 3; ++which) {
     Owner owner;
     vk::DeviceOptions options = owner.options();
@@ -116,5 +116,5 @@ TEST(VulkanBinding, WhatItCannotMakeIsOneSentence) {
   }
 }
 
-}  // namespace maker_test
+}  // namespace xr_vulkan_binding_test
 }  // namespace catena::test

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// What the hands do and feel: poses and buttons by the profile of the controller, vibration, and what is lost and found.
+/// Controllers: poses and buttons by interaction profile, vibration, tracking loss and recovery.
 #include <gtest/gtest.h>
 
 #include "tests/render/xr/xr_fixture.h"
 
 namespace catena::test {
-namespace hands_test {
+namespace controllers_test {
 
 using namespace xr_rig;
 
@@ -32,12 +32,12 @@ class HeadsetControllers : public HeadsetFixture {
   FramePacket packet_ = ball_packet({0.0, 0.0, -1.0}, 0.3);
 };
 
-TEST_F(HeadsetControllers, EveryKnownControllerHasItsControls) {
+TEST_F(HeadsetControllers, EveryKnownControllerIsBound) {
   struct Expected {
     const char* profile;
     double select, grab, stick_x;
   };
-  // the simple controller has a click alone
+  // the simple controller has only a click
   for (const Expected& due : {Expected{"/interaction_profiles/khr/simple_controller", 0.25, 0, 0},
                               Expected{"/interaction_profiles/oculus/touch_controller", 0.25, 1, -0.5},
                               Expected{"/interaction_profiles/valve/index_controller", 0.25, 1, -0.5},
@@ -65,7 +65,7 @@ TEST_F(HeadsetControllers, EveryKnownControllerHasItsControls) {
   }
 }
 
-TEST_F(HeadsetControllers, AHandThatIsLostIsNotThere) {
+TEST_F(HeadsetControllers, ALostHandIsAbsent) {
   ASSERT_TRUE(open());
   ASSERT_TRUE(run_frames(packet_, {}, 3));
   EXPECT_TRUE(hand(1).is_tracked);
@@ -77,38 +77,38 @@ TEST_F(HeadsetControllers, AHandThatIsLostIsNotThere) {
   EXPECT_FALSE(hand(1).is_tracked);
   runtime_.script().tracked = true;
   EXPECT_TRUE(hand(1).is_tracked);
-  // without the focus there are no hands
+  // without focus there are no hands
   runtime_.script().states.emplace(runtime_.record().calls.at("xrWaitFrame"), XR_SESSION_STATE_VISIBLE);
   ASSERT_TRUE(run_frames(packet_, {}, 2));
   EXPECT_FALSE(hand(1).is_tracked);
 }
 
-TEST_F(HeadsetControllers, VibrationsArriveAsTheyAreAndNoneWithoutFocus) {
+TEST_F(HeadsetControllers, VibrationsReachTheRuntimeAndNoneWithoutFocus) {
   ASSERT_TRUE(open());
   ASSERT_TRUE(run_frames(packet_, {}, 3));
   xr::Actions& actions = headset_->actions();
   ASSERT_TRUE(actions.vibrate(0, 0.25, 160, 30'000'000));
-  ASSERT_TRUE(actions.vibrate(1, 7, -3, 0));  // clamped; the runtime's own frequency, its shortest pulse
+  ASSERT_TRUE(actions.vibrate(1, 7, -3, 0));  // clamped; the runtime's default frequency and shortest pulse
   ASSERT_TRUE(actions.stop_vibration(0));
-  const auto& felt = runtime_.record().vibrations;
-  ASSERT_EQ(felt.size(), 3u);
-  EXPECT_EQ(felt[0].hand, 0);
-  EXPECT_EQ(felt[0].amplitude, 0.25f);
-  EXPECT_EQ(felt[0].frequency, 160.0f);
-  EXPECT_EQ(felt[0].duration, 30'000'000);
-  EXPECT_EQ(felt[1].hand, 1);
-  EXPECT_EQ(felt[1].amplitude, 1.0f);
-  EXPECT_EQ(felt[1].frequency, 0.0f);
-  EXPECT_EQ(felt[1].duration, std::int64_t(XR_MIN_HAPTIC_DURATION));
-  EXPECT_TRUE(felt[2].stop);
+  const auto& vibrations_received = runtime_.record().vibrations;
+  ASSERT_EQ(vibrations_received.size(), 3u);
+  EXPECT_EQ(vibrations_received[0].hand, 0);
+  EXPECT_EQ(vibrations_received[0].amplitude, 0.25f);
+  EXPECT_EQ(vibrations_received[0].frequency, 160.0f);
+  EXPECT_EQ(vibrations_received[0].duration, 30'000'000);
+  EXPECT_EQ(vibrations_received[1].hand, 1);
+  EXPECT_EQ(vibrations_received[1].amplitude, 1.0f);
+  EXPECT_EQ(vibrations_received[1].frequency, 0.0f);
+  EXPECT_EQ(vibrations_received[1].duration, std::int64_t(XR_MIN_HAPTIC_DURATION));
+  EXPECT_TRUE(vibrations_received[2].stop);
   runtime_.script().states.emplace(runtime_.record().calls.at("xrWaitFrame"), XR_SESSION_STATE_VISIBLE);
   ASSERT_TRUE(run_frames(packet_, {}, 2));
   ASSERT_TRUE(actions.vibrate(0, 1, 0, 1'000'000));
-  EXPECT_EQ(felt.size(), 3u);
+  EXPECT_EQ(vibrations_received.size(), 3u);
 }
 
-/// Where the eyes look is a pose; what a headset without eyes, or without the extension, does is nothing.
-TEST_F(HeadsetControllers, TheGazeIsWhereTheEyesLook) {
+/// The gaze is a pose; headsets without eye tracking or without the extension report none.
+TEST_F(HeadsetControllers, TheGazeIsThePoseOfTheEyes) {
   const float s = std::sin(0.1f), c = std::cos(0.1f);
   for (const int lack : {0, 1, 2}) {
     SCOPED_TRACE(lack);
@@ -126,7 +126,7 @@ TEST_F(HeadsetControllers, TheGazeIsWhereTheEyesLook) {
     if (*gaze) {
       EXPECT_NEAR((*gaze)->position.y, 0.02, 1e-7);
       EXPECT_NEAR(norm(rotate((*gaze)->orientation, Vec3(0.0, 0.0, -1.0)) - Vec3(-std::sin(0.2), 0.0, -std::cos(0.2))), 0, 1e-6);
-      runtime_.script().gaze.reset();  // the eyes are shut
+      runtime_.script().gaze.reset();  // the eyes are closed
       const auto shut = headset_->actions().gaze(5'000'000'000);
       ASSERT_TRUE(shut);
       EXPECT_FALSE(shut->has_value());
@@ -137,7 +137,7 @@ TEST_F(HeadsetControllers, TheGazeIsWhereTheEyesLook) {
   }
 }
 
-TEST_F(HeadsetControllers, TheClockIsOurs) {
+TEST_F(HeadsetControllers, SteadyClockTimesConvertToXrTimes) {
   ASSERT_TRUE(open());
   EXPECT_EQ(xr::to_xr_time(headset_->instance(), 12'345'678'901), std::optional<XrTime>(12'345'678'901));
   headset_->stop();
@@ -148,5 +148,5 @@ TEST_F(HeadsetControllers, TheClockIsOurs) {
   EXPECT_FALSE(xr::to_xr_time(headset_->instance(), 12'345'678'901));
 }
 
-}  // namespace hands_test
+}  // namespace controllers_test
 }  // namespace catena::test

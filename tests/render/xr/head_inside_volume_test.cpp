@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The head goes into a volume: from before its face to behind it in small steps, and onto the face itself. Every picture is what rays from
-/// that very eye see, so that there is neither a flash nor a hole on the way.
+/// The head enters a volume in small steps through its face, and stands exactly on the face. Every image matches the rays of that eye, so
+/// that there are neither flashes nor holes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,20 +9,20 @@
 #include "tests/render/xr/xr_fixture.h"
 
 namespace catena::test {
-namespace inside_test {
+namespace head_inside_volume_test {
 
 using namespace xr_rig;
 using xr_runtime::CapturedImage;
 
-constexpr double kScale = 0.05;  // metres a unit
-constexpr int kNodes = 17;       // of the box, each way, a unit apart
+constexpr double kScale = 0.05;  // metres per unit
+constexpr int kNodes = 17;       // nodes of the box per axis, one unit apart
 
 Vec3 turned_by(const XrQuaternionf& q, const Vec3& v) {
   const Vec3 u(q.x, q.y, q.z);
   return v + 2 * double(q.w) * cross(u, v) + 2.0 * cross(u, cross(u, v));
 }
 
-/// From the eye through the middle of a pixel, in the room: as OpenXR describes it.
+/// Ray from the eye through a pixel's centre in room coordinates, by OpenXR's definition.
 Vec3 ray_of(const XrView& view, int i, int j, int width, int height) {
   const double l = std::tan(view.fov.angleLeft), r = std::tan(view.fov.angleRight), t = std::tan(view.fov.angleUp),
                b = std::tan(view.fov.angleDown);
@@ -38,18 +38,18 @@ class HeadInsideVolume : public HeadsetFixture {
     runtime_.script().width = 48;
     runtime_.script().height = 40;
     views_ = runtime_.script().views;
-    // the near face of the box is the room's plane z = 0 about the line that the head goes along
+    // the near face of the box is the room's plane z = 0, around the head's path
     placement_.meters_per_unit = kScale;
     placement_.world_origin = {0.45 * (kNodes - 1), 0.55 * (kNodes - 1), kNodes - 1.0};
   }
-  /// Where the eyes are: before the face, or behind it.
+  /// Positions of the eyes in front of and behind the face.
   void stand_at(double z) {
     for (std::size_t k = 0; k < views_.size(); ++k) {
       runtime_.script().views[k] = views_[k];
       runtime_.script().views[k].pose.position.z = float(z);
     }
   }
-  /// The pictures of both eyes from there.
+  /// Images of both eyes at that position.
   const std::vector<CapturedImage>& seen(FramePacket& packet, const RenderSettings& settings) {
     for (bool shown = false; !shown;) {
       EXPECT_TRUE(headset_->poll());
@@ -80,9 +80,9 @@ RenderSettings fast_settings(std::uint32_t spacing) {
   return settings;
 }
 
-/// Of one sigma the picture is known: what comes through is exp(-sigma times the way through the box from the eye on).
-TEST_F(HeadInsideVolume, AnEvenVolumeIsTheWayThroughIt) {
-  constexpr double kSigma = 0.12;  // a unit
+/// For a constant sigma the transmittance is exp(-sigma times the path length in the box in front of the eye).
+TEST_F(HeadInsideVolume, AHomogeneousVolumeHasTheAlphaOfThePathLength) {
+  constexpr double kSigma = 0.12;  // per unit
   ASSERT_TRUE(open());
   FramePacket packet;
   packet.background = {0, 0, 0, 1};
@@ -91,16 +91,16 @@ TEST_F(HeadInsideVolume, AnEvenVolumeIsTheWayThroughIt) {
   for (const RenderSettings& settings : {RenderSettings{}, fast_settings(1)})
     for (const double z : steps_through()) {
       stand_at(z);
-      const auto& pictures = seen(packet, settings);
-      ASSERT_EQ(pictures.size(), 2u);
+      const auto& images = seen(packet, settings);
+      ASSERT_EQ(images.size(), 2u);
       int worst = 0;
-      for (std::size_t k = 0; k < pictures.size(); ++k) {
+      for (std::size_t k = 0; k < images.size(); ++k) {
         const XrView& view = runtime_.script().views[k];
         const Vec3 eye(view.pose.position.x, view.pose.position.y, view.pose.position.z);
         for (int j = 0; j < 40; ++j)
           for (int i = 0; i < 48; ++i) {
             const double through = std::exp(-kSigma * chord_length(*grid, placement_.to_world(eye), ray_of(view, i, j, 48, 40)));
-            const int due = int(std::lround(255 * (1 - through))), is = pictures[k].rgba[4 * std::size_t(j * 48 + i)];
+            const int due = int(std::lround(255 * (1 - through))), is = images[k].rgba[4 * std::size_t(j * 48 + i)];
             worst = std::max(worst, std::abs(is - due));
           }
       }
@@ -114,9 +114,9 @@ double rms_between(const CapturedImage& a, const CapturedImage& b) {
   return std::sqrt(sum / double(a.rgba.size()));
 }
 
-/// Of a volume with something in it, shaded: the rungs that a headset is drawn with against rays of a tenth of a voxel, and no picture
-/// differs more from the one before it than theirs do.
-TEST_F(HeadInsideVolume, NothingFlashesOnTheWayIn) {
+/// A shaded, inhomogeneous volume: the quality levels of a headset against rays with steps of a tenth of a voxel; consecutive images
+/// do not differ more than those of the reference.
+TEST_F(HeadInsideVolume, ImagesChangeContinuouslyOnTheWayIn) {
   ASSERT_TRUE(open());
   FramePacket packet;
   packet.background = {0.1f, 0.2f, 0.3f, 1};
@@ -138,5 +138,5 @@ TEST_F(HeadInsideVolume, NothingFlashesOnTheWayIn) {
   }
 }
 
-}  // namespace inside_test
+}  // namespace head_inside_volume_test
 }  // namespace catena::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What goes to the runtime beside the pictures: depth, what the lenses hide, a panel.
+/// Data submitted to the runtime besides images: depth, visibility mask, panel layer.
 #include <gtest/gtest.h>
 
 #include "render/vk/commands.h"
@@ -19,8 +19,8 @@ class HeadsetLayers : public HeadsetFixture {
   }
 };
 
-/// The nearest point of a ball before the middle of the eye, in metres, out of what was submitted.
-TEST_F(HeadsetLayers, DepthsAreMetresWhateverTheWorldsUnit) {
+/// The submitted depth at the eye's centre is the nearest point of a ball, in metres.
+TEST_F(HeadsetLayers, DepthsAreInMetresForAnyWorldUnit) {
   XrView& view = runtime_.script().views[0];
   view.pose = {{0, 0, 0, 1}, {0, 0, 0}};
   view.fov = {-0.5f, 0.5f, 0.5f, -0.5f};
@@ -32,28 +32,28 @@ TEST_F(HeadsetLayers, DepthsAreMetresWhateverTheWorldsUnit) {
     FramePacket packet = ball_packet({0.0, 0.0, -100.0 * metres}, 100 * 0.2 * metres);
     ASSERT_TRUE(run_frames(packet, placement, 3));
     ASSERT_GT(runtime_.record().depths, 0u);
-    const xr_runtime::CapturedImage& picture = runtime_.record().last_images[0];
-    ASSERT_EQ(picture.depth.size(), 65u * 65u);
-    const double n = picture.near_z, f = picture.far_z, d = picture.depth[32 * 65 + 32];
-    EXPECT_EQ(picture.min_depth, 0.0f);
-    EXPECT_EQ(picture.max_depth, 1.0f);
+    const xr_runtime::CapturedImage& image = runtime_.record().last_images[0];
+    ASSERT_EQ(image.depth.size(), 65u * 65u);
+    const double n = image.near_z, f = image.far_z, d = image.depth[32 * 65 + 32];
+    EXPECT_EQ(image.min_depth, 0.0f);
+    EXPECT_EQ(image.max_depth, 1.0f);
     const double z = n * f / (f - d * (f - n));
     EXPECT_NEAR(z / (0.8 * metres), 1, 2e-3);
-    EXPECT_EQ(picture.depth[0], 1.0f);  // nothing there
+    EXPECT_EQ(image.depth[0], 1.0f);  // background
   }
 }
 
-/// Of a submitted picture, metres along the eye's axis; infinite where nothing is.
-double metres_at(const xr_runtime::CapturedImage& picture, int i, int j) {
-  const double n = picture.near_z, f = picture.far_z, d = picture.depth[std::size_t(j) * picture.width + std::size_t(i)];
+/// Depth of a submitted image in metres along the eye's axis; infinite for the background.
+double metres_at(const xr_runtime::CapturedImage& image, int i, int j) {
+  const double n = image.near_z, f = image.far_z, d = image.depth[std::size_t(j) * image.width + std::size_t(i)];
   return d >= 1 ? HUGE_VAL : n * f / (f - d * (f - n));
 }
 
-/// A volume has the depth where alpha passes 0.5, by exact rays and by fast ones: from outside, from within, before and behind something
-/// opaque; where alpha stays below that, what is behind it.
-TEST_F(HeadsetLayers, AVolumeIsAsDeepAsHalfItsAlpha) {
+/// A volume's depth is where alpha exceeds 0.5, by exact and by fast rays: from outside and inside, in front of and behind opaque objects;
+/// if alpha stays below, the depth is that of the objects behind it.
+TEST_F(HeadsetLayers, AVolumesDepthIsAtHalfAlpha) {
   constexpr int kSize = 64;
-  constexpr double kScale = 0.05, kExtent = 16;  // metres a unit; of the box, units
+  constexpr double kScale = 0.05, kExtent = 16;  // metres per unit; size of the box in units
   for (XrView& view : runtime_.script().views) {
     view.pose = {{0, 0, 0, 1}, {0, 0, 0}};
     view.fov = {-0.4f, 0.4f, 0.4f, -0.4f};
@@ -65,10 +65,10 @@ TEST_F(HeadsetLayers, AVolumeIsAsDeepAsHalfItsAlpha) {
   struct Case {
     const char* name;
     const GridPtr& grid;
-    double sigma;    ///< a unit, times the value; of the ramp at its nearest face 16 times that
-    double front_m;  ///< of the box, from the eye; < 0: the eye is within
-    double ball_m;   ///< the nearest point of a ball on the axis; 0: none
-    bool seen;       ///< alpha passes 0.5
+    double sigma;    ///< extinction per unit and value; at the nearest face of the ramp 16 times that
+    double front_m;  ///< distance of the box from the eye; < 0: the eye is inside
+    double ball_m;   ///< distance of the nearest point of a ball on the axis; 0: no ball
+    bool seen;       ///< true: alpha exceeds 0.5
   };
   const Case cases[] = {{"outside", even, 0.5, 0.6, 0, true},
                         {"within", even, 0.5, -0.3, 0, true},
@@ -95,16 +95,16 @@ TEST_F(HeadsetLayers, AVolumeIsAsDeepAsHalfItsAlpha) {
         const Outcome shown = headset_->show(*frame, *renderer_, packet, settings, placement);
         ASSERT_TRUE(shown) << shown.error().message;
       }
-      const xr_runtime::CapturedImage& picture = runtime_.record().last_images[0];
-      ASSERT_EQ(picture.depth.size(), std::size_t(kSize) * kSize);
-      for (const int place : {24, 32, 40}) {  // of rays that were marched
+      const xr_runtime::CapturedImage& image = runtime_.record().last_images[0];
+      ASSERT_EQ(image.depth.size(), std::size_t(kSize) * kSize);
+      for (const int place : {24, 32, 40}) {  // pixels whose rays are marched
         const double tangent = (place + 0.5 - kSize / 2) / (kSize / 2) * std::tan(0.4), slant = std::hypot(1, tangent);
-        // along the ray: sigma l = ln 2; of the ramp sigma (16 l - l^2 / 2), l along the axis, where each unit is `slant` long
+        // along the ray sigma l = ln 2; for the ramp sigma (16 l - l^2 / 2), with l along the axis, where a unit has length `slant`
         double l = std::log(2.0) / due.sigma / slant;
         if (due.grid == ramp) l = 16 - std::sqrt(256 - 2 * l);
         const double volume_m = std::max(0.0, due.front_m) + kScale * l;
         const bool ball = due.ball_m > 0 && place == 32;
-        const double metres = metres_at(picture, place, 32);
+        const double metres = metres_at(image, place, 32);
         if (ball && due.seen) {
           EXPECT_NEAR(metres, std::min(volume_m, due.ball_m), 0.01 * kScale * 16);
         } else if (ball) {
@@ -118,7 +118,7 @@ TEST_F(HeadsetLayers, AVolumeIsAsDeepAsHalfItsAlpha) {
     }
 }
 
-/// Its depth is not known, and what is opaque behind it would lie too deep.
+/// A projection's depth is unknown, and the depth of opaque objects behind it would be too large.
 TEST_F(HeadsetLayers, AProjectionHasNoDepth) {
   ASSERT_TRUE(open());
   FramePacket packet = ball_packet({8.0, 8.0, 4.0}, 3);
@@ -149,26 +149,26 @@ TEST_F(HeadsetLayers, WithoutTheExtensionOrItsFormatThereAreNoDepths) {
   }
 }
 
-/// The hidden corner is black, all else is as without a mask.
-TEST_F(HeadsetLayers, WhatTheLensesHideIsNotDrawn) {
-  std::vector<std::vector<std::uint8_t>> pictures;
+/// The hidden corner is black; all other pixels are as without a mask.
+TEST_F(HeadsetLayers, PixelsHiddenByTheLensesAreNotDrawn) {
+  std::vector<std::vector<std::uint8_t>> images;
   for (const bool masked : {false, true}) {
     if (masked) runtime_.script().unsupported.clear();
     ASSERT_TRUE(open());
     FramePacket packet = ball_packet({0.0, 0.0, -1.0}, 0.5);
     ASSERT_TRUE(run_frames(packet, {}, 3));
-    pictures.push_back(runtime_.record().last_images[0].rgba);
+    images.push_back(runtime_.record().last_images[0].rgba);
     headset_->stop();
     renderer_.reset();
     headset_.reset();
   }
-  ASSERT_EQ(pictures[0].size(), pictures[1].size());
+  ASSERT_EQ(images[0].size(), images[1].size());
   const int width = 96, height = 80;
   int hidden = 0, different = 0;
   for (int j = 0; j < height; ++j)
     for (int i = 0; i < width; ++i) {
-      const auto* p = &pictures[1][4 * std::size_t(j * width + i)];
-      const auto* q = &pictures[0][4 * std::size_t(j * width + i)];
+      const auto* p = &images[1][4 * std::size_t(j * width + i)];
+      const auto* q = &images[0][4 * std::size_t(j * width + i)];
       const bool black = p[0] == 0 && p[1] == 0 && p[2] == 0;
       const double x = (i + 0.5) / (0.3 * width), y = (height - j - 0.5) / (0.3 * height);
       if (std::abs(x + y - 1) < 0.1) continue;  // the edge
@@ -180,7 +180,7 @@ TEST_F(HeadsetLayers, WhatTheLensesHideIsNotDrawn) {
   EXPECT_EQ(different, 0);
 }
 
-TEST_F(HeadsetLayers, APanelIsAQuadOverThePicture) {
+TEST_F(HeadsetLayers, APanelIsAQuadLayer) {
   ASSERT_TRUE(open());
   FramePacket packet = ball_packet({0.0, 0.0, -1.0}, 0.3);
   ASSERT_TRUE(run_frames(packet, {}, 3));
@@ -188,7 +188,7 @@ TEST_F(HeadsetLayers, APanelIsAQuadOverThePicture) {
   ASSERT_TRUE(panel) << panel.error().message;
   headset_->show_panel(panel->get());
   ASSERT_TRUE(run_frames(packet, {}, 1));
-  EXPECT_EQ(runtime_.record().quads, 0u);  // it has no picture yet
+  EXPECT_EQ(runtime_.record().quads, 0u);  // the panel has no image yet
   (*panel)->set_quad({{{0.1, -0.2, -0.6}, kIdentityRotation}, 0.4, 0.3});
   ASSERT_TRUE((*panel)->submit_image(renderer_->output_image()));
   ASSERT_TRUE(run_frames(packet, {}, 1));

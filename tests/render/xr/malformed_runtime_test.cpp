@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A runtime that says what cannot be: poses that are no numbers, views without an angle, sizes of nothing, clocks that stand or go back.
-/// The picture that it is asked for is not drawn or is small, every frame that was begun is ended, and the next good one is shown.
+/// A malformed runtime: NaN poses, views without an angle, zero sizes, clocks that stop or run backwards. The image is skipped or minimal,
+/// every frame begun is ended, and the next valid one is shown.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "tests/render/xr/xr_fixture.h"
 
 namespace catena::test {
-namespace lying_test {
+namespace malformed_runtime_test {
 
 using namespace xr_rig;
 
@@ -18,7 +18,7 @@ class MalformedRuntime : public HeadsetFixture {
   FramePacket packet_ = ball_packet({0.0, 0.0, -1.0}, 0.3);
 };
 
-TEST_F(MalformedRuntime, PosesAndAnglesThatAreNoneAreNotShown) {
+TEST_F(MalformedRuntime, InvalidPosesAndAnglesAreNotShown) {
   runtime_.script().width = runtime_.script().height = 16;
   const std::vector<XrView> good = runtime_.script().views;
   ASSERT_TRUE(open());
@@ -44,7 +44,7 @@ TEST_F(MalformedRuntime, PosesAndAnglesThatAreNoneAreNotShown) {
     ASSERT_TRUE(run_frames(packet_, {}, 1));
     EXPECT_EQ(runtime_.record().projection_frames, before + 1);
   }
-  // far away, half a turn wide, without a turn: odd, but a picture
+  // extreme but valid: far away, 180 degrees wide, with a zero rotation
   const std::function<void(XrView&)> odd[] = {
       [&](XrView& v) { v.pose.position = {1e30f, -1e30f, 1e30f}; }, [&](XrView& v) { v.fov = {-1.5707f, 1.5707f, 1.5707f, -1.5707f}; },
       [&](XrView& v) { v.fov = {-1e-6f, 1e-6f, 1e-6f, -1e-6f}; },   [&](XrView& v) { v.pose.orientation = {0, 0, 0, 0}; },
@@ -58,7 +58,7 @@ TEST_F(MalformedRuntime, PosesAndAnglesThatAreNoneAreNotShown) {
   }
 }
 
-TEST_F(MalformedRuntime, SizesOfNothingAreAPixel) {
+TEST_F(MalformedRuntime, AZeroImageSizeBecomesOnePixel) {
   runtime_.script().width = runtime_.script().height = 0;
   ASSERT_TRUE(open());
   for (const xr::ViewSize& size : headset_->instance().view_sizes()) {
@@ -70,7 +70,7 @@ TEST_F(MalformedRuntime, SizesOfNothingAreAPixel) {
   EXPECT_GT(runtime_.record().projection_frames, 0u);
 }
 
-TEST_F(MalformedRuntime, NoViewsOrTooManyAreRefused) {
+TEST_F(MalformedRuntime, ZeroOrTooManyViewsAreRefused) {
   for (const std::size_t count : {0u, 65u}) {
     runtime_.script().views.assign(count, XrView{});
     const Outcome opened = open();
@@ -79,8 +79,8 @@ TEST_F(MalformedRuntime, NoViewsOrTooManyAreRefused) {
   }
 }
 
-/// One eye, or a headset of four displays, and runtimes that lend one image at a time.
-TEST_F(MalformedRuntime, AnyNumberOfViewsAndOneImageAreShown) {
+/// One eye, or a headset with four displays, and runtimes with a single swapchain image.
+TEST_F(MalformedRuntime, AnyNumberOfViewsAndASingleImageAreSupported) {
   runtime_.script().width = runtime_.script().height = 16;
   runtime_.script().images = 1;
   const std::vector<XrView> two = runtime_.script().views;
@@ -98,8 +98,8 @@ TEST_F(MalformedRuntime, AnyNumberOfViewsAndOneImageAreShown) {
   }
 }
 
-/// A period is what rays are given their time by.
-TEST_F(MalformedRuntime, APeriodIsOneThatCanBe) {
+/// The display period determines the rays' time budget.
+TEST_F(MalformedRuntime, AnInvalidDisplayPeriodIsReplaced) {
   runtime_.script().width = runtime_.script().height = 8;
   ASSERT_TRUE(open());
   for (const std::int64_t period : {std::int64_t(0), std::int64_t(-5), std::numeric_limits<std::int64_t>::max() / 8}) {
@@ -116,5 +116,5 @@ TEST_F(MalformedRuntime, APeriodIsOneThatCanBe) {
   }
 }
 
-}  // namespace lying_test
+}  // namespace malformed_runtime_test
 }  // namespace catena::test

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The life of a session: every edge of the graph of its states, a failure of every call, many frames, and what the validating layer of
-/// OpenXR thinks of it all.
+/// Life cycle of a session: every edge of the state graph, a failure of every call, many frames, and OpenXR's validation layer.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -39,7 +38,7 @@ class HeadsetSession : public HeadsetFixture {
   void play(const std::vector<std::pair<std::uint64_t, XrSessionState>>& states) {
     for (const auto& [frame, state] : states) runtime_.script().states.emplace(frame, state);
   }
-  /// All that the program does with a headset.
+  /// Everything that the program does with a headset.
   Outcome use() {
     CATENA_CHECK(run_frames(packet_, {}, 4));
     xr::Actions& actions = headset_->actions();
@@ -59,20 +58,20 @@ class HeadsetSession : public HeadsetFixture {
   FramePacket packet_ = ball_packet({0.0, 0.0, -1.0}, 0.3);
 };
 
-TEST_F(HeadsetSession, FollowsEveryEdgeUntilThePersonLeaves) {
+TEST_F(HeadsetSession, FollowsEveryEdgeUntilTheUserExits) {
   runtime_.script().width = runtime_.script().height = 16;
   play({{4, kVisible}, {6, kSynchronized}, {9, kVisible}, {11, kFocused}, {13, kVisible}, {14, kSynchronized}, {15, kStopping}});
   runtime_.script().after_end = {kReady};
   ASSERT_TRUE(open());
   ASSERT_TRUE(run_frames(packet_, {}, 17));
-  // between the frames 6 and 9, and before the first end, nobody looks
+  // between frames 6 and 9, and before the first end, the session is not visible
   EXPECT_EQ(headset_->counts().frames, 17u);
   EXPECT_LT(headset_->counts().rendered, headset_->counts().frames - 4);
   EXPECT_EQ(headset_->counts().rendered, runtime_.record().projection_frames);
   EXPECT_EQ(headset_->session().invalid_transitions(), 0u);
   const auto& seen = headset_->session().state_history();
   EXPECT_NE(std::ranges::find(seen, kStopping), seen.end());
-  // it begins again, and ends by the person's wish
+  // the session begins again and is ended by the user
   const auto before = headset_->counts().rendered;
   ASSERT_TRUE(run_frames(packet_, {}, 4));
   EXPECT_GT(headset_->counts().rendered, before);
@@ -83,7 +82,7 @@ TEST_F(HeadsetSession, FollowsEveryEdgeUntilThePersonLeaves) {
   EXPECT_EQ(headset_->session().invalid_transitions(), 0u);
 }
 
-TEST_F(HeadsetSession, AStopThatIsSaidTwiceEndsTheSessionOnce) {
+TEST_F(HeadsetSession, ARepeatedStopEndsTheSessionOnce) {
   runtime_.script().width = runtime_.script().height = 16;
   play({{4, kStopping}, {4, kStopping}});
   ASSERT_TRUE(open());
@@ -92,7 +91,7 @@ TEST_F(HeadsetSession, AStopThatIsSaidTwiceEndsTheSessionOnce) {
   EXPECT_EQ(runtime_.record().illegal.size(), 0u);
 }
 
-TEST_F(HeadsetSession, ALossIsFoundInEveryState) {
+TEST_F(HeadsetSession, ALossIsDetectedInEveryState) {
   runtime_.script().width = runtime_.script().height = 16;
   ASSERT_TRUE(open());
   for (const XrSessionState state : {kSynchronized, kVisible, kFocused}) {
@@ -113,7 +112,7 @@ TEST_F(HeadsetSession, ALossIsFoundInEveryState) {
     EXPECT_FALSE(headset_->is_running());
     runtime_.script().on_frame = {};
   }
-  // and what follows it works
+  // a new session works
   runtime_.script().states.clear();
   ASSERT_TRUE(headset_->start(renderer_->device()));
   EXPECT_EQ(headset_->loss(), xr::Loss::none);
@@ -133,7 +132,7 @@ TEST_F(HeadsetSession, WithoutTrackingNothingIsShown) {
   EXPECT_EQ(runtime_.record().projection_frames, before + 1);
 }
 
-TEST_F(HeadsetSession, RecentringAndNewMasksAreCounted) {
+TEST_F(HeadsetSession, RecentringAndNewVisibilityMasksAreCounted) {
   runtime_.script().unsupported.clear();
   ASSERT_TRUE(open());
   XrEventDataBuffer space{}, mask{};
@@ -145,12 +144,12 @@ TEST_F(HeadsetSession, RecentringAndNewMasksAreCounted) {
   ASSERT_TRUE(run_frames(packet_, {}, 6));
   EXPECT_EQ(headset_->session().recenter_count(), 1u);
   EXPECT_EQ(headset_->session().mask_change_count(), 1u);
-  EXPECT_EQ(runtime_.record().calls.at("xrGetVisibilityMaskKHR"), 2 * asked);  // taken again, once
+  EXPECT_EQ(runtime_.record().calls.at("xrGetVisibilityMaskKHR"), 2 * asked);  // fetched again, once
 }
 
-/// Calls are refused one after the other, the first and the third time, with what a runtime may say; what was made before is given back,
-/// the reason is one line, and the next try works.
-TEST_F(HeadsetSession, EveryCallMayFail) {
+/// Each call fails in turn, the first and the third time, with its possible errors: earlier resources are freed, the error is one line,
+/// and the next attempt works.
+TEST_F(HeadsetSession, EveryCallsFailureIsReportedAndRecoveredFrom) {
   Runtime& r = runtime_;
   r.script().width = r.script().height = 16;
   r.script().unsupported.clear();
@@ -181,7 +180,7 @@ TEST_F(HeadsetSession, EveryCallMayFail) {
         EXPECT_TRUE(outcome.error().message.find("headset") != std::string::npos || outcome.error().message.starts_with("Vulkan could not"))
             << outcome.error().message;
       }
-      // of the session: again on the same device; else all of it
+      // errors of the session: retry on the same device; other errors: restart everything
       if (!outcome && lost && headset_->loss() == xr::Loss::session && renderer_) {
         const Outcome again = headset_->start(renderer_->device());
         ASSERT_TRUE(again) << again.error().message;
@@ -198,28 +197,28 @@ TEST_F(HeadsetSession, EveryCallMayFail) {
   EXPECT_GT(failed, functions.size());
 }
 
-/// Nothing grows from frame to frame. CATENA_XR_FRAMES=100000 for a long one.
+/// Memory does not grow over frames. CATENA_XR_FRAMES=100000 for a long run.
 TEST_F(HeadsetSession, ManyFramesTakeNoMoreMemory) {
   const char* asked = std::getenv("CATENA_XR_FRAMES");
   const int frames = asked ? std::atoi(asked) : 300;
   runtime_.script().width = runtime_.script().height = 8;
   runtime_.script().period_ns = 1'000'000;
-  validation_ = asked != nullptr;  // which takes most of the time
+  validation_ = asked != nullptr;  // validation takes most of the time
   ASSERT_TRUE(open());
   ASSERT_TRUE(run_frames(packet_, {}, frames / 3));
   const std::uint64_t device = renderer_->stats().gpu_bytes, before = resident_bytes();
   ASSERT_TRUE(run_frames(packet_, {}, frames - frames / 3));
   EXPECT_EQ(renderer_->stats().gpu_bytes, device);
   const double grown = double(resident_bytes()) - double(before);
-  EXPECT_LT(kResidentIsReliable ? grown : 0, 2e6 + 1.0 * frames);  // a byte a frame: the notes of the rig over a long run
+  EXPECT_LT(kResidentIsReliable ? grown : 0, 2e6 + 1.0 * frames);  // one byte per frame for the fixture's own records
   EXPECT_EQ(runtime_.record().frames, std::uint64_t(frames));
   EXPECT_EQ(runtime_.record().moved_poses, 0u);
   RecordProperty("grown_bytes", std::to_string(grown));
   if (asked) std::printf("%d frames, %.0f bytes more after the first third\n", frames, grown);
 }
 
-/// XR_RUNTIME_JSON=/somewhere/openxr.json build/release/test_render_xr --gtest_filter='*AnyRuntime*' tries a real one.
-TEST_F(HeadsetSession, AnyRuntimeThatIsNamedShowsPictures) {
+/// XR_RUNTIME_JSON=/somewhere/openxr.json build/release/test_render_xr --gtest_filter='*AnyNamedRuntime*' tests a real runtime.
+TEST_F(HeadsetSession, AnyNamedRuntimeShowsImages) {
   if (original_runtime().empty()) GTEST_SKIP() << "XR_RUNTIME_JSON names no runtime";
   ::setenv("XR_RUNTIME_JSON", original_runtime().c_str(), 1);
   const Outcome opened = open();
@@ -244,8 +243,8 @@ TEST_F(HeadsetSession, AnyRuntimeThatIsNamedShowsPictures) {
               (unsigned long long)headset_->counts().rendered);
 }
 
-/// Debian's layer between program and runtime: it writes what it finds to a file.
-TEST_F(HeadsetSession, TheValidatingLayerIsSilent) {
+/// Debian's validation layer between program and runtime, which writes its findings to a file.
+TEST_F(HeadsetSession, TheOpenXrValidationLayerFindsNoError) {
   if (!exists("/usr/share/openxr/1/api_layers/explicit.d/XrApiLayer_core_validation.x86_64-linux-gnu.json"))
     GTEST_SKIP() << "the package openxr-layer-corevalidation is not installed";
   TemporaryFolder folder;
@@ -262,7 +261,7 @@ TEST_F(HeadsetSession, TheValidatingLayerIsSilent) {
   renderer_.reset();
   const bool silent = !exists(file);
   EXPECT_TRUE(silent) << (silent ? "" : read_file(file));
-  // the layer is there: it finds what is wrong
+  // negative control: the layer reports an error
   XrSystemGetInfo wrong{};
   wrong.type = XR_TYPE_SYSTEM_GET_INFO;
   wrong.formFactor = XrFormFactor(77);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Both eyes of example scenes. CATENA_XR_PICTURES=DIR writes what they see. CATENA_XR_EYES=1 measures what the second one costs: processor
-/// time of pictures of one view and of two, the same scene and settings, one after the other, so that what else the machine does counts for
-/// both.
+/// Images of both eyes of example scenes. CATENA_XR_PICTURES=DIR writes them. CATENA_XR_EYES=1 measures the cost of the second eye:
+/// processor time of images with one and with two views, of the same scene and settings, alternating, so that other load affects both.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -17,7 +16,7 @@
 #include "tests/render/xr/xr_fixture.h"
 
 namespace catena::test {
-namespace eyes_test {
+namespace stereo_views_test {
 
 using namespace xr_rig;
 
@@ -40,14 +39,14 @@ class HeadsetStereoViews : public HeadsetFixture {
       auto packet = make_frame(scene, std::uint32_t(size.width), std::uint32_t(size.height));
       ASSERT_TRUE(packet) << packet.error().message;
       packet_s_ += processor_s() - before;
-      packet->overlay = {};  // of the flat picture
+      packet->overlay = {};  // the overlay of the flat image
       const Placement placement = make_initial_placement(packet->view);
       const auto aim = [&](const View& view, FramePacket& of) { set_view(scene, view, of); };
       const Outcome shown = headset_->show(*frame, *renderer_, *packet, settings, placement, 1, aim);
       ASSERT_TRUE(shown) << shown.error().message;
     }
   }
-  double packet_s_ = 0;  ///< spent on what both eyes share
+  double packet_s_ = 0;  ///< time of the work that both eyes share
   void close() {
     headset_->stop();
     renderer_.reset();
@@ -55,7 +54,7 @@ class HeadsetStereoViews : public HeadsetFixture {
   }
 };
 
-TEST_F(HeadsetStereoViews, PicturesOfBoth) {
+TEST_F(HeadsetStereoViews, ImagesOfBothEyes) {
   const char* folder = std::getenv("CATENA_XR_PICTURES");
   if (!folder) GTEST_SKIP() << "writes pictures only where CATENA_XR_PICTURES names a folder";
   validation_ = false;
@@ -68,15 +67,15 @@ TEST_F(HeadsetStereoViews, PicturesOfBoth) {
     ASSERT_TRUE(open());
     draw(*scene, balanced_settings(), 3);
     for (std::size_t k = 0; k < runtime_.record().last_images.size(); ++k) {
-      const xr_runtime::CapturedImage& picture = runtime_.record().last_images[k];
+      const xr_runtime::CapturedImage& rendered = runtime_.record().last_images[k];
       const std::string path = std::string(folder) + "/" + name + "-eye" + std::to_string(k) + ".png";
-      EXPECT_TRUE(write_png(path, {picture.width, picture.height, picture.rgba}, false));
+      EXPECT_TRUE(write_png(path, {rendered.width, rendered.height, rendered.rgba}, false));
     }
     close();
   }
 }
 
-TEST_F(HeadsetStereoViews, CostOfTheSecond) {
+TEST_F(HeadsetStereoViews, CostOfTheSecondEye) {
   if (!std::getenv("CATENA_XR_EYES")) GTEST_SKIP() << "measures only where CATENA_XR_EYES is set";
   validation_ = false;
   runtime_.script().width = 320;
@@ -86,7 +85,7 @@ TEST_F(HeadsetStereoViews, CostOfTheSecond) {
   const std::string folder = source_dir() + "/assets/scenes/";
   constexpr int kPictures = 12, kRounds = 7;
   struct Cost {
-    double processor_s = 0, own_s = 0, wall_s = 0, work_s = 0;  // the last: of what was submitted, as the device measures it
+    double processor_s = 0, own_s = 0, wall_s = 0, work_s = 0;  // work_s: GPU time of the submitted work
   };
   for (const char* name : {"brain", "hand", "head-cut", "atlas", "left-ventricle", "rake", "ventricle-fibres"}) {
     auto scene = scene::read_scene(folder + name + ".json");
@@ -95,7 +94,7 @@ TEST_F(HeadsetStereoViews, CostOfTheSecond) {
     Cost one;
     for (int round = 0; round < kRounds; ++round) {
       Cost cost[2];
-      for (const int which : {0, 2, 1}) {  // the left one alone, both, the right one
+      for (const int which : {0, 2, 1}) {  // left eye, both eyes, right eye
         runtime_.script().views = which == 2 ? both : std::vector{both[std::size_t(which)]};
         ASSERT_TRUE(open());
         draw(*scene, balanced_settings(), 4);
@@ -128,5 +127,5 @@ TEST_F(HeadsetStereoViews, CostOfTheSecond) {
   }
 }
 
-}  // namespace eyes_test
+}  // namespace stereo_views_test
 }  // namespace catena::test

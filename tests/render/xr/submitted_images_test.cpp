@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the headset gets to show: a ball where it stands, for canted and asymmetric eyes at every depth, in the bytes that a window gets.
+/// Images submitted to the headset: position of a ball for canted and asymmetric eyes at every depth, and bytes equal to a window's.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -9,20 +9,20 @@
 #include "tests/render/xr/xr_fixture.h"
 
 namespace catena::test {
-namespace picture_test {
+namespace submitted_images_test {
 
 using namespace xr_rig;
 using xr_runtime::CapturedImage;
 
-/// x, y in pixels.
+/// Position in pixels.
 using Place = std::array<double, 2>;
 
-Place centroid(const CapturedImage& picture) {
+Place centroid(const CapturedImage& rendered) {
   double x = 0, y = 0, count = 0;
-  for (std::uint32_t j = 0; j < picture.height; ++j)
-    for (std::uint32_t i = 0; i < picture.width; ++i) {
-      const std::uint8_t* p = &picture.rgba[4 * (std::size_t(j) * picture.width + i)];
-      if (std::abs(p[0] - 26) <= 1 && std::abs(p[1] - 51) <= 1 && std::abs(p[2] - 77) <= 1) continue;  // the background
+  for (std::uint32_t j = 0; j < rendered.height; ++j)
+    for (std::uint32_t i = 0; i < rendered.width; ++i) {
+      const std::uint8_t* p = &rendered.rgba[4 * (std::size_t(j) * rendered.width + i)];
+      if (std::abs(p[0] - 26) <= 1 && std::abs(p[1] - 51) <= 1 && std::abs(p[2] - 77) <= 1) continue;  // skip the background
       x += i + 0.5;
       y += j + 0.5;
       ++count;
@@ -35,7 +35,7 @@ Vec3 turned(const XrQuaternionf& q, const Vec3& v) {
   return v + 2 * double(q.w) * cross(u, v) + 2.0 * cross(u, cross(u, v));
 }
 
-/// The same of a ball in the room, by rays from the eye as OpenXR describes it: nothing of Catena's cameras.
+/// Expected position of a ball in the room, by rays from the eye as OpenXR defines it, without Catena's cameras.
 Place expected_centroid(const XrView& view, const Vec3& centre, double radius, double width, double height) {
   constexpr int kFine = 4;
   const double l = std::tan(view.fov.angleLeft), r = std::tan(view.fov.angleRight), t = std::tan(view.fov.angleUp),
@@ -57,11 +57,11 @@ Place expected_centroid(const XrView& view, const Vec3& centre, double radius, d
 
 class HeadsetImages : public HeadsetFixture {};
 
-TEST_F(HeadsetImages, ABallIsSeenWhereItStandsByBothEyes) {
+TEST_F(HeadsetImages, ABallIsAtItsPositionInBothEyes) {
   runtime_.script().capture_images = true;
   runtime_.script().width = 200;
   runtime_.script().height = 180;
-  // the eyes canted about two axes, the head turned
+  // eyes canted about two axes, head rotated
   runtime_.script().views[1].pose.orientation = {0.05f, -0.09f, 0.02f, 0.994f};
   const Outcome opened = open();
   ASSERT_TRUE(opened) << opened.error().message;
@@ -77,21 +77,21 @@ TEST_F(HeadsetImages, ABallIsSeenWhereItStandsByBothEyes) {
     ASSERT_TRUE(turned) << turned.error().message;
     ASSERT_EQ(runtime_.record().last_images.size(), 2u);
     for (std::size_t k = 0; k < 2; ++k) {
-      const CapturedImage& picture = runtime_.record().last_images[k];
-      const Place seen = centroid(picture), due = expected_centroid(runtime_.script().views[k], room, radius, 200, 180);
+      const CapturedImage& rendered = runtime_.record().last_images[k];
+      const Place seen = centroid(rendered), due = expected_centroid(runtime_.script().views[k], room, radius, 200, 180);
       EXPECT_NEAR(seen[0], due[0], 0.1) << "eye " << k << " at " << depth << " m";
       EXPECT_NEAR(seen[1], due[1], 0.1) << "eye " << k << " at " << depth << " m";
       if (const char* folder = std::getenv("CATENA_XR_PICTURES")) {
         const std::string path = std::string(folder) + "/eye" + std::to_string(k) + "-" + std::to_string(depth) + ".png";
-        EXPECT_TRUE(write_png(path, {picture.width, picture.height, picture.rgba}, false));
+        EXPECT_TRUE(write_png(path, {rendered.width, rendered.height, rendered.rgba}, false));
       }
     }
   }
   EXPECT_EQ(runtime_.record().moved_poses, 0u);
 }
 
-/// A ball where the hand is, while the head moves: drawn for the frame's own poses, it covers the hand in both eyes.
-TEST_F(HeadsetImages, TheHandIsSeenWhereItIsWhileTheHeadMoves) {
+/// The cursor at the hand while the head moves: drawn with the frame's poses it covers the hand in both eyes.
+TEST_F(HeadsetImages, TheCursorIsAtTheHandWhileTheHeadMoves) {
   runtime_.script().capture_images = true;
   runtime_.script().width = runtime_.script().height = 160;
   const std::vector<XrView> still = runtime_.script().views;
@@ -101,7 +101,7 @@ TEST_F(HeadsetImages, TheHandIsSeenWhereItIsWhileTheHeadMoves) {
       script.views[k].pose.position.x = still[k].pose.position.x + 0.01f * t;
       script.views[k].pose.position.z = still[k].pose.position.z - 0.005f * t;
       script.views[k].pose.orientation = {0.01f * t, still[k].pose.orientation.y + 0.004f * t, 0, still[k].pose.orientation.w};
-      // a unit quaternion, as a runtime gives
+      // a unit quaternion, as from a runtime
       XrQuaternionf& q = script.views[k].pose.orientation;
       const float length = std::sqrt(q.x * q.x + q.y * q.y + q.w * q.w);
       q = {q.x / length, q.y / length, 0, q.w / length};
@@ -112,7 +112,7 @@ TEST_F(HeadsetImages, TheHandIsSeenWhereItIsWhileTheHeadMoves) {
   Placement placement;
   placement.meters_per_unit = 0.3;
   placement.world_origin = {1.0, 2.0, 3.0};
-  double most = 0;
+  double maximum = 0;
   for (int i = 0; i < 12; ++i) {
     ASSERT_TRUE(headset_->poll());
     const auto frame = headset_->begin();
@@ -127,16 +127,16 @@ TEST_F(HeadsetImages, TheHandIsSeenWhereItIsWhileTheHeadMoves) {
     for (std::size_t k = 0; k < 2; ++k) {
       const Place seen = centroid(runtime_.record().last_images[k]),
                   due = expected_centroid(runtime_.script().views[k], room, 0.05, 160, 160);
-      most = std::max({most, std::abs(seen[0] - due[0]), std::abs(seen[1] - due[1])});
+      maximum = std::max({maximum, std::abs(seen[0] - due[0]), std::abs(seen[1] - due[1])});
     }
   }
-  EXPECT_GT(most, 0);  // it was looked at
-  EXPECT_LT(most, 0.25);
+  EXPECT_GT(maximum, 0);  // at least one pixel was compared
+  EXPECT_LT(maximum, 0.25);
   EXPECT_EQ(runtime_.record().moved_poses, 0u);
 }
 
-/// In an sRGB image as in a plain one the bytes are those of a picture to a file.
-TEST_F(HeadsetImages, WhatIsSubmittedIsWhatAFileWouldHold) {
+/// In sRGB and in linear formats the bytes equal those of an image file.
+TEST_F(HeadsetImages, SubmittedImagesEqualImageFiles) {
   for (const std::int64_t format : {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM}) {
     runtime_.script().capture_images = true;
     runtime_.script().formats = {VK_FORMAT_B8G8R8A8_SRGB, format};
@@ -145,22 +145,22 @@ TEST_F(HeadsetImages, WhatIsSubmittedIsWhatAFileWouldHold) {
     const Placement placement;
     FramePacket packet = ball_packet({0.0, 0.0, -1.0}, 0.3);
     ASSERT_TRUE(run_frames(packet, placement, 3));
-    // the window's mirror is the first eye, drawn last
+    // the window mirrors the first eye, which is drawn last
     const auto mirrored = renderer_->read_back();
     ASSERT_TRUE(mirrored);
     EXPECT_EQ(mirrored->rgba, runtime_.record().last_images[0].rgba);
-    // and each eye is what a renderer without a headset makes of its view
+    // each eye equals the image of its view by a renderer without a headset
     auto plain = Renderer::create({true, test_device(), {}});
     ASSERT_TRUE(plain);
     for (std::size_t k = 0; k < 2; ++k) {
       packet.view = *make_xr_eye_view(placement, xr::make_xr_eye(runtime_.script().views[k]));
       ASSERT_TRUE((*plain)->draw(packet, {}));
-      const auto picture = (*plain)->read_back();
+      const auto rendered = (*plain)->read_back();
       const auto& shown = runtime_.record().last_images[k].rgba;
-      ASSERT_EQ(picture->rgba.size(), shown.size());
-      int most = 0;
-      for (std::size_t i = 0; i < shown.size(); ++i) most = std::max(most, std::abs(int(shown[i]) - int(picture->rgba[i])));
-      EXPECT_LE(most, 2);
+      ASSERT_EQ(rendered->rgba.size(), shown.size());
+      int maximum = 0;
+      for (std::size_t i = 0; i < shown.size(); ++i) maximum = std::max(maximum, std::abs(int(shown[i]) - int(rendered->rgba[i])));
+      EXPECT_LE(maximum, 2);
     }
     headset_->stop();
     renderer_.reset();
@@ -168,8 +168,8 @@ TEST_F(HeadsetImages, WhatIsSubmittedIsWhatAFileWouldHold) {
   }
 }
 
-/// A coarser rung takes a part of the same images.
-TEST_F(HeadsetImages, FewerPixelsAreAPartOfTheImage) {
+/// A coarser level uses a part of the same images.
+TEST_F(HeadsetImages, ReducedPixelsUseAPartOfTheImage) {
   runtime_.script().capture_images = true;
   ASSERT_TRUE(open());
   FramePacket packet = ball_packet({0.0, 0.0, -1.0}, 0.3);
@@ -182,5 +182,5 @@ TEST_F(HeadsetImages, FewerPixelsAreAPartOfTheImage) {
   EXPECT_NEAR(seen[1], due[1], 0.1);
 }
 
-}  // namespace picture_test
+}  // namespace submitted_images_test
 }  // namespace catena::test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A headset of the scripted runtime (tests/xr_runtime) behind the real loader, and a renderer on the device that it made: lavapipe, with
-/// the validation layer on.
+/// A headset of the scripted runtime (tests/xr_runtime) behind the real loader, and a renderer on its Vulkan device: lavapipe, with the
+/// validation layer.
 #pragma once
 #include <dlfcn.h>
 #include <gtest/gtest.h>
@@ -18,13 +18,13 @@ namespace catena::test::xr_rig {
 
 using namespace catena::render;
 
-/// What the environment named before the scripted runtime took its place; empty: nothing.
+/// The environment's XR_RUNTIME_JSON before the scripted runtime replaced it; empty if unset.
 inline const std::string& original_runtime() {
   static const std::string path = std::getenv("XR_RUNTIME_JSON") ? std::getenv("XR_RUNTIME_JSON") : "";
   return path;
 }
 
-/// The library, opened once more than the loader does: its stage outlives instances.
+/// The runtime's library, opened in addition to the loader, so that its state outlives instances.
 class Runtime {
  public:
   Runtime() {
@@ -38,7 +38,7 @@ class Runtime {
     reset();
   }
   ~Runtime() {
-    // what the process's other tests would find
+    // state that would affect the process's other tests
     if (handle_) reset();
   }
   void reset() { reinterpret_cast<void (*)()>(::dlsym(handle_, "catena_xr_reset"))(); }
@@ -51,7 +51,7 @@ class Runtime {
   xr_runtime::SharedState* stage_ = nullptr;
 };
 
-/// One ball of a plain colour, lit by the headlight.
+/// A ball of one colour, lit by the headlight.
 inline FramePacket ball_packet(const Vec3& centre, double radius) {
   FramePacket packet;
   auto balls = std::make_shared<SphereSet>();
@@ -80,7 +80,7 @@ class HeadsetFixture : public testing::Test {
     for (const std::string& line : runtime_.record().illegal) ADD_FAILURE() << line;
     EXPECT_EQ(runtime_.record().objects, 0u);
   }
-  /// Everything up to a session; the first error.
+  /// Opens everything up to a session; returns the first error.
   Outcome open() {
     CATENA_TRY(headset_, xr::Headset::open());
     vk::DeviceOptions options;
@@ -89,7 +89,7 @@ class HeadsetFixture : public testing::Test {
     CATENA_TRY(renderer_, Renderer::create(options));
     return headset_->start(renderer_->device());
   }
-  /// Turns of the loop: events, and a frame where the session runs.
+  /// Runs iterations of the loop: events, and a frame while the session runs.
   Outcome run_frames(FramePacket& packet, const Placement& placement, int turns = 1, double share = 1) {
     for (int i = 0; i < turns; ++i) {
       CATENA_CHECK(headset_->poll());

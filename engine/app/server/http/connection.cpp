@@ -21,8 +21,7 @@ namespace http = boost::beast::http;
 namespace {
 
 constexpr std::uint32_t kLongestHeader = 8192;
-constexpr const char* kNoEntry =
-    "This page is for who started it: open the whole address that `catena serve` has printed, with its token.\n";
+constexpr const char* kNoEntry = "A token is missing or wrong: open the complete address that `catena serve` printed.\n";
 
 std::string with_nonce(const std::string& page, const std::string& nonce) {
   constexpr std::string_view kPlace = "NONCE";
@@ -58,14 +57,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
     const auto& request = parser_.get();
     const std::string_view host = view_of(request[http::field::host]), target = view_of(request.target());
     if (!hub_.access.allows_host(host))
-      return say(http::status::forbidden, "This machine is not called so here; see `catena serve --help`, --name.\n");
+      return say(http::status::forbidden, "The host name is not known; see `catena serve --help`, --name.\n");
     const bool known = hub_.access.has_cookie(view_of(request[http::field::cookie]), host);
     if (target == "/socket") return open_socket(known);
-    if (request.method() != http::verb::get) return say(http::status::method_not_allowed, "Only GET is answered.\n");
+    if (request.method() != http::verb::get) return say(http::status::method_not_allowed, "Only GET is supported.\n");
     const bool invited = hub_.access.has_token(target);
     const ServerState::OfferedFile& offered = hub_.offered_file;
     if (known && !offered.path.empty() && target == offered.target) return send_file(offered);
-    if (!invited && target != "/" && !target.starts_with("/?")) return say(http::status::not_found, "There is only one page.\n");
+    if (!invited && target != "/" && !target.starts_with("/?")) return say(http::status::not_found, "There is no such page.\n");
     if (!invited && !known) return say(http::status::forbidden, kNoEntry);
     show_page(invited ? std::optional(hub_.access.set_cookie_header(host)) : std::nullopt);
   }
@@ -75,7 +74,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     const std::string_view host = view_of(request[http::field::host]), origin = view_of(request[http::field::origin]);
     if (!known || !AccessControl::allows_origin(origin, host)) return say(http::status::forbidden, kNoEntry);
     if (!beast::websocket::is_upgrade(request)) return say(http::status::upgrade_required, "A WebSocket was expected.\n");
-    if (hub_.viewers.size() >= kMaxViewers) return say(http::status::service_unavailable, "Too many look on already.\n");
+    if (hub_.viewers.size() >= kMaxViewers) return say(http::status::service_unavailable, "Too many pages are connected.\n");
     stream_.expires_never();
     std::make_shared<ViewerConnection>(hub_, stream_.release_socket(), std::move(counted_))->accept(parser_.release());
   }

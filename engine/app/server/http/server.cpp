@@ -18,10 +18,10 @@ namespace catena::http {
 namespace asio = boost::asio;
 using tcp = asio::ip::tcp;
 
-void ServerState::post_event(ViewerEvent one) {
+void ServerState::post_event(ViewerEvent event) {
   {
     const std::lock_guard lock(mutex);
-    events.push_back(std::move(one));
+    events.push_back(std::move(event));
   }
   event_posted.notify_one();
 }
@@ -67,13 +67,13 @@ Server::~Server() {
 Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
   boost::system::error_code error;
   const asio::ip::address address = asio::ip::make_address(options.address, error);
-  if (error) return Error{in_quotes(options.address) + ": expected an address in numbers, such as 127.0.0.1 or ::1"};
+  if (error) return Error{in_quotes(options.address) + ": a numeric address was expected, such as 127.0.0.1 or ::1"};
   // the value is placed in a header
   const std::string& framed = options.frame_ancestor;
   const bool is_origin = framed.starts_with("http://") || framed.starts_with("https://");
   constexpr const char* kOfOrigins = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.:/-[]";
   if (!framed.empty() && (!is_origin || framed.find_first_not_of(kOfOrigins) != std::string::npos))
-    return Error{in_quotes(framed) + ": expected the origin of a page, such as http://127.0.0.1:8888"};
+    return Error{in_quotes(framed) + ": the origin of a page was expected, such as http://127.0.0.1:8888"};
   std::unique_ptr<Server> server(new Server());
   server->impl_ = std::make_unique<Impl>(options);
   Impl& parts = *server->impl_;
@@ -83,8 +83,8 @@ Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
   if (!error) parts.acceptor.bind(place, error);
   if (!error) parts.acceptor.listen(asio::socket_base::max_listen_connections, error);
   if (error)
-    return Error{fmt::format("{} port {}: cannot be listened at ({}); --port takes another one, 0 any that is free", options.address,
-                             options.port, error.message()),
+    return Error{fmt::format("{} port {}: cannot listen ({}); --port selects another port, 0 any free port", options.address, options.port,
+                             error.message()),
                  true};
   parts.accept();
   CATENA_TRY(parts.thread, start_thread("the server", [&parts] { parts.hub.io.run(); }));
@@ -108,20 +108,20 @@ std::string Server::url() const {
 
 std::vector<ViewerEvent> Server::wait_for_events(double wait_s) {
   ServerState& hub = impl_->hub;
-  std::vector<ViewerEvent> news;
+  std::vector<ViewerEvent> events;
   {
     std::unique_lock lock(hub.mutex);
     const int before = hub.ready_viewers;
     hub.event_posted.wait_for(lock, std::chrono::duration<double>(wait_s),
                               [&] { return !hub.events.empty() || (before == 0 && hub.ready_viewers > 0); });
-    news.swap(hub.events);
+    events.swap(hub.events);
   }
-  if (!news.empty())
+  if (!events.empty())
     asio::post(hub.io, [&hub] {
       const auto viewers = hub.viewers;  // a copy: a viewer that resumes reading may disconnect
       for (const auto& [id, viewer] : viewers) viewer->resume();
     });
-  return news;
+  return events;
 }
 
 void Server::send(ViewerId viewer, Slot slot, std::string bytes) {

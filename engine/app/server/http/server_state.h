@@ -23,7 +23,7 @@ using Bytes = std::shared_ptr<const std::string>;
 
 /// The shared state.
 struct ServerState {
-  explicit ServerState(const ServerOptions& wanted) : options(wanted), access(wanted.host_names) {}
+  explicit ServerState(const ServerOptions& initial_options) : options(initial_options), access(initial_options.host_names) {}
 
   const ServerOptions options;
   const AccessControl access;
@@ -42,7 +42,7 @@ struct ServerState {
   std::atomic<int> ready_viewers{0};  ///< Number of viewers that can be sent a frame at once
 
   /// Adds an event and wakes the caller of Server::wait_for_events().
-  void post_event(ViewerEvent one);
+  void post_event(ViewerEvent event);
   /// Recounts ready_viewers.
   void update_ready_viewers();
 };

@@ -38,7 +38,7 @@ const char* to_string(Quantity q);       ///< Identifier, "error_deviation"
 const char* quantity_label(Quantity q);  ///< Label, "deviation of the error"
 const char* quantity_unit(Quantity q);   ///< Unit, "mm" or "s"; empty for slopes
 
-/// Values of one subject in one task and condition.
+/// Results of one subject in one task and condition.
 struct Cell {
   int trials = 0, accepted = 0;
   /// Indexed by Quantity; NaN: too few accepted trials
@@ -108,7 +108,7 @@ struct FindingResult {
   /// "3 of 4" if the finding has several parts, else empty
   std::string supported_count;
   std::vector<std::string> details;  ///< What these data show for each part, in words and numbers
-  std::string text() const;          ///< All of the above as one text
+  std::string text() const;          ///< Returns the count and the details as one text
 };
 
 /// All results of the analysis.
@@ -121,8 +121,8 @@ struct Analysis {
   std::vector<PairedComparison> condition_comparisons, task_comparisons, tradeoff_comparisons;
   std::vector<ConditionCorrelation> correlations;
   std::vector<CorrelationChange> correlation_changes;
-  std::vector<FindingResult> findings;    ///< Of the analysis plan, in its order
-  std::vector<std::string> missing_data;  ///< "subject 7: no kept trial of tracing_2d, iso (0 done)"
+  std::vector<FindingResult> findings;    ///< results of the findings, in the order of the analysis plan
+  std::vector<std::string> missing_data;  ///< "subject 7: no accepted trial of tracing_2d, iso (0 done)"
   std::vector<std::string> notes;         ///< Differences between the data and the study's design
 
   std::size_t task_count = 0, condition_count = 0;
@@ -163,7 +163,7 @@ void apply_holm_correction(std::vector<PairedComparison>& family);
 /// Origin of the trials, as far as the data folder shows it.
 struct DataSource {
   std::string folder;         ///< Name of the folder, without its parents
-  bool is_simulated = false;  ///< The human model did the trials
+  bool is_simulated = false;  ///< The trials were simulated with the human model
 };
 
 /// The results as CSV tables.
@@ -194,19 +194,18 @@ struct PlotImages {
 };
 /// All results as an HTML page.
 std::string to_html(const Study& study, const study::AnalysisPlan& inquiry, const Analysis& analysis, const DataSource& source,
-                    const std::vector<SubjectAnswers>& answers, const PlotImages& drawn);
+                    const std::vector<SubjectAnswers>& answers, const PlotImages& images);
 
 /// Notice that accompanies every result of simulated trials.
 inline constexpr const char* kSimulatedDataNotice =
-    "These trials were done by a model of a person, not by people. What is found here is found about the model; it cannot stand in for "
-    "people.";
+    "These trials were made by a model of a person, not by people. The results describe the model; they do not replace results of people.";
 
 /// Formats a p-value: "0.0381", "5.3e-04", "< 1e-15"; "-" if it is not finite.
 std::string format_p(double p);
 /// "p = 0.0381 (corrected 0.11)", "p < 1e-15 (corrected 2.1e-14)".
 std::string format_p_values(double p, double corrected);
 /// "tracing_3d, iso".
-std::string task_condition_label(const Study& study, const TaskCondition& place);
+std::string task_condition_label(const Study& study, const TaskCondition& task_condition);
 /// "iso - aniso"; for two tasks "tracing_3d - tracing_2d".
 std::string difference_label(const Study& study, const PairedComparison& paired);
 /// "iso - aniso = 3.21 mm (2.90 to 3.52), t(19) = 7.38, p = 5.3e-04 (corrected 0.0085), d_z = 1.65"; or the reason why there is no test.

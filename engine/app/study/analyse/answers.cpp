@@ -13,7 +13,7 @@
 namespace catena::app::analysis {
 namespace {
 
-/// Calls `add(subject, question's name, answer)` for each answer that was given.
+/// Calls `add(subject, name of the question, answer)` for each answer that was given.
 template <class Add>
 void for_each_answer(const study::Study& study, const std::vector<SubjectAnswers>& answers, const Add& add) {
   for (const SubjectAnswers& a : answers)
@@ -70,7 +70,7 @@ std::string answers_json(const study::Study& study, const std::vector<SubjectAns
 
 std::string answers_html(const study::Study& study, const std::vector<SubjectAnswers>& answers) {
   if (answers.empty()) return {};
-  std::string text = "<h2>The questionnaire</h2>\n";
+  std::string text = "<h2>Questionnaire</h2>\n";
   for (std::size_t q = 0; q < study.questions.size(); ++q) {
     const study::Question& question = study.questions[q];
     text += "<p>" + escape_html(question.question) + "</p>\n" +

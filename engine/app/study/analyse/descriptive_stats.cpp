@@ -40,9 +40,9 @@ struct Reading {
     CATENA_TRY(p.condition, index(row, "condition", row.condition, conditions));
     const study::Task& task = study.tasks[static_cast<std::size_t>(p.task)];
     if (row.kind != study::to_string(task.kind) || row.dimensions != task.dimensions)
-      return error(row, fmt::format("{} in {}D; {} in {}D was expected of the task {}", in_quotes(row.kind), row.dimensions,
+      return error(row, fmt::format("the kind is {} in {}D; {} in {}D was expected for the task {}", in_quotes(row.kind), row.dimensions,
                                     study::to_string(task.kind), task.dimensions, in_quotes(task.name)));
-    if (!(row.error_mm >= 0 && row.time_s >= 0)) return error(row, "a negative error or time; 0 or more was expected");
+    if (!(row.error_mm >= 0 && row.time_s >= 0)) return error(row, "the error or time is negative; numbers of at least 0 were expected");
     return p;
   }
 };
@@ -109,7 +109,7 @@ Outcome compute_descriptive_stats(const Study& study, const std::vector<study::T
   analysis.condition_count = study.conditions.size();
   std::set<std::pair<int, int>> seen;
   for (const study::TrialRow& row : rows) {
-    if (!seen.emplace(row.subject, row.index).second) return reading.error(row, "is there twice; each trial once was expected");
+    if (!seen.emplace(row.subject, row.index).second) return reading.error(row, "the trial is repeated; each trial was expected once");
     if (analysis.subjects.empty() || analysis.subjects.back() != row.subject) analysis.subjects.push_back(row.subject);
   }
   std::sort(analysis.subjects.begin(), analysis.subjects.end());
@@ -142,7 +142,7 @@ Outcome compute_descriptive_stats(const Study& study, const std::vector<study::T
     fill(kept[i], analysis.cells[i]);
     if (analysis.cells[i].accepted > 0) continue;
     const std::size_t place = i % places;
-    analysis.missing_data.push_back(fmt::format("subject {}: no kept trial of {} ({} done)", analysis.subjects[i / places],
+    analysis.missing_data.push_back(fmt::format("subject {}: no accepted trial of {} ({} done)", analysis.subjects[i / places],
                                                 task_condition_label(study, {static_cast<int>(place / analysis.condition_count),
                                                                              static_cast<int>(place % analysis.condition_count)}),
                                                 analysis.cells[i].trials));

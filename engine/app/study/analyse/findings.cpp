@@ -18,7 +18,7 @@ using study::TestKind;
 
 // Overlapping intervals are inconclusive without enough power. Large difference: J. Cohen, Statistical Power Analysis for the Behavioral
 // Sciences, 1988.
-constexpr double kLargeDifference = 0.8, kLeastPower = 0.8;
+constexpr double kLargeDifference = 0.8, kMinPower = 0.8;
 
 /// Collects the results of the parts of a finding.
 struct Parts {
@@ -34,7 +34,7 @@ struct Parts {
     bears.push_back(says.value_or(false));
   }
   FindingResult judged() const {
-    if (all == 0) return {Verdict::not_testable, {}, {"there is nothing to compare"}};
+    if (all == 0) return {Verdict::not_testable, {}, {"there are no data to compare"}};
     if (untested > 0) return {Verdict::not_testable, {}, numbers};
     if (all == 1) return {borne_out == 1 ? Verdict::supported : Verdict::not_supported, {}, numbers};
     std::vector<std::string> marked = numbers;
@@ -111,14 +111,14 @@ struct Judge {
         const double power = m.result ? power_of(static_cast<double>(m.result->n)) : 0;
         if (!m.overlaps_baseline)
           parts.add(std::nullopt, text);
-        else if (*m.overlaps_baseline && power < kLeastPower)
+        else if (*m.overlaps_baseline && power < kMinPower)
           parts.add(std::nullopt,
-                    fmt::format("{} (overlap, but of {} subjects a difference of {} standard deviations is seen with a power of "
-                                "{:.2f} only; {} was expected)",
-                                text, m.result->n, kLargeDifference, power, kLeastPower));
+                    fmt::format("{} (overlap; but with {} subjects, the power to find a difference of {} standard deviations is only "
+                                "{:.2f}; {} was expected)",
+                                text, m.result->n, kLargeDifference, power, kMinPower));
         else
           parts.add(*m.overlaps_baseline == (f.alternative == Alternative::overlap),
-                    text + (*m.overlaps_baseline ? " (overlap)" : " (apart)"));
+                    text + (*m.overlaps_baseline ? " (overlap)" : " (no overlap)"));
       }
     return parts.judged();
   }
@@ -185,7 +185,7 @@ struct Judge {
       }
       const std::vector<double> corrected = statistics::holm_correction(p);
       for (std::size_t i = 0, k = 0; i < tests.size(); ++i) {
-        const std::string name = "gain over that of " + task_name(others[i]) + ": ";
+        const std::string name = "gain minus the gain of " + task_name(others[i]) + ": ";
         if (!tests[i]) {
           parts.add(std::nullopt, name + tests[i].error().message);
           continue;
@@ -207,7 +207,7 @@ struct Judge {
     const double theirs = static_cast<double>(f.rejected) / f.trials;
     return {share.contains(theirs) ? Verdict::supported : Verdict::not_supported,
             {},
-            {fmt::format("{} of {} were left out, {:.1f} % ({:.1f} to {:.1f}); the share that is stated, {:.1f} %", all.total(), all.trials,
+            {fmt::format("{} of {} were rejected, {:.1f} % ({:.1f} to {:.1f}); reported: {:.1f} %", all.total(), all.trials,
                          100.0 * all.total() / all.trials, 100 * share.low, 100 * share.high, 100 * theirs)}};
   }
 

@@ -44,8 +44,9 @@ std::string FindingResult::text() const {
   return all;
 }
 
-std::string task_condition_label(const Study& study, const TaskCondition& place) {
-  return study.tasks[static_cast<std::size_t>(place.task)].name + ", " + study.conditions[static_cast<std::size_t>(place.condition)].name;
+std::string task_condition_label(const Study& study, const TaskCondition& task_condition) {
+  return study.tasks[static_cast<std::size_t>(task_condition.task)].name + ", " +
+         study.conditions[static_cast<std::size_t>(task_condition.condition)].name;
 }
 
 std::string difference_label(const Study& study, const PairedComparison& paired) {

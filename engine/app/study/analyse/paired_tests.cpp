@@ -25,7 +25,7 @@ std::optional<double> p_of_result(const Item& item) {
   return item.result ? std::optional(item.result->p) : std::nullopt;
 }
 
-/// Fills `of` or `skip_reason`.
+/// Sets `result` or `skip_reason`.
 template <class Item, class T>
 void keep_result(Item& item, Result<T>&& result) {
   if (result)
@@ -34,16 +34,16 @@ void keep_result(Item& item, Result<T>&& result) {
     item.skip_reason = result.error().message;
 }
 
-/// Mean errors and times of the subjects with data in all the task/condition pairs, in sequence: error, time, error, time ...
+/// Returns the mean errors and times of the subjects with data in all task/condition pairs, as columns: error, time, error, time ...
 std::vector<std::vector<double>> measures(const Analysis& analysis, const std::vector<TaskCondition>& places, std::vector<int>* left_out) {
   std::vector<std::vector<double>> columns(2 * places.size());
   for (std::size_t s = 0; s < analysis.subjects.size(); ++s) {
     std::vector<double> row;
     for (const TaskCondition& p : places)
       for (const Quantity q : {Quantity::error, Quantity::time}) row.push_back(analysis.value(s, p, q));
-    bool whole = true;
-    for (const double v : row) whole = whole && std::isfinite(v);
-    if (!whole) {
+    bool is_complete = true;
+    for (const double v : row) is_complete = is_complete && std::isfinite(v);
+    if (!is_complete) {
       if (left_out != nullptr) left_out->push_back(analysis.subjects[s]);
       continue;
     }

@@ -42,7 +42,7 @@ std::string parts_cell(const FindingResult& judged) {
 }
 
 std::string findings_table(const study::AnalysisPlan& inquiry, const Analysis& analysis) {
-  std::string text = table_head({"finding", "as reported", "these data", "numbers of these data"});
+  std::string text = table_head({"finding", "reported", "result", "numbers"});
   for (std::size_t i = 0; i < inquiry.findings.size(); ++i) {
     const study::Finding& f = inquiry.findings[i];
     const FindingResult& judged = analysis.findings[i];
@@ -55,7 +55,7 @@ std::string findings_table(const study::AnalysisPlan& inquiry, const Analysis& a
 
 std::string means_table(const Study& study, const Analysis& analysis) {
   std::string text =
-      table_head({"task, condition", "measure", " subjects", " mean", " deviation", " 95 % interval", "with the baseline's"});
+      table_head({"task, condition", "measure", " subjects", " mean", " deviation", " 95 % interval", "overlaps the baseline's interval"});
   for (const ConditionMean& m : analysis.means) {
     if (m.quantity == Quantity::slope) continue;
     text += "<tr>" + cell(task_condition_label(study, m.task_condition)) +
@@ -75,7 +75,7 @@ std::string means_table(const Study& study, const Analysis& analysis) {
 
 std::string tests_table(const Study& study, const std::vector<PairedComparison>& tests, const std::string& measure) {
   std::string text = table_head({"", "first - second", measure, " first", " second", " difference", " 95 % interval", " t(df)", " p",
-                                 " corrected", " sign flips", " d_z", " 95 % interval", "left out"});
+                                 " corrected", " sign flips", " d_z", " 95 % interval", "excluded subjects"});
   for (const PairedComparison& p : tests) {
     text += p.test && p.corrected_p < kAlpha ? "<tr class=\"chosen\">" : "<tr>";
     const std::string unit = quantity_unit(p.quantity);
@@ -101,7 +101,7 @@ std::string tests_table(const Study& study, const std::vector<PairedComparison>&
 
 std::string correlations_table(const Study& study, const Analysis& analysis) {
   std::string text = table_head({"task, condition", " subjects", " r", " 95 % interval", " t(df)", " p", " corrected",
-                                 " beside the baseline's: z", " p", " corrected"});
+                                 " compared with the baseline: z", " p", " corrected"});
   for (const ConditionCorrelation& x : analysis.correlations) {
     text += x.result && x.corrected_p < kAlpha ? "<tr class=\"chosen\">" : "<tr>";
     text += cell(task_condition_label(study, x.task_condition));
@@ -126,7 +126,7 @@ std::string correlations_table(const Study& study, const Analysis& analysis) {
 }
 
 std::string rejections_table(const Study& study, const Analysis& analysis) {
-  std::string text = table_head({"task, condition", " trials", " left out", " error", " time", " both", " not finished"});
+  std::string text = table_head({"task, condition", " trials", " rejected", " error", " time", " both", " not finished"});
   const auto row = [&](const std::string& name, const Rejections& r) {
     text += "<tr>" + cell(name);
     for (const int n : {r.trials, r.total(), r.error, r.time, r.both, r.unfinished}) text += number_cell(std::to_string(n));
@@ -145,7 +145,7 @@ std::string list_of(const std::vector<std::string>& lines) {
   return text + "</ul>\n";
 }
 
-/// Warning for conditions that lost many more trials than others: their remaining trials are not comparable.
+/// Returns a warning for conditions with many more rejected trials than others, whose remaining trials are not comparable.
 std::string uneven_shares(const Study& study, const Analysis& analysis) {
   constexpr double kUneven = 0.1;
   std::vector<std::string> lines;
@@ -159,8 +159,8 @@ std::string uneven_shares(const Study& study, const Analysis& analysis) {
                                     task_condition_label(study, {t, c}), 100 * share_b));
     }
   if (lines.empty()) return {};
-  return "<p class=\"why\">So many more trials were left out under one condition than under the other that what is left is not a fair "
-         "sample of both:</p>\n" +
+  return "<p class=\"why\">Many more trials were rejected in one condition than in the other, so that the remaining trials are not "
+         "comparable:</p>\n" +
          list_of(lines);
 }
 
@@ -183,8 +183,8 @@ std::string summary(const Study& study, const Analysis& analysis, const DataSour
   std::string text = "<table>";
   const auto row = [&](const char* what, const std::string& value) { text += fmt::format("<tr><th>{}</th>{}</tr>\n", what, cell(value)); };
   row("data", fmt::format("{}{}", source.folder, source.is_simulated ? ", simulated" : ""));
-  row("subjects", fmt::format("{} (the design is for {})", analysis.subjects.size(), study.subjects));
-  row("trials", fmt::format("{}, of which {} ({:.1f} %) were left out; training, {}, is not counted", all.trials, all.total(),
+  row("subjects", fmt::format("{} (design: {})", analysis.subjects.size(), study.subjects));
+  row("trials", fmt::format("{}, of which {} ({:.1f} %) were rejected; {} training trials are not counted", all.trials, all.total(),
                             all.trials > 0 ? 100.0 * all.total() / all.trials : 0.0, analysis.training_count));
   row("findings", fmt::format("{} supported, {} not supported, {} not testable", counts[0], counts[1], counts[2]));
   for (const auto& [key, value] : system_info())
@@ -193,22 +193,20 @@ std::string summary(const Study& study, const Analysis& analysis, const DataSour
 }
 
 constexpr const char* kHow =
-    "<h2>How it was computed</h2>\n<ul>\n"
-    "<li>Errors are those of the device's position, which is also the drawn cursor, never of a proxy.</li>\n"
-    "<li>A subject's value in a task and condition is the mean, or the standard deviation, over its kept trials. All intervals and tests "
-    "are "
-    "over subjects.</li>\n"
-    "<li>Tests are two-sided paired t-tests. d_z is the mean difference by the standard deviation of the differences, its interval by the "
-    "noncentral t distribution.</li>\n"
+    "<h2>Methods</h2>\n<ul>\n"
+    "<li>Errors are measured at the position of the device, which is also the position of the cursor in the image, not at a proxy.</li>\n"
+    "<li>The value of a subject in a task and condition is the mean, or the standard deviation, over the accepted trials. All intervals "
+    "and "
+    "tests are over subjects.</li>\n"
+    "<li>Tests are two-sided paired t-tests. d_z is the mean difference divided by the standard deviation of the differences; its interval "
+    "follows from the noncentral t distribution.</li>\n"
     "<li>p-values are corrected by Holm's method within a table; rows below 0.05 after correction are marked. &ldquo;Sign flips&rdquo; is "
-    "the "
-    "permutation test of the same differences, which does not assume that they are normal: exact up to 32 subjects; it is not "
+    "the permutation test of the same differences, which does not assume a normal distribution: exact up to 32 subjects; it is not "
     "corrected.</li>\n"
-    "<li>A finding over several tasks or conditions is supported where all of them bear it out after correction. &ldquo;Not "
-    "supported&rdquo; says that these data do not show it, not that it is wrong.</li>\n"
-    "<li>Correlations are Pearson's over the subjects' means, their intervals Fisher's; two of the same subjects are compared by the test "
-    "of "
-    "Raghunathan, Rosenthal and Rubin (1996).</li>\n</ul>\n";
+    "<li>A finding over several tasks or conditions is supported if all of them support it after correction. &ldquo;Not "
+    "supported&rdquo; means that these data do not show the finding, not that the finding is wrong.</li>\n"
+    "<li>Correlations are Pearson's, over the means of the subjects, with Fisher's intervals; two correlations of the same subjects are "
+    "compared by the test of Raghunathan, Rosenthal and Rubin (1996).</li>\n</ul>\n";
 
 constexpr const char* kPageStyle =
     "<style>td.says { min-width: 13rem; white-space: normal !important; } td.told { min-width: 45rem; } td.whole { white-space: nowrap; "
@@ -217,45 +215,43 @@ constexpr const char* kPageStyle =
 }  // namespace
 
 std::string to_html(const Study& study, const study::AnalysisPlan& inquiry, const Analysis& analysis, const DataSource& source,
-                    const std::vector<SubjectAnswers>& answers, const PlotImages& drawn) {
-  std::string text = html_page_head(study.name + ": what its trials say") + kPageStyle;
-  text += fmt::format("<h1>{}: what its trials say</h1>\n", escape_html(study.name));
+                    const std::vector<SubjectAnswers>& answers, const PlotImages& images) {
+  std::string text = html_page_head(study.name + ": results") + kPageStyle;
+  text += fmt::format("<h1>{}: results</h1>\n", escape_html(study.name));
   if (source.is_simulated) text += fmt::format("<p class=\"why\"><b>Simulated.</b> {}</p>\n", kSimulatedDataNotice);
   text += summary(study, analysis, source);
   if (!inquiry.findings.empty())
-    text +=
-        section("Findings", "Each finding that the study file names, and what these data say of it.") + findings_table(inquiry, analysis);
+    text += section("Findings", "The findings that the study file states, and the results of their tests on these data.") +
+            findings_table(inquiry, analysis);
   text +=
-      section(
-          "Conditions: means",
-          "Means over the subjects with their 95 % intervals. Every subject did all conditions, so that whether they differ is what the "
-          "paired tests below say: their means may differ where intervals overlap.",
-          drawn.means) +
+      section("Conditions: means",
+              "Means over the subjects with 95 % intervals. Every subject did all conditions, so that the paired tests below show whether "
+              "conditions differ: means may differ significantly although their intervals overlap.",
+              images.means) +
       means_table(study, analysis);
-  text += section("Conditions: paired tests", "Means and standard deviations of every subject in one condition against another, paired.") +
+  text += section("Conditions: paired tests", "Paired comparison of two conditions by the means and standard deviations of the subjects.") +
           tests_table(study, analysis.condition_comparisons, "measure") + csv_note("tests.csv");
   if (!analysis.task_comparisons.empty())
-    text += section("Tasks", "One task against another, paired.") + tests_table(study, analysis.task_comparisons, "measure") +
+    text += section("Tasks", "Paired comparison of two tasks.") + tests_table(study, analysis.task_comparisons, "measure") +
             csv_note("tests.csv");
-  text += section("Error and time", "A point is a subject: its mean error over its mean time.", drawn.correlations) +
+  text += section("Error and time", "Each point is a subject: mean error over mean time.", images.correlations) +
           correlations_table(study, analysis);
+  text += section("Speed-accuracy trade-off",
+                  "Slope of log error on log time over the trials of a subject. -1: half the time doubles the error; 0: the error does not "
+                  "depend on the time.",
+                  images.tradeoffs) +
+          tests_table(study, analysis.tradeoff_comparisons, "") + csv_note("slopes.csv");
   text +=
-      section("The trade",
-              "Within a subject: the slope of log error on log time over its trials. -1 says that half the time doubles the error, 0 that "
-              "haste costs nothing.",
-              drawn.tradeoffs) +
-      tests_table(study, analysis.tradeoff_comparisons, "") + csv_note("slopes.csv");
-  text +=
-      section("Trials that were left out", "Beyond the study's limits: " + limits_words(study) + "; or not finished within the trial.") +
+      section("Rejected trials", "Trials beyond the study's limits (" + limits_words(study) + "), or not finished within the time limit.") +
       rejections_table(study, analysis);
   text += uneven_shares(study, analysis);
   text += answers_html(study, answers);
-  if (!analysis.notes.empty()) text += "<h2>Not as designed</h2>\n" + list_of(analysis.notes);
+  if (!analysis.notes.empty()) text += "<h2>Deviations from the design</h2>\n" + list_of(analysis.notes);
   if (!analysis.missing_data.empty()) {
-    text += "<h2>Missing</h2>\n" + list_of(analysis.missing_data);
+    text += "<h2>Missing data</h2>\n" + list_of(analysis.missing_data);
   }
-  if (drawn.means.empty())
-    text += "<p>There are no plots: there is nothing to draw, or the program gnuplot is missing. The tables are complete.</p>\n";
+  if (images.means.empty())
+    text += "<p>There are no plots: there are no data to plot, or the program gnuplot is not installed. The tables are complete.</p>\n";
   return text + kHow + html_page_end();
 }
 

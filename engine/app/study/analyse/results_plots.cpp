@@ -112,7 +112,7 @@ Plots correlation_plots(const Study& study, const Analysis& analysis) {
 
 Plots tradeoff_plots(const Study& study, const Analysis& analysis) {
   Plots plots{plot_preamble(560, 380), {}};
-  add_means_plot(study, analysis, Quantity::slope, all_tasks(study, 0), "the trade: slopes of the subjects",
+  add_means_plot(study, analysis, Quantity::slope, all_tasks(study, 0), "speed-accuracy trade-off: slopes of the subjects",
                  "slope of log error on log time", "trade.svg", plots);
   return plots;
 }

@@ -89,10 +89,10 @@ Result<ImageCurve> measure_image_curve(render::Renderer& renderer, const render:
   Curve& curve = made.curve;
   curve.id = "eye-plan";
   curve.category = "eye";
-  curve.title = "With which settings the picture is drawn";
-  curve.description = fmt::format("The settings of a plan on the very picture, {}x{}.", packet.width, packet.height);
-  curve.error_name = "error of the picture (RMSE, 1/255)";
-  curve.time_name = "ms a picture";
+  curve.title = "Rendering settings of the image";
+  curve.description = fmt::format("The candidate settings, measured on the image itself, {}x{}.", packet.width, packet.height);
+  curve.error_name = "error of the image (RMSE, 1/255)";
+  curve.time_name = "ms per image";
   curve.bytes_name = "bytes on the device";
   at(0);
   CATENA_TRY(const tuning::ImageDiscretizationError floor, tuning::estimate_image_discretization_error(renderer, small(packet)));
@@ -107,7 +107,7 @@ Result<ImageCurve> measure_image_curve(render::Renderer& renderer, const render:
   std::size_t count = 0;
   // errors: of the settings below the resolvable error only one is measured (one for each texel format)
   double best = std::numeric_limits<double>::infinity();
-  const auto go_on = [&](double last) {
+  const auto should_continue = [&](double last) {
     at(0.1 + 0.5 * share(count));
     if (count > 0) best = std::min(best, last);
     const bool sibling = count > 0 && count < all.size() && !all[count].fast && all[count].texel_format != render::TexelFormat::automatic;
@@ -115,8 +115,8 @@ Result<ImageCurve> measure_image_curve(render::Renderer& renderer, const render:
     count += more;
     return more;
   };
-  CATENA_TRY(const render::MeasuredSettings errors, render::measure_rmse(renderer, packet, all, go_on));
-  curve.reference = "converged rays through a lattice of pixels";
+  CATENA_TRY(const render::MeasuredSettings errors, render::measure_rmse(renderer, packet, all, should_continue));
+  curve.reference = "converged rays on a regular subset of the pixels";
   // the rounding to 8 bits also limits the resolvable error; most of an error below sqrt(2) times the larger limit is the reference's own
   curve.reference_error = kOwn * std::max(errors.reference_rmse, render::kMinReportedRmse);
   std::vector<tuning::TimedRun> repeats;
@@ -154,15 +154,16 @@ std::optional<ImageCurve> to_image_curve(const Curve& curve, const render::Quali
   return made;
 }
 
-ImageTuning::ImageTuning(ImageCurve curve, const scene::TuningTargets& wanted) : curve_(std::move(curve)), targets_(wanted), times_({}, 1) {
+ImageTuning::ImageTuning(ImageCurve curve, const scene::TuningTargets& targets)
+    : curve_(std::move(curve)), targets_(targets), times_({}, 1) {
   std::vector<double> costs;
   for (const tuning::Point& point : curve_.curve.points) costs.push_back(point.time.median);
   times_ = render::TimeModel(std::move(costs), 1);
   choose_setting();
 }
 
-void ImageTuning::set_targets(const scene::TuningTargets& wanted) {
-  targets_ = wanted;
+void ImageTuning::set_targets(const scene::TuningTargets& targets) {
+  targets_ = targets;
   choose_setting();
 }
 
@@ -182,13 +183,14 @@ void ImageTuning::choose_setting() {
 int ImageTuning::prefer_fewer_bytes(int point) const {
   const auto at = [](int i) { return static_cast<std::size_t>(i); };
   const std::vector<tuning::Point>& points = curve_.curve.points;
-  const double told = tuning::min_resolvable_error(curve_.curve);
-  const double most = std::max({told, points[at(point)].error, picked_.meets_target ? targets_.max_image_error.value_or(0) : 0});
+  const double resolvable_error = tuning::min_resolvable_error(curve_.curve);
+  const double maximum =
+      std::max({resolvable_error, points[at(point)].error, picked_.meets_target ? targets_.max_image_error.value_or(0) : 0});
   int best = point;
   for (int i = 0; i < static_cast<int>(points.size()); ++i) {
     const render::RenderSettings &a = curve_.settings[at(i)], &b = curve_.settings[at(point)];
     if (a.fast || b.fast || a.step_voxels != b.step_voxels || a.termination != b.termination) continue;
-    if (points[at(i)].error <= most && points[at(i)].bytes < points[at(best)].bytes && expected_ms(i) <= kAsQuick * expected_ms(point) &&
+    if (points[at(i)].error <= maximum && points[at(i)].bytes < points[at(best)].bytes && expected_ms(i) <= kAsQuick * expected_ms(point) &&
         (!targets_.max_image_ms || !picked_.meets_target || expected_ms(i) <= *targets_.max_image_ms))
       best = i;
   }
@@ -201,12 +203,12 @@ void ImageTuning::record_frame_time(double ms) {
   const tuning::PickedPoint was = picked_;
   choose_setting();
   // hysteresis: the setting stays while it meets the target and no other is much faster
-  const double told = tuning::min_resolvable_error(curve_.curve),
-               error = std::max(told, curve_.curve.points[static_cast<std::size_t>(before)].error);
-  const bool stays =
-      targets_.max_image_ms
-          ? expected_ms(before) <= kHolds * *targets_.max_image_ms && expected_ms(before) * kHolds >= expected_ms(current_)
-          : error <= std::max(told, targets_.max_image_error.value_or(0)) && expected_ms(before) <= kHolds * expected_ms(current_);
+  const double resolvable_error = tuning::min_resolvable_error(curve_.curve),
+               error = std::max(resolvable_error, curve_.curve.points[static_cast<std::size_t>(before)].error);
+  const bool stays = targets_.max_image_ms
+                         ? expected_ms(before) <= kHolds * *targets_.max_image_ms && expected_ms(before) * kHolds >= expected_ms(current_)
+                         : error <= std::max(resolvable_error, targets_.max_image_error.value_or(0)) &&
+                               expected_ms(before) <= kHolds * expected_ms(current_);
   if (!stays) return;
   current_ = before;
   picked_ = was;
@@ -214,11 +216,11 @@ void ImageTuning::record_frame_time(double ms) {
 
 std::vector<double> ImageTuning::error_breakpoints() const {
   const Curve& c = curve_.curve;
-  const double told = tuning::min_resolvable_error(c);
+  const double resolvable_error = tuning::min_resolvable_error(c);
   std::vector<double> errors;
   for (const int i : tuning::pareto_front(c.points, c.cost)) {
-    errors.push_back(std::max(told, c.points[static_cast<std::size_t>(i)].error));
-    if (errors.back() <= told) break;
+    errors.push_back(std::max(resolvable_error, c.points[static_cast<std::size_t>(i)].error));
+    if (errors.back() <= resolvable_error) break;
   }
   return errors;
 }
@@ -232,10 +234,11 @@ std::string ImageTuning::summary() const {
   if (std::isfinite(bytes)) text += fmt::format(", {} on the device", format_bytes(bytes));
   const bool by_data = std::isfinite(c.discretization_error) && c.discretization_error >= tuning::min_resolvable_error(c);
   if (picked_.at_floor)
-    text += fmt::format(" (no more is asked for: {} {:.2g}/255)", by_data ? "the data's own error is" : "what can be told ends at",
+    text += fmt::format(" (limited to {} of {:.2g}/255)", by_data ? "the discretization error" : "the error of the reference",
                         tuning::min_resolvable_error(c));
   if (!picked_.meets_target)
-    text += targets_.max_image_error ? " (none is as exact: this is the most exact)" : " (none is as quick: this is the quickest)";
+    text +=
+        targets_.max_image_error ? " (the target is not reached: most accurate setting)" : " (the target is not reached: fastest setting)";
   return text;
 }
 

@@ -44,7 +44,7 @@ std::optional<ImageCurve> to_image_curve(const Curve& curve, const render::Quali
 /// The setting in use for a target, chosen from an ImageCurve and updated with measured frame times.
 class ImageTuning {
  public:
-  ImageTuning(ImageCurve curve, const scene::TuningTargets& wanted);
+  ImageTuning(ImageCurve curve, const scene::TuningTargets& targets);
 
   /// Settings of the next frame.
   const render::RenderSettings& settings() const { return curve_.settings[static_cast<std::size_t>(current_)]; }
@@ -53,7 +53,7 @@ class ImageTuning {
   /// Updates the time model with the time of the frame just rendered; settings() may change.
   void record_frame_time(double ms);
   /// Replaces the targets and chooses again.
-  void set_targets(const scene::TuningTargets& wanted);
+  void set_targets(const scene::TuningTargets& targets);
   const scene::TuningTargets& targets() const { return targets_; }
 
   /// Errors at which the choice changes, from the fastest setting on; none below the resolvable error.

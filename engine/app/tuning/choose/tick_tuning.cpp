@@ -42,11 +42,11 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Makes the fields that `wanted` selects cubic if their interpolation is unset; linear if there is not enough memory.
-template <class Wanted>
-void make_open_ones_cubic(scene::Scene& scene, const Wanted& wanted) {
+/// Makes the fields that `is_selected` selects cubic if their interpolation is unset; linear if there is not enough memory.
+template <class IsSelected>
+void make_open_ones_cubic(scene::Scene& scene, const IsSelected& is_selected) {
   scene.entities.each<scene::FieldSource>([&](scene::Entity entity, scene::FieldSource& source) {
-    if (!is_interpolation_unset(source) || !wanted(scene.entities.get<scene::Name>(entity).value)) return;
+    if (!is_interpolation_unset(source) || !is_selected(scene.entities.get<scene::Name>(entity).value)) return;
     if (const Outcome made = set_cubic_interpolation(source); !made) scene.notes.push_back(made.error().message);
   });
 }
@@ -58,7 +58,7 @@ bool is_pinned(const json::Node& link, const LinkKeys& keys) {
 
 }  // namespace
 
-TickTuning::TickTuning(TickCurves curves, const scene::TuningTargets& wanted) : curves_(std::move(curves)) { set_targets(wanted); }
+TickTuning::TickTuning(TickCurves curves, const scene::TuningTargets& targets) : curves_(std::move(curves)) { set_targets(targets); }
 
 std::vector<std::string> TickTuning::choose_cubic_fields(double error) const {
   struct Floors {
@@ -87,11 +87,11 @@ TickTuning::Choice TickTuning::pick(double error) const {
     const tuning::PickedPoint picked = tuning::pick_point(link.curve, {error / link.length, {}});
     if (picked.point < 0) continue;
     const tuning::Point& point = link.curve.points[static_cast<std::size_t>(picked.point)];
-    const double told = tuning::min_resolvable_error(link.curve),
+    const double resolvable_error = tuning::min_resolvable_error(link.curve),
                  far = point.extra_values.size() > kFarColumn ? point.extra_values[kFarColumn] : 0;
     choice.links.push_back({link.link, point.setting, link.keys[static_cast<std::size_t>(picked.point)], point.error * link.length,
-                            far > kFarOff * std::max(point.error, told) ? far * link.length : 0, told * link.length, picked.at_floor,
-                            picked.meets_target});
+                            far > kFarOff * std::max(point.error, resolvable_error) ? far * link.length : 0, resolvable_error * link.length,
+                            picked.at_floor, picked.meets_target});
     choice.ns += std::max(0.0, point.time.median / link.ticks_per_ms - curves_.empty_tick_ns);
   }
   return choice;
@@ -119,41 +119,41 @@ std::vector<double> TickTuning::error_breakpoints() const {
   return stops;
 }
 
-void TickTuning::set_targets(const scene::TuningTargets& wanted) {
-  targets_ = wanted;
+void TickTuning::set_targets(const scene::TuningTargets& targets) {
+  targets_ = targets;
   meets_target_ = true;
   if (curves_.links.empty()) {
     tick_ns_ = curves_.base_tick_ns;
     return;
   }
-  if (wanted.max_proxy_error) {
-    adopt(pick(*wanted.max_proxy_error));
+  if (targets.max_proxy_error) {
+    adopt(pick(*targets.max_proxy_error));
     for (const TunedLink& link : links_) meets_target_ = meets_target_ && link.meets_target;
     return;
   }
   // the least error at which the tick is fast enough; if there is none, the fastest tick
   const std::vector<double> errors = error_breakpoints();
-  const double most = 1e3 * wanted.max_tick_us.value_or(0);
-  double quickest = 0, least = -1;
+  const double maximum = 1e3 * targets.max_tick_us.value_or(0);
+  double quickest = 0, minimum = -1;
   for (const double error : errors) {
     Choice choice = pick(error);
-    if (choice.ns <= most) least = error;  // errors are in descending order
+    if (choice.ns <= maximum) minimum = error;  // errors are in descending order
     if (quickest == 0 || choice.ns < quickest) quickest = choice.ns, adopt(std::move(choice));
   }
-  meets_target_ = least >= 0;
-  if (meets_target_) adopt(pick(least));
+  meets_target_ = minimum >= 0;
+  if (meets_target_) adopt(pick(minimum));
 }
 
 double TickTuning::expected_error() const {
-  double most = 0;
-  for (const TunedLink& link : links_) most = std::max(most, link.error);
-  return most;
+  double maximum = 0;
+  for (const TunedLink& link : links_) maximum = std::max(maximum, link.error);
+  return maximum;
 }
 
 double TickTuning::error_anywhere() const {
-  double most = expected_error();
-  for (const TunedLink& link : links_) most = std::max(most, link.error_anywhere);
-  return most;
+  double maximum = expected_error();
+  for (const TunedLink& link : links_) maximum = std::max(maximum, link.error_anywhere);
+  return maximum;
 }
 
 void TickTuning::apply(scene::Scene& scene) const {
@@ -191,18 +191,19 @@ std::string TickTuning::summary() const {
                                  to_text(targets_.max_proxy_error ? *targets_.max_proxy_error : targets_.max_tick_us.value_or(0)));
   for (const TunedLink& link : links_) text += fmt::format("{} {} {}", &link == links_.data() ? "" : ",", link.link, link.setting);
   for (const std::string& field : cubic_fields_) text += fmt::format(", field {} cubic", field);
-  text += fmt::format("; expected: error {:.2g} in {:.3g} us a tick", expected_error(), expected_us());
+  text += fmt::format("; expected: error {:.2g} in {:.3g} us per tick", expected_error(), expected_us());
   for (const TunedLink& link : links_)
     if (targets_.max_proxy_error && link.at_floor)
-      text += fmt::format(" (of {} no more is asked for: what can be told ends at {:.2g})", link.link, link.discretization_error);
+      text += fmt::format(" (link {}: limited to the resolvable error of {:.2g})", link.link, link.discretization_error);
   for (const TunedLink& link : links_)
     if (link.error_anywhere > 0)
-      text += fmt::format(" (far along the line of {}, small errors have grown: there up to {:.2g}{})", link.link, link.error_anywhere,
+      text += fmt::format(" (link {}: the error grows along the line, up to {:.2g} far from the seed{})", link.link, link.error_anywhere,
                           targets_.max_proxy_error && link.error_anywhere > *targets_.max_proxy_error
-                              ? ", so that max_proxy_error is kept near its seed only"
+                              ? ", so that max_proxy_error holds near the seed only"
                               : "");
   if (!meets_target_)
-    text += targets_.max_proxy_error ? " (none is as exact: this is the most exact)" : " (none is as quick: this is the quickest)";
+    text +=
+        targets_.max_proxy_error ? " (the target is not reached: most accurate setting)" : " (the target is not reached: fastest setting)";
   return text;
 }
 

@@ -59,7 +59,7 @@ struct TunedLink {
 class TickTuning {
  public:
   TickTuning() = default;
-  TickTuning(TickCurves curves, const scene::TuningTargets& wanted);
+  TickTuning(TickCurves curves, const scene::TuningTargets& targets);
 
   bool is_empty() const { return links_.empty(); }
   const std::vector<TunedLink>& links() const { return links_; }
@@ -74,17 +74,17 @@ class TickTuning {
   bool meets_target() const { return meets_target_; }
   const scene::TuningTargets& targets() const { return targets_; }
   /// Replaces the targets and chooses again.
-  void set_targets(const scene::TuningTargets& wanted);
+  void set_targets(const scene::TuningTargets& targets);
 
   /// Errors at which the choice changes, in descending order: from the fastest setting to the most exact one.
   std::vector<double> error_breakpoints() const;
 
   /// Writes the settings into the links and fields of a scene that was just loaded. Links and fields that state a setting keep it.
   void apply(scene::Scene& scene) const;
-  /// The same for the scene's text, which is returned; `file` names it in messages. An Error if the text cannot be parsed.
+  /// Returns the text of a scene with these settings written into it; `file` names the text in messages. Error: the text cannot be parsed.
   Result<std::string> apply(const std::string& text, const std::string& file) const;
 
-  /// Returns "max_proxy_error 1e-06: curve rkf34, tolerance 1e-07; expected: error 3.1e-07 in 1.9 us a tick", with a remark if the target
+  /// Returns "max_proxy_error 1e-06: curve rkf34, tolerance 1e-07; expected: error 3.1e-07 in 1.9 us per tick", with a remark if the target
   /// cannot be met.
   std::string summary() const;
 

@@ -43,7 +43,7 @@ void TrackingErrorMonitor::add(const HapticState& state) {
 }
 
 std::optional<double> TrackingErrorMonitor::max_error(scene::Scene& scene) const {
-  std::optional<double> most;
+  std::optional<double> maximum;
   for (const Track& track : tracks_) {
     if (track.positions.empty()) continue;
     for (const tuning::NamedLink& link : tuning::find_links(scene, "streamline")) {
@@ -57,18 +57,18 @@ std::optional<double> TrackingErrorMonitor::max_error(scene::Scene& scene) const
       const flow::NearestOnCurve nearest(*line);
       double far2 = 0;
       for (const Vec3& place : track.positions) far2 = std::max(far2, nearest.find_exact(place).distance2);
-      most = std::max(most.value_or(0), std::sqrt(far2));
+      maximum = std::max(maximum.value_or(0), std::sqrt(far2));
     }
   }
-  return most;
+  return maximum;
 }
 
 std::string TrackingErrorMonitor::summary(scene::Scene& scene, std::optional<double> us) const {
   if (tracks_.empty()) return {};
   const auto off = max_error(scene);
   std::string text = "observed: ";
-  text += off ? fmt::format("error {:.2g} (the cells' own error is not in it)", *off) : "no tuned link held";
-  if (us) text += fmt::format(" in {:.3g} us a tick", *us);
+  text += off ? fmt::format("error {:.2g} (without the discretization error)", *off) : "no tuned link was in contact";
+  if (us) text += fmt::format(" in {:.3g} us per tick", *us);
   return text + "\n";
 }
 

@@ -21,8 +21,8 @@ class TrackingErrorMonitor {
   /// Returns the largest distance so far of a tuned link's proxy from its converged line, world units; nothing if no tuned link was in
   /// contact.
   std::optional<double> max_error(scene::Scene& scene) const;
-  /// Returns "observed: error 2.9e-07 (the cells' own error is not in it) in 1.8 us a tick\n"; empty without a tuning. `us`: time per tick;
-  /// nothing if unknown.
+  /// Returns "observed: error 2.9e-07 (without the discretization error) in 1.8 us per tick\n"; empty without a tuning. `us`: time per
+  /// tick; nothing if unknown.
   std::string summary(scene::Scene& scene, std::optional<double> us) const;
 
  private:

@@ -37,16 +37,16 @@ std::string drift_table(ProgressLine& progress, double& done) {
       TickSimulation hand = follower(method);
       const double lap_ticks = 2 * std::numbers::pi * kRadius_m / (speed * kFigure2Tick_s);
       double first = 0, last = 0, sum = 0;
-      int most = 0;
+      int maximum = 0;
       const int ticks = static_cast<int>(std::ceil(kLaps * lap_ticks)), first_ticks = static_cast<int>(std::ceil(lap_ticks));
       for (int k = 0; k <= ticks; ++k) {
         const auto& out = hand.step(k * kFigure2Tick_s, on_circle(speed * kFigure2Tick_s * k / kRadius_m));
         last = std::max(last, off_circle_mm(out.links[0].proxy));
         if (k <= first_ticks) first = last;
         sum += out.links[0].evaluations;
-        most = std::max(most, out.links[0].evaluations);
+        maximum = std::max(maximum, out.links[0].evaluations);
       }
-      table.add(method).add(speed).add(first).add(last).add(sum / (ticks + 1)).add(most).end_row();
+      table.add(method).add(speed).add(first).add(last).add(sum / (ticks + 1)).add(maximum).end_row();
       progress.update(++done);
     }
   return table.text();
@@ -98,7 +98,7 @@ array colour[8] = ["#d62728", "#ff7f0e", "#bcbd22", "#2ca02c", "#17becf", "#1f77
 
 set output 'figure2-drift.png'
 set title 'Drift from a streamline of radius 50 mm, one lap at 1 kHz'
-set xlabel 'speed of the hand (m/s)'
+set xlabel 'speed of the probe (m/s)'
 set ylabel 'drift in the first lap (mm)'
 set logscale xy
 set xrange [0.04:1.25]
@@ -125,7 +125,7 @@ plot 'figure2-path.csv' every ::1 using 5:6 with lines linewidth 1.5 linecolor r
   '' every ::1 using 7:8 with lines linewidth 1.5 dashtype 2 linecolor rgb '#000000' title 'selected (traced curve)'
 
 set output 'figure2-tremor.png'
-set title 'A hand that holds still with a tremor of 1 mm at 10 Hz (below 10^{-15} mm drawn at 10^{-15})'
+set title 'Probe at rest with a tremor of 1 mm at 10 Hz (below 10^{-15} mm plotted at 10^{-15})'
 set size noratio
 set xlabel 'time (s)'
 set ylabel 'drift (mm)'

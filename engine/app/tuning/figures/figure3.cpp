@@ -108,13 +108,13 @@ void add_release_row(const Case& c, double degrees, const std::string& method, C
   bool held = false, released = false;
   double release_depth = std::nan(""), release_travel = release_depth, at_depth = release_depth, off_curve = 0, off_surface = 0, force = 0,
          off_after = 0;
-  int most = 0;
+  int maximum = 0;
   for (int k = 0; k <= ticks; ++k) {
     const double s = kBefore - kStep * k;
     const Vec3 probe = c.at(s);
     const auto& out = hand.step(k * kFigure3Tick_s, probe);
     const LinkReport &curve = out.links[0], &surface = out.links[1];
-    most = std::max(most, curve.evaluations + surface.evaluations);
+    maximum = std::max(maximum, curve.evaluations + surface.evaluations);
     if (std::isnan(at_depth) && c.depth(probe) >= (1 - 1e-12) * kRelease) at_depth = c.off_curve(curve.proxy, s);
     const bool let_go = surface.status == LinkStatus::released;
     if (let_go && !released) {
@@ -138,7 +138,7 @@ void add_release_row(const Case& c, double degrees, const std::string& method, C
       .add(at_depth)
       .add(released ? off_after : std::nan(""))
       .add(force)
-      .add(most)
+      .add(maximum)
       .end_row();
 }
 
@@ -195,7 +195,7 @@ array colour[5] = ["#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e"]
 
 do for [scene in "flat curved"] {
   set output 'figure3-release-'.scene.'.png'
-  set title (scene eq "flat" ? 'A line through a plane' : 'A helix through a sphere').': depth of the probe where the surface lets go'
+  set title (scene eq "flat" ? 'A line through a plane' : 'A helix through a sphere').': depth of the probe at release'
   set xlabel 'angle between curve and surface (degrees)'
   set ylabel 'depth at release (world units)'
   set xrange [0:95]
@@ -210,7 +210,7 @@ do for [scene in "flat curved"] {
 }
 
 set output 'figure3-off-curve.png'
-set title 'A helix through a sphere: how far the proxy leaves the helix while the surface holds (0 drawn at 10^{-17})'
+set title 'A helix through a sphere: distance of the proxy from the helix while the surface holds (0 plotted at 10^{-17})'
 set ylabel 'distance from the curve (world units)'
 set logscale y
 set yrange [1e-18:1]
@@ -234,7 +234,7 @@ plot for [i in "2 5 3 4 1"] 'figure3-series.csv' every ::1 using 3:(column(8+4*(
 set output 'figure3-path.png'
 set terminal pngcairo size 1500,480 font 'DejaVu Sans,12' linewidth 1.5
 unset title
-set multiplot layout 1,3 title "A line through a plane at 30 degrees: the probe goes down the line" font ',15' margins 0.06,0.985,0.31,0.83 spacing 0.06,0.1
+set multiplot layout 1,3 title "A line through a plane at 30 degrees: the probe moves down the line" font ',15' margins 0.06,0.985,0.31,0.83 spacing 0.06,0.1
 set key outside bottom center horizontal spacing 1.2
 set xrange [-0.22:0.03]
 set yrange [-0.13:0.03]
@@ -254,7 +254,7 @@ do for [k=1:3] {
     '' every ::1 using (column(m+3) == 1 ? column(m) : NaN):(column(m+1)) with points pointtype 7 pointsize 0.6 \
       linecolor rgb colour[method[k]] title (k == 3 ? 'surface proxy' : 'proxy'), \
     '' every 40::1 using (column(m+3) == 0 ? column(m) : NaN):(column(m+1)) with points pointtype 6 pointsize 1.2 \
-      linecolor rgb colour[method[k]] title 'surface let go'
+      linecolor rgb colour[method[k]] title 'release'
 }
 unset multiplot
 )gp";

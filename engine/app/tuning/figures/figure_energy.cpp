@@ -18,7 +18,7 @@ namespace catena::app {
 namespace {
 
 constexpr double kPairStiffness = 500, kConvergedWork = 1e-10;
-constexpr int kFirstPlaces = 64, kMostPlaces = 1 << 14;
+constexpr int kFirstPlaces = 64, kMaxPlaces = 1 << 14;
 constexpr double kPairAngles_deg[] = {0, 5, 10, 15, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 75, 80, 85, 90};
 
 /// A pair of links that meet at (1, 0, 0) at an angle.
@@ -75,7 +75,7 @@ struct Gain {
 Gain gain_of(const std::string& chain, const char* force) {
   Gain result;
   double before = std::nan("");
-  for (int n = kFirstPlaces; n <= kMostPlaces; n *= 2) {
+  for (int n = kFirstPlaces; n <= kMaxPlaces; n *= 2) {
     TickSimulation hand(fmt::format(R"({{"coupling": {{"stiffness": {}, "max_force": 1e9, "force": "{}"}}, "chain": [{}]}})",
                                     kPairStiffness, force, chain));
     double work = 0, gap = 0, left_out = 0;
@@ -105,9 +105,9 @@ Gain gain_of(const std::string& chain, const char* force) {
 }
 
 constexpr const char* kEnergyScript = R"gp(set key outside right top Left reverse spacing 1.3 samplen 2
-set title 'What one slow closed loop of the hand gains from two links'
-set xlabel 'angle between them (degrees)'
-set ylabel 'energy by K gap^2'
+set title 'Energy gain of a slow closed loop of the probe from two links'
+set xlabel 'angle between the links (degrees)'
+set ylabel 'energy / (K gap^2)'
 set output 'energy.png'
 array pair[6] = ["plane then plane", "plane then line", "line then line", "sphere then line", "line then sphere", "sphere then plane"]
 array colour[6] = ["#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#17becf"]

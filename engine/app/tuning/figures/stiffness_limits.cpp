@@ -74,24 +74,24 @@ class Swing {
   }
   double start_j() const { return 0.5 * stiffness_ * kStart_m * kStart_m; }
   double window() {
-    double most = 0;
+    double maximum = 0;
     for (int i = 0; i < window_; ++i) {
       const haptics::DeviceInput input = hand_.read();
       haptics::tick(program_, {period_s_ * static_cast<double>(ticks_++), input.position_m}, *state_, *scratch_, out_);
       hand_.write({out_.force_n, Vec3(0.0)});
       kinetic_ = std::max(kinetic_, 0.5 * mass_kg_ * dot(hand_.velocity_m_per_s(), hand_.velocity_m_per_s()));
-      most = std::max(most, 0.5 * mass_kg_ * dot(hand_.velocity_m_per_s(), hand_.velocity_m_per_s()) +
-                                0.5 * stiffness_ * dot(hand_.position_m(), hand_.position_m()));
+      maximum = std::max(maximum, 0.5 * mass_kg_ * dot(hand_.velocity_m_per_s(), hand_.velocity_m_per_s()) +
+                                      0.5 * stiffness_ * dot(hand_.position_m(), hand_.position_m()));
     }
-    return most;
+    return maximum;
   }
   bool dies_away() {
-    const double most = 1e4 * start_j();
+    const double maximum = 1e4 * start_j();
     window();
     const double first = window();
     double last = first;
-    for (int i = 0; i < 6 && last < most; ++i) last = window();
-    return last < first && last < most;
+    for (int i = 0; i < 6 && last < maximum; ++i) last = window();
+    return last < first && last < maximum;
   }
   bool stays_bounded() {
     for (int i = 0; i < 8; ++i)
@@ -183,7 +183,7 @@ std::string virtual_table(ProgressLine& progress, double& done) {
 }
 
 constexpr const char* kStiffnessScript = R"gp(set key outside right top Left reverse spacing 1.3 samplen 2
-set ylabel 'largest stiffness (N/m)'
+set ylabel 'maximum stiffness (N/m)'
 set logscale y
 set format y '10^{%L}'
 array rate[4] = [1000, 1000, 2000, 4000]
@@ -192,7 +192,7 @@ array label[4] = ["1 kHz", "1 kHz, 1 ms late", "2 kHz", "4 kHz"]
 array colour[4] = ["#1f77b4", "#d62728", "#2ca02c", "#9467bd"]
 
 set output 'stiffness-damping.png'
-set title 'The spring that a device can show, by its own damping (0.159 kg)'
+set title 'Maximum stiffness against the damping of the device (0.159 kg)'
 set xlabel 'damping of the device (N s/m)'
 set logscale x
 set xrange [0.04:25]
@@ -204,8 +204,8 @@ plot for [i=1:4] 'stiffness-damping.csv' every ::1 using ($1 == rate[i] && $2 ==
     pointsize 1.1 linecolor rgb colour[i] title label[i].', controlled'
 
 set output 'stiffness-delay.png'
-set title 'By the delay from pose to force: 0.5 N s/m, 1 kHz'
-set xlabel 'delay beside the period (ms)'
+set title 'Maximum stiffness against the delay from pose to force: 0.5 N s/m, 1 kHz'
+set xlabel 'delay in addition to the period (ms)'
 unset logscale x
 set xrange [-0.2:5.2]
 plot 'stiffness-delay.csv' every ::1 using 1:2 with lines linewidth 4 linecolor rgb '#bbbbbb' title 'passive: 2 b / (T + 2 delay)', \
@@ -213,7 +213,7 @@ plot 'stiffness-delay.csv' every ::1 using 1:2 with lines linewidth 4 linecolor 
   '' every ::1 using 1:4 with linespoints linewidth 1.5 dashtype 3 pointtype 6 linecolor rgb colour[1] title 'controlled'
 
 set output 'stiffness-virtual.png'
-set title 'By the virtual damping of the coupling: device 0.5 N s/m, 1 kHz'
+set title 'Maximum stiffness against the virtual damping of the coupling: device 0.5 N s/m, 1 kHz'
 set xlabel 'virtual damping (N s/m)'
 set xrange [-5:205]
 set yrange [100:2e5]

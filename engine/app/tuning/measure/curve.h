@@ -41,17 +41,17 @@ enum class CostKind { time, work, bytes };
 struct Curve {
   std::string id;                                            ///< Identifier and name of its CSV file: "hand-streamline-curve".
   std::string category;                                      ///< "hand" (haptics), "eye" (rendering) or "data".
-  std::string title;                                         ///< Title for the user: "How the streamline `curve` is followed".
+  std::string title;                                         ///< Title for the user: "Method of the streamline link `curve`".
   std::string description;                                   ///< Description of the measurement, in a sentence or two.
   std::string error_name, work_name, time_name, bytes_name;  ///< Names with units; empty: not applicable.
   std::vector<std::string> extra_columns;                    ///< Names of Point::extra_values.
   std::vector<Point> points;
-  double discretization_error = kNotMeasured;                      ///< Discretization error, in the unit of Point::error.
-  std::string discretization_error_name = "the data's own error";  ///< Ends in ", at least" for a lower bound.
-  std::string discretization_error_method;                         ///< How it was estimated.
-  double reference_error = kNotMeasured;                           ///< Error of the reference itself; smaller errors are not resolvable.
-  std::string reference;  ///< The reference that errors are measured against, and how its convergence was checked.
-  std::string reference_error_name = "what the reference can tell";  ///< Name of reference_error in choice_reason; not written to files.
+  double discretization_error = kNotMeasured;                          ///< Discretization error, in the unit of Point::error.
+  std::string discretization_error_name = "the discretization error";  ///< Ends in ", at least" for a lower bound.
+  std::string discretization_error_method;                             ///< How it was estimated.
+  double reference_error = kNotMeasured;  ///< Error of the reference itself; smaller errors are not resolvable.
+  std::string reference;                  ///< The reference that errors are measured against, and how its convergence was checked.
+  std::string reference_error_name = "the error of the reference";  ///< Name of reference_error in choice_reason; not written to files.
   /// The cost used by the choice.
   CostKind cost = CostKind::time;
   int current = -1;           ///< Index of the point that the scene uses; -1: none of them.

@@ -51,7 +51,7 @@ std::vector<std::uint8_t> valid_voxels(const Grid& grid, const Index3& origin, c
 }
 
 template <class Grid>
-std::optional<ResolutionLevels<Grid>> levels_of(const Grid& grid, double most) {
+std::optional<ResolutionLevels<Grid>> levels_of(const Grid& grid, double max_voxels) {
   const field::Box& box = grid.index_box();
   const Vec3 span = box.hi - box.lo;
   Index3 n;
@@ -59,7 +59,7 @@ std::optional<ResolutionLevels<Grid>> levels_of(const Grid& grid, double most) {
     if (length < 8) return std::nullopt;
     *size = 4 * (static_cast<int>(length) / 4) + 1;
   }
-  if (double(n.x) * n.y * n.z > most) return std::nullopt;
+  if (double(n.x) * n.y * n.z > max_voxels) return std::nullopt;
   const Index3 origin{static_cast<int>(box.lo.x), static_cast<int>(box.lo.y), static_cast<int>(box.lo.z)};
   constexpr int k = std::is_same_v<Grid, field::VectorGrid> ? 3 : 1;
   std::vector<float> all(std::size_t(k) * n.x * n.y * n.z);
@@ -126,16 +126,16 @@ ExtrapolatedError extrapolate_from_differences(double at_2h, double at_4h) {
 std::string describe_order(const ExtrapolatedError& e) {
   return e.is_converged ? fmt::format("observed order {:.1f}", e.order)
                         : fmt::format(
-                              "at least {}: a third of the difference made by every 2nd voxel; the differences shrink too slowly for a "
+                              "at least {}: a third of the difference with every 2nd voxel; the differences converge too slowly for a "
                               "better estimate",
                               format_number(e.error));
 }
 
-std::optional<ResolutionLevels<field::ScalarGrid>> make_resolution_levels(const field::ScalarGrid& grid, double most) {
-  return levels_of(grid, most);
+std::optional<ResolutionLevels<field::ScalarGrid>> make_resolution_levels(const field::ScalarGrid& grid, double max_voxels) {
+  return levels_of(grid, max_voxels);
 }
-std::optional<ResolutionLevels<field::VectorGrid>> make_resolution_levels(const field::VectorGrid& grid, double most) {
-  return levels_of(grid, most);
+std::optional<ResolutionLevels<field::VectorGrid>> make_resolution_levels(const field::VectorGrid& grid, double max_voxels) {
+  return levels_of(grid, max_voxels);
 }
 
 std::optional<InterpolationError> estimate_interpolation_error(const field::AnyField& field) {

@@ -33,9 +33,9 @@ template <class Grid>
 struct ResolutionLevels {
   std::shared_ptr<const Grid> grids[3];
 };
-/// Returns the three grids; nothing if the grid has fewer than nine voxels along an axis, or more than `most` in total.
-std::optional<ResolutionLevels<field::ScalarGrid>> make_resolution_levels(const field::ScalarGrid& grid, double most = 1.5e8);
-std::optional<ResolutionLevels<field::VectorGrid>> make_resolution_levels(const field::VectorGrid& grid, double most = 5e7);
+/// Returns the three grids; nothing if the grid has fewer than nine voxels along an axis, or more than `max_voxels` in total.
+std::optional<ResolutionLevels<field::ScalarGrid>> make_resolution_levels(const field::ScalarGrid& grid, double max_voxels = 1.5e8);
+std::optional<ResolutionLevels<field::VectorGrid>> make_resolution_levels(const field::VectorGrid& grid, double max_voxels = 5e7);
 
 /// Root mean square error of the field's interpolation (linear or cubic), in the unit of the field: measured at 2 h and 4 h at the voxels
 /// in between, extrapolated to h.

@@ -65,7 +65,7 @@ Result<Report> measure(const MeasureOptions& options) {
     if (workload.rendering) {
       report.metadata.emplace_back("GPU",
                                    workload.rendering->renderer->stats().device + ", " + workload.rendering->renderer->stats().driver);
-      report.metadata.emplace_back("pictures", fmt::format("{}x{}", workload.effort.width, workload.effort.height));
+      report.metadata.emplace_back("images", fmt::format("{}x{}", workload.effort.width, workload.effort.height));
     }
   }
   progress.update(done += kBefore);
@@ -90,7 +90,7 @@ Result<Report> measure(const MeasureOptions& options) {
   }
   report.skipped = std::move(workload.skipped);
   if (!report.curves.empty()) return report;
-  const std::string why = report.skipped.empty() ? "the scene has nothing of that kind." : report.skipped.front();
+  const std::string why = report.skipped.empty() ? "the scene has no items of this kind." : report.skipped.front();
   return Error{options.source + ": there is nothing to measure: " + why};
 }
 
@@ -129,7 +129,7 @@ Outcome measure_tradeoffs(const MeasureOptions& options) {
     if (curve.chosen >= 0)
       fmt::print("{}: {}. {}\n", sanitize_for_terminal(curve.title), sanitize_for_terminal(curve.points[curve.chosen].setting),
                  sanitize_for_terminal(curve.choice_reason));
-  for (const std::string& sentence : report.skipped) fmt::print("left out: {}\n", sanitize_for_terminal(sentence));
+  for (const std::string& sentence : report.skipped) fmt::print("not measured: {}\n", sanitize_for_terminal(sentence));
   fmt::print("{}:", sanitize_for_terminal(options.output));
   for (const std::string& name : folder.file_names()) fmt::print(" {}", name);
   fmt::print("\n");

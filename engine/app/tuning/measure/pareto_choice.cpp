@@ -17,16 +17,16 @@ constexpr double kKnee = 0.1;  // fraction of the chord: a knee less deep does n
 bool counts(const Point& p, CostKind cost) { return p.is_selectable && std::isfinite(p.error) && std::isfinite(get_cost(p, cost)); }
 
 /// Logarithm with a lower bound, so that an exact result also has a position on a logarithmic axis.
-double log_of(double value, double least) { return std::log(std::max(value, least)); }
+double log_of(double value, double minimum) { return std::log(std::max(value, minimum)); }
 
-/// Index of the knee of the front; -1: none, error and cost trade evenly.
+/// Returns the index of the knee of the front; -1: none, error and cost change evenly.
 int knee(const std::vector<Point>& points, const std::vector<int>& front, CostKind cost) {
   if (front.size() < 3) return front.back();
-  double least = 1e-300;
+  double minimum = 1e-300;
   for (const int i : front)
-    if (points[i].error > 0) least = points[i].error;  // errors fall along the front
+    if (points[i].error > 0) minimum = points[i].error;  // errors fall along the front
   const auto x = [&](int i) { return log_of(get_cost(points[i], cost), 1e-300); };
-  const auto y = [&](int i) { return log_of(points[i].error, 0.1 * least); };
+  const auto y = [&](int i) { return log_of(points[i].error, 0.1 * minimum); };
   const double x0 = x(front.front()), dx = x(front.back()) - x0, y0 = y(front.front()), dy = y(front.back()) - y0;
   if (!(dx > 0) || !(dy < 0)) return front.back();
   int best = front.back();
@@ -43,13 +43,13 @@ bool alike(const Point& a, const Point& b, CostKind cost) {
   return a.time.lower_quartile <= b.time.upper_quartile && b.time.lower_quartile <= a.time.upper_quartile;
 }
 
-/// The cheapest of the points in `good`.
+/// Returns the cheapest of the points in `good`.
 int cheapest(const std::vector<Point>& points, const std::vector<int>& good, CostKind cost) {
-  const int least =
+  const int minimum =
       *std::min_element(good.begin(), good.end(), [&](int a, int b) { return get_cost(points[a], cost) < get_cost(points[b], cost); });
-  int best = least;
+  int best = minimum;
   for (const int i : good) {
-    if (!alike(points[i], points[least], cost)) continue;
+    if (!alike(points[i], points[minimum], cost)) continue;
     const double work = std::isfinite(points[i].work) ? points[i].work : 0,
                  best_work = std::isfinite(points[best].work) ? points[best].work : 0;
     if (work < best_work || (work == best_work && points[i].error < points[best].error)) best = i;
@@ -88,23 +88,23 @@ PickedPoint pick_point(const Curve& curve, const Target& target) {
   const auto error = [&](int i) { return std::max(points[i].error, floor); };
   const auto cost = [&](int i) { return get_cost(points[i], curve.cost); };
   PickedPoint picked;
-  double most = 0;  // maximum acceptable error
+  double maximum = 0;  // maximum acceptable error
   if (target.error) {
     picked.at_floor = *target.error < floor;
-    most = std::max(*target.error, floor);
-    const double least = error(*std::min_element(all.begin(), all.end(), [&](int a, int b) { return error(a) < error(b); }));
-    picked.meets_target = least <= most;
-    most = std::max(most, least);
+    maximum = std::max(*target.error, floor);
+    const double minimum = error(*std::min_element(all.begin(), all.end(), [&](int a, int b) { return error(a) < error(b); }));
+    picked.meets_target = minimum <= maximum;
+    maximum = std::max(maximum, minimum);
     good = all;
   } else {
     for (const int i : all)
       if (cost(i) <= *target.cost) good.push_back(i);
     picked.meets_target = !good.empty();
     if (good.empty()) return {*std::min_element(all.begin(), all.end(), [&](int a, int b) { return cost(a) < cost(b); }), false, false};
-    most = error(*std::min_element(good.begin(), good.end(), [&](int a, int b) { return error(a) < error(b); }));
-    picked.at_floor = floor > 0 && most <= floor;
+    maximum = error(*std::min_element(good.begin(), good.end(), [&](int a, int b) { return error(a) < error(b); }));
+    picked.at_floor = floor > 0 && maximum <= floor;
   }
-  std::erase_if(good, [&](int i) { return error(i) > most; });
+  std::erase_if(good, [&](int i) { return error(i) > maximum; });
   picked.point = cheapest(points, good, curve.cost);
   return picked;
 }
@@ -157,15 +157,15 @@ void Chooser::choose() {
   curve_.chosen = -1;
   curve_.is_flat = false;
   if (curve_.front.empty()) return;
-  const auto [least, most] = std::ranges::minmax(all_, {}, [&](int i) { return error(i); });
+  const auto [minimum, maximum] = std::ranges::minmax(all_, {}, [&](int i) { return error(i); });
   if (points_.size() == 1) {
-    take(curve_.front.front(), fmt::format("There is one setting; its error is {}.", format_number(points_[0].error)));
-  } else if (error(most) <= error(least)) {
+    take(curve_.front.front(), fmt::format("There is only one setting; its error is {}.", format_number(points_[0].error)));
+  } else if (error(maximum) <= error(minimum)) {
     take_of_equals();
   } else if (curve_.front.size() == 1) {
     take(curve_.front.front(),
-         fmt::format("It {} the most exact at once{}.", bytes_ ? "has the fewest bytes and is" : "is the cheapest and",
-                     untold_.empty() ? "" : ", as far as can be told"));
+         fmt::format("This setting {} the most accurate{}.", bytes_ ? "has the fewest bytes and is also" : "is the cheapest and also",
+                     untold_.empty() ? "" : ", within the error of the reference"));
   } else if (reached_ > 0 && !good_.empty()) {
     const int best = cheapest(points_, good_, curve_.cost);
     take(best, cheap_enough(best, curve_.discretization_error >= reached_ ? describe_discretization_error(curve_) : told_words()));
@@ -178,25 +178,25 @@ std::string Chooser::cheap_enough(int i, const std::string& level) const {
   const std::string error = format_number(points_[static_cast<std::size_t>(i)].error);
   if (bytes_)
     return fmt::format(
-        "Of those whose error is not above {}, it has the fewest bytes, with an error of {}: to go below takes more and gains nothing "
-        "that can be told.",
+        "Among the settings with an error not above {}, this one has the fewest bytes, with an error of {}; a smaller error takes more "
+        "bytes without a resolvable gain.",
         level, error);
-  return fmt::format("It is the cheapest whose error, {}, is not above {}: to go below costs more and gains nothing that can be told.",
+  return fmt::format("This is the cheapest setting whose error, {}, is not above {}; a smaller error costs more without a resolvable gain.",
                      error, level);
 }
 
 /// No setting changes the error: the scene's setting stays, unless another one is clearly cheaper.
 void Chooser::take_of_equals() {
-  const int now = curve_.current, least_cost = cheapest(seen_, all_, curve_.cost);
+  const int now = curve_.current, min_cost = cheapest(seen_, all_, curve_.cost);
   // the first in the list of those whose costs differ only by noise
-  const int best = *std::find_if(all_.begin(), all_.end(), [&](int i) { return alike(points_[i], points_[least_cost], curve_.cost); });
+  const int best = *std::find_if(all_.begin(), all_.end(), [&](int i) { return alike(points_[i], points_[min_cost], curve_.cost); });
   curve_.is_flat = now >= 0 && alike(points_[now], points_[best], curve_.cost);
   take(curve_.is_flat ? now : best, fmt::format("{}{}.",
-                                                untold_.empty() ? "No setting changes the error here, " + format_number(error(all_.front()))
-                                                                : "No setting errs by more than " + told_words(),
-                                                curve_.is_flat ? ", so that what the scene has may stay"
-                                                : bytes_       ? ", so that the one of the fewest bytes will do"
-                                                               : ", so that the cheapest will do"));
+                                                untold_.empty() ? "No setting changes the error, " + format_number(error(all_.front()))
+                                                                : "No setting has a larger error than " + told_words(),
+                                                curve_.is_flat ? ", so that the scene's setting is kept"
+                                                : bytes_       ? ", so that the one with the fewest bytes is chosen"
+                                                               : ", so that the cheapest is chosen"));
 }
 
 /// Error and cost are in conflict: the knee of the front is chosen, if there is one.
@@ -206,17 +206,18 @@ void Chooser::take_knee() {
   curve_.is_flat = bend < 0 && std::ranges::find(front, curve_.current) != front.end();
   curve_.chosen = bend >= 0 ? bend : curve_.is_flat ? curve_.current : front.back();
   const std::string chosen_error = format_number(points_[curve_.chosen].error);
-  const std::string begin = reached_ > 0 ? fmt::format("None reaches {}; this is ", describe_discretization_error(curve_)) : "This is ";
+  const std::string begin =
+      reached_ > 0 ? fmt::format("No setting reaches {}; this is ", describe_discretization_error(curve_)) : "This is ";
   if (curve_.is_flat) {
     curve_.choice_reason = fmt::format(
-        "Error and cost trade evenly, and no setting stands out: what the scene has is as good as any, with an error of {}. Which one is "
-        "needed is for you to say.",
+        "Error and cost change evenly along the front, and no setting stands out: the scene's setting is kept, with an error of {}. The "
+        "best choice depends on the accuracy that you need.",
         chosen_error);
   } else if (curve_.chosen == front.back() && !untold_.empty()) {
     const int best = cheapest(points_, untold_, curve_.cost);
     take(best, cheap_enough(best, told_words()));
   } else if (curve_.chosen == front.back()) {
-    curve_.choice_reason = fmt::format("{}the most exact, with an error of {}.", begin, chosen_error);
+    curve_.choice_reason = fmt::format("{}the most accurate setting, with an error of {}.", begin, chosen_error);
   } else {
     curve_.choice_reason = knee_words(begin);
   }
@@ -240,7 +241,7 @@ std::string Chooser::knee_words(const std::string& begin) const {
                      next_error <= 0            ? "no"
                      : here < 1.05 * next_error ? "hardly less"
                                                 : fmt::format("{:.2g} times less", here / next_error));
-  if (next_error <= told_ && told_ > 0) why += fmt::format(" Errors below {} cannot be told.", format_number(told_));
+  if (next_error <= told_ && told_ > 0) why += fmt::format(" Errors below {} cannot be resolved.", format_number(told_));
   return why;
 }
 

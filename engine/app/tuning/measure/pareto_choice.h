@@ -38,7 +38,7 @@ struct PickedPoint {
 /// Picks the point of the curve for the target.
 PickedPoint pick_point(const Curve& curve, const Target& target);
 
-/// Returns "the data's own error, 0.3"; for a lower bound "the data's own error, at least 0.3".
+/// Returns "the discretization error, 0.3"; for a lower bound "the discretization error, at least 0.3".
 std::string describe_discretization_error(const Curve& curve);
 
 /// Returns the larger of discretization error and error of the reference, as far as they are known; else 0.

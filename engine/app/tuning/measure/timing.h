@@ -14,11 +14,11 @@ namespace catena::app::tuning {
 using TimedRun = std::function<Result<double>()>;
 
 /// Times the settings in rounds until `seconds` of wall time have passed, at least three rounds (one, if that takes twice as long) and at
-/// most `most`. The first round is a warm-up and does not count. An Error if a run fails.
-Result<std::vector<Timing>> time_interleaved(const std::vector<TimedRun>& settings, double seconds, int most = 31);
+/// most `max_repeats`. The first round is a warm-up and does not count. An Error if a run fails.
+Result<std::vector<Timing>> time_interleaved(const std::vector<TimedRun>& settings, double seconds, int max_repeats = 31);
 
 /// The same, written to the points of a curve; `repeats` has one run per point, in order.
-Outcome time_points(Curve& curve, const std::vector<TimedRun>& repeats, double seconds, int most = 31);
+Outcome time_points(Curve& curve, const std::vector<TimedRun>& repeats, double seconds, int max_repeats = 31);
 
 /// Returns median and quartiles; NaN for an empty list.
 Timing compute_timing(std::vector<double> times);

@@ -77,7 +77,7 @@ std::optional<ProbeMotion> motion_along_streamline(scene::Scene& scene, const Na
     const double u = std::fmod(speed * t - lo, 2 * span);
     return curve->position(lo + (u <= span ? u : 2 * span - u)) + beside(t, reach);
   };
-  motion.description = "along the streamline of \"" + link.name + "\" at 0.15 m/s, up to 5 mm beside it";
+  motion.description = "along the streamline of \"" + link.name + "\" at 0.15 m/s, up to 5 mm away from the streamline";
   return motion;
 }
 
@@ -101,7 +101,8 @@ std::optional<ProbeMotion> motion_through_surface(scene::Scene& scene, const Nam
   motion.position_at = [=](double t) {
     return p + deep * std::cos(kTau * 1.5 * t) * n + wide * (std::sin(kTau * 0.5 * t) * a + std::sin(kTau * 0.37 * t) * b);
   };
-  motion.description = "through the surface of \"" + link.name + "\" and back, three times in two seconds, while it wanders along it";
+  motion.description =
+      "through the surface of \"" + link.name + "\" and back, three times in two seconds, and at the same time along the surface";
   return motion;
 }
 
@@ -111,11 +112,11 @@ const Effort& select_effort(std::string_view name) {
   return name == kQuick.name ? kQuick : name == kThorough.name ? kThorough : kDefault;
 }
 
-Effort reduce_if_late(const Effort& whole, double elapsed_s, double done) {
-  constexpr double kLeast = 0.05;
-  const double left_s = whole.total_s - elapsed_s, wanted_s = whole.total_s * (1 - done);
-  const double share = left_s >= wanted_s ? 1 : std::fmax(kLeast, left_s / wanted_s);
-  Effort effort = whole;
+Effort reduce_if_late(const Effort& full, double elapsed_s, double done) {
+  constexpr double kMinimum = 0.05;
+  const double left_s = full.total_s - elapsed_s, wanted_s = full.total_s * (1 - done);
+  const double share = left_s >= wanted_s ? 1 : std::fmax(kMinimum, left_s / wanted_s);
+  Effort effort = full;
   effort.haptics_s *= share;
   effort.rendering_s *= share;
   return effort;
@@ -157,7 +158,7 @@ Result<ProbeMotion> make_probe_motion(scene::Scene& scene, const std::string& pr
       const double f = std::max(0.0, (begin + t - path[k].t_s) / (path[k + 1].t_s - path[k].t_s));
       return path[k].position + f * (path[k + 1].position - path[k].position);
     };
-    motion.description = "along the path of --probe";
+    motion.description = "along the path given by --probe";
     return motion;
   }
   for (const NamedLink& link : find_links(scene, "streamline"))
@@ -167,14 +168,14 @@ Result<ProbeMotion> make_probe_motion(scene::Scene& scene, const std::string& pr
   const Vec3 first = initial_probe_position(scene, scene::scene_bounds(scene));
   const double radius = 0.02 / scene.workspace.meters_per_unit;
   motion.position_at = [=](double t) { return first + beside(0.5 * t, radius); };
-  motion.description = "a loop of 4 cm about the first place of the probe";
+  motion.description = "on a loop of 4 cm about the first position of the probe";
   motion.seconds = seconds;
   return motion;
 }
 
 Outcome add_haptics(Workload& subject, const std::string& probe_csv) {
   if (subject.scene.entities.count<scene::Link>() == 0) {
-    subject.skipped.emplace_back("The hand: the scene has no chain, so that there is nothing to feel.");
+    subject.skipped.emplace_back("Haptics: the scene has no chain.");
     return Done{};
   }
   if (subject.scene.device) {

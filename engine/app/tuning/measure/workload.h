@@ -27,8 +27,8 @@ struct Effort {
 };
 /// Returns the effort of a name: quick, default or thorough.
 const Effort& select_effort(std::string_view name);
-/// Returns `whole` with less time for timed runs if the run is late: `done` is the fraction of curves (0 to 1) measured within `elapsed_s`.
-Effort reduce_if_late(const Effort& whole, double elapsed_s, double done);
+/// Returns `full` with less time for timed runs if the run is late: `done` is the fraction of curves (0 to 1) measured within `elapsed_s`.
+Effort reduce_if_late(const Effort& full, double elapsed_s, double done);
 
 /// A link of the scene and its JSON node.
 struct NamedLink {

@@ -56,7 +56,7 @@ Outcome add_mirrors(render::Renderer& renderer, const render::FramePacket& packe
     if (!unit) {
       CATENA_TRY(unit, mirror_unit(renderer.device(), options.use_float32));
     }
-    CostRow row{"mirror", grid.name(), options.use_float32 ? "32 bits a voxel" : "16 bits a voxel", {}, {}};
+    CostRow row{"mirror", grid.name(), options.use_float32 ? "32 bits per voxel" : "16 bits per voxel", {}, {}};
     if (const auto bytes = render::resident_image_bytes(renderer.device(), grid, options))
       row.expected = {double(*bytes), *unit * double(*bytes)};
     table.push_back(std::move(row));

@@ -55,7 +55,7 @@ Outcome print_costs(const std::string& path, bool json, bool measure) {
   CATENA_CHECK(add_shape_costs(scene, packet, measure, table));
   if (const Outcome drawn = add_frame_costs(packet, measure, table); !drawn) throw MachineFailure{drawn.error().message};
   table.push_back({"create", "widgets", std::to_string(program->widgets.size()), {}, {}});
-  table.push_back({"create", "devices", scene.device ? "1, by view and feel alone" : "0", {}, {}});
+  table.push_back({"create", "devices", scene.device ? "1, only in view and feel" : "0", {}, {}});
   add_tick_costs(scene, *program, measure, table);
   if (json)
     print_json(path, table);

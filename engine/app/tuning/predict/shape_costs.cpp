@@ -63,7 +63,7 @@ Outcome add_shape_costs(const scene::Scene& scene, const render::FramePacket& pa
   std::size_t places = 0, bytes = 0;
   for (const render::TubeItem& tube : packet.tubes)
     places += tube.points.size(), bytes += tube.points.size() * sizeof(Vec3) + tube.colors.size() * sizeof(Color);
-  add_shape("tubes", packet.tubes.size(), places, "places", bytes, table);
+  add_shape("tubes", packet.tubes.size(), places, "points", bytes, table);
   std::size_t triangles = 0;
   bytes = 0;
   for (const render::MeshItem& mesh : packet.meshes) {
@@ -78,7 +78,7 @@ Outcome add_shape_costs(const scene::Scene& scene, const render::FramePacket& pa
   add_shape("glyphs", packet.glyphs.size(), arrows, "arrows", arrows * sizeof(render::Glyph), table);
   std::size_t balls = 0;
   for (const render::SpheresItem& item : packet.spheres) balls += item.spheres->offsets.size();
-  add_shape("points", packet.spheres.size(), balls, "balls", balls * (sizeof(glm::vec3) + sizeof(float) + sizeof(Color)), table);
+  add_shape("points", packet.spheres.size(), balls, "spheres", balls * (sizeof(glm::vec3) + sizeof(float) + sizeof(Color)), table);
   return outcome;
 }
 

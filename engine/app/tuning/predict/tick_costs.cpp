@@ -49,7 +49,7 @@ Walked walk_through(const haptics::HapticProgram& program, const std::vector<hap
   return walked;
 }
 
-/// The same program with only some of its links; `widgets`: these links belong to widgets.
+/// Returns a copy of the program with these links only; `widgets`: the links belong to widgets.
 haptics::HapticProgram with_links(const haptics::HapticProgram& program, std::vector<haptics::Link> links, bool widgets = false) {
   haptics::HapticProgram some = program;
   some.links = std::move(links);

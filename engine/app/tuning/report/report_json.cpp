@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kMark = "catena_tradeoff";
 constexpr int kFormat = 1;
-constexpr std::size_t kMostCurves = 256, kMostPoints = 4096, kMostId = 200;  // limits on a file that is read
+constexpr std::size_t kMaxCurves = 256, kMaxPoints = 4096, kMaxId = 200;  // limits on a file that is read
 
 std::string json_of(const Point& p) {
   return fmt::format(
@@ -108,7 +108,7 @@ Result<Curve> read_curve(const json::Node& node) {
     CATENA_TRY(*word, json::require_string(node, key));
   }
   // the id names the file of the curve's table: it must not lead to another folder
-  const bool plain = !c.id.empty() && c.id.size() <= kMostId && c.id.front() != '.' &&
+  const bool plain = !c.id.empty() && c.id.size() <= kMaxId && c.id.front() != '.' &&
                      std::ranges::none_of(c.id, [](unsigned char letter) { return letter == '/' || letter < ' '; });
   if (!plain) return json::error_at(node, "\"id\" is " + in_quotes(c.id) + "; the name of a table was expected");
   if (c.category != "data" && c.category != "hand" && c.category != "eye")
@@ -119,8 +119,8 @@ Result<Curve> read_curve(const json::Node& node) {
     c.extra_columns.push_back(name);
   }
   CATENA_TRY(const std::vector<json::Node> points, items_of(node, "points"));
-  if (points.size() > kMostPoints)
-    return json::error_at(node, fmt::format("\"points\" has {}; at most {} were expected", points.size(), kMostPoints));
+  if (points.size() > kMaxPoints)
+    return json::error_at(node, fmt::format("\"points\" has {}; at most {} were expected", points.size(), kMaxPoints));
   for (const json::Node& item : points) {
     CATENA_TRY(Point point, read_point(item));
     point.extra_values.resize(c.extra_columns.size(), kNotMeasured);
@@ -160,7 +160,7 @@ bool is_report(const std::string& path) {
 
 Result<Report> read_report(const std::string& path) {
   CATENA_TRY(const json::Node root, json::read(path));
-  if (root.find(kMark) == nullptr) return json::error_at(root, "this is no report; the tradeoff.json of `catena tradeoff` was expected");
+  if (root.find(kMark) == nullptr) return json::error_at(root, "is not a report; a tradeoff.json of `catena tradeoff` was expected");
   CATENA_CHECK(json::get_integer(root, kMark, kFormat, kFormat, kFormat));
   Report report;
   CATENA_TRY(report.source, json::require_string(root, "source"));
@@ -169,12 +169,12 @@ Result<Report> read_report(const std::string& path) {
   CATENA_TRY(const std::vector<json::Node> left_out, items_of(root, "left_out"));
   for (const json::Node& item : left_out) report.skipped.push_back(item.string);
   CATENA_TRY(const std::vector<json::Node> curves, items_of(root, "curves"));
-  if (curves.size() > kMostCurves)
-    return json::error_at(root, fmt::format("\"curves\" has {}; at most {} were expected", curves.size(), kMostCurves));
+  if (curves.size() > kMaxCurves)
+    return json::error_at(root, fmt::format("\"curves\" has {}; at most {} were expected", curves.size(), kMaxCurves));
   for (const json::Node& item : curves) {
     CATENA_TRY(Curve curve, read_curve(item));
     if (find_curve(&report, curve.id) != nullptr)
-      return json::error_at(item, "\"id\" is " + in_quotes(curve.id) + " twice; once was expected");
+      return json::error_at(item, "\"id\" is " + in_quotes(curve.id) + " a second time; unique ids were expected");
     report.curves.push_back(std::move(curve));
   }
   return report;

@@ -101,8 +101,8 @@ Outcome ResultsDir::create_staging() {
 
 Result<ResultsDir> ResultsDir::open(const std::string& path) {
   std::error_code code;
-  if (path.empty()) return Error{"the output's name is empty: expected a folder"};
-  if (fs::exists(path, code) && !fs::is_directory(path, code)) return Error{path + ": is a file: expected a folder to write into"};
+  if (path.empty()) return Error{"the name of the output is empty; a folder was expected"};
+  if (fs::exists(path, code) && !fs::is_directory(path, code)) return Error{path + ": is a file; a folder was expected"};
   ResultsDir folder(path);
   CATENA_CHECK(folder.create_staging());
   folder.remove_staging();
@@ -129,27 +129,27 @@ Outcome ResultsDir::add(const std::string& name, std::string_view text) {
 Outcome ResultsDir::add_plots(const std::string& script, const std::vector<std::string>& plots) {
   const int code = run_gnuplot(staging_, script);
   if (code != 0) {
-    fmt::print("no plots: gnuplot {}; the tables are complete, `gnuplot {}` in {} draws them\n",
+    fmt::print("no plots: gnuplot {}; the tables are complete, and `gnuplot {}` in {} makes the plots\n",
                code == kMissing ? "is not installed" : "failed", script, sanitize_for_terminal(path_));
     return Done{};
   }
   for (const std::string& name : plots) {
-    if (!fs::exists(staging_ + "/" + name)) return Error{path_ + "/" + name + ": gnuplot did not draw it"};
+    if (!fs::exists(staging_ + "/" + name)) return Error{path_ + "/" + name + ": gnuplot did not write this file"};
     names_.push_back(name);
   }
   return Done{};
 }
 
-Result<std::vector<std::string>> ResultsDir::draw_svg(const std::string& script, const std::vector<std::string>& pictures) {
+Result<std::vector<std::string>> ResultsDir::draw_svg(const std::string& script, const std::vector<std::string>& image_files) {
   std::vector<std::string> drawn;
-  if (pictures.empty()) return drawn;
+  if (image_files.empty()) return drawn;
   CATENA_CHECK(create_staging());
   CATENA_TRY(OutputFile file, OutputFile::open(staging_ + "/draw.gp"));
   file.write(script);
   CATENA_CHECK(file.commit());
   if (run_gnuplot(staging_, "draw.gp") != 0) return drawn;
-  for (const std::string& name : pictures) {
-    CATENA_TRY(const std::string text, read_text_file(staging_ + "/" + name, "a picture of gnuplot's"));
+  for (const std::string& name : image_files) {
+    CATENA_TRY(const std::string text, read_text_file(staging_ + "/" + name, "an image by gnuplot"));
     // without the lines before the <svg> element, which an HTML page must not contain
     const auto begin = text.find("<svg");
     if (begin != std::string::npos) drawn.push_back(text.substr(begin));
@@ -161,7 +161,7 @@ Outcome ResultsDir::commit() {
   for (const std::string& name : names_) {
     std::error_code code;
     CATENA_CHECK(check_not_input(path_ + "/" + name));
-    if (fs::is_directory(path_ + "/" + name, code)) return Error{path_ + "/" + name + ": is a folder: expected a file name to write to"};
+    if (fs::is_directory(path_ + "/" + name, code)) return Error{path_ + "/" + name + ": is a folder; a file name was expected"};
   }
   for (const std::string& name : names_) {
     std::error_code code;

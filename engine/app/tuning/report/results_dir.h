@@ -45,9 +45,9 @@ class ResultsDir {
   /// Runs gnuplot on a script that was added and adds the plots it writes. If gnuplot is missing or fails, prints one line and adds none.
   /// An Error if gnuplot succeeds but a file of `plots` is missing.
   Outcome add_plots(const std::string& script, const std::vector<std::string>& plots);
-  /// Renders plots with gnuplot and returns their SVG text for an HTML page; neither the script nor the files in `pictures` are kept.
+  /// Renders plots with gnuplot and returns their SVG text for an HTML page; neither the script nor the files in `image_files` are kept.
   /// Returns an empty list if gnuplot is missing or fails.
-  Result<std::vector<std::string>> draw_svg(const std::string& script, const std::vector<std::string>& pictures);
+  Result<std::vector<std::string>> draw_svg(const std::string& script, const std::vector<std::string>& image_files);
   /// Moves all files to the output folder. An Error if a target is an input file or a folder, or cannot be written.
   Outcome commit();
   const std::vector<std::string>& file_names() const { return names_; }

@@ -12,8 +12,7 @@
 namespace catena::app::tuning {
 namespace {
 
-constexpr const char *kRestId = "hand-rest", *kRest = "the tick without the links that a plan chooses for",
-                     *kBare = "the tick without links";
+constexpr const char *kRestId = "hand-rest", *kRest = "tick without the tuned links", *kBare = "tick without links";
 
 using tuning::StreamlineSetting;
 
@@ -98,7 +97,7 @@ Result<std::vector<Curve>> measure_tick_curves(tuning::Workload& subject) {
   Curve curve;
   curve.id = kRestId;
   curve.title = kRest;
-  curve.time_name = "ns a tick";
+  curve.time_name = "ns per tick";
   curve.points = {{kRest, "", ""}, {kBare, "", ""}};
   CATENA_CHECK(
       tuning::time_points(curve, {tuning::make_tick_run(rest, path), tuning::make_tick_run(bare, path)}, 0.3 * subject.effort.haptics_s));

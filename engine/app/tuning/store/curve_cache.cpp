@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxCachedPoints = 1000, kMaxCachedCurves = 100, kEnd = 65536;
-constexpr std::uint64_t kMostBytes = std::uint64_t{4} << 20;
+constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 20;
 constexpr const char* kKey = "key";
 
 bool is_sane(double value) { return std::isnan(value) || (std::isfinite(value) && value >= 0); }
@@ -109,24 +109,24 @@ CurveCache::CurveCache() : CurveCache(user_folder("XDG_CACHE_HOME", ".cache")) {
 }
 
 std::optional<std::vector<Curve>> CurveCache::find(const std::string& key, const std::function<bool(const std::vector<Curve>&)>& fits,
-                                                   std::string& told) const {
+                                                   std::string& message) const {
   const std::string path = path_of(key);
   std::error_code code;
   if (path.empty() || fs::symlink_status(path, code).type() == fs::file_type::not_found) return std::nullopt;
-  const auto refuse = [&](const std::string& why) {
-    told = path + ": " + why + "; it is not believed, and measured anew";
+  const auto refuse = [&](const std::string& reason) {
+    message = path + ": " + reason + "; the file is ignored, and the costs are measured anew";
     return std::nullopt;
   };
-  if (!fs::is_regular_file(path, code)) return refuse("this is no file");
-  if (fs::file_size(path, code) > kMostBytes || code) return refuse("it is larger than any report of curves");
+  if (!fs::is_regular_file(path, code)) return refuse("is not a file");
+  if (fs::file_size(path, code) > kMaxBytes || code) return refuse("the file is too large for cost curves");
   auto report = tuning::read_report(path);
-  if (!report) return refuse("it is damaged");
+  if (!report) return refuse("the file is damaged");
   const auto& about = report->metadata;
   const bool is_ours = std::find(about.begin(), about.end(), std::pair<std::string, std::string>(kKey, key)) != about.end();
-  if (!is_ours) return refuse("it is of another scene or machine");
+  if (!is_ours) return refuse("the file belongs to another scene or machine");
   const bool sane = report->curves.size() <= kMaxCachedCurves &&
                     std::all_of(report->curves.begin(), report->curves.end(), [](const Curve& curve) { return is_sane(curve); });
-  if (!sane || !fits(report->curves)) return refuse("it holds what no measurement gives");
+  if (!sane || !fits(report->curves)) return refuse("the file contains impossible values");
   return std::move(report->curves);
 }
 

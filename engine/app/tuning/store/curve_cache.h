@@ -44,10 +44,10 @@ class CurveCache {
   CurveCache();
   explicit CurveCache(std::string folder) : folder_(std::move(folder)) {}
 
-  /// Returns the curves cached under the key if the file is valid and `fits` accepts them; else nothing. `told` receives a message if a
+  /// Returns the curves cached under the key if the file is valid and `fits` accepts them; else nothing. `message` receives a message if a
   /// file exists but is rejected.
   std::optional<std::vector<Curve>> find(const std::string& key, const std::function<bool(const std::vector<Curve>&)>& fits,
-                                         std::string& told) const;
+                                         std::string& message) const;
   /// Writes the curves under the key; `source` names the scene. An Error if they cannot be written.
   Outcome store(const std::string& key, const std::string& source, const std::vector<Curve>& curves) const;
   /// Returns the path of the key's file; empty if nothing is cached.

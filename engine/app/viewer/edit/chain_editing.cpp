@@ -119,8 +119,8 @@ std::string first_level(scene::Scene& scene, const json::Node& link, const Vec3&
   if (!field.scalar) return {};
   field::Cursor cursor;
   // use the level of the visible surface, so that haptics and image agree
-  const std::string seen = visible_surface_level(scene, name->string, field.scalar->sample(probe, cursor).value);
-  return seen.empty() ? level_at(*field.scalar, probe) : seen;
+  const std::string visible_level = visible_surface_level(scene, name->string, field.scalar->sample(probe, cursor).value);
+  return visible_level.empty() ? level_at(*field.scalar, probe) : visible_level;
 }
 
 std::string first_number(const scene::Scene& scene, const schema::Key& key, double length) {
@@ -147,8 +147,8 @@ std::string first_name(scene::Scene& scene, Role role) {
     return all.empty() ? "" : scene::to_json(all.front());
   }
   const bool vectors = role == Role::vector_field;
-  if (const std::string seen = visible_surface_field(scene); !vectors && use(scene, seen, false).get() != nullptr)
-    return scene::to_json(seen);
+  if (const std::string visible_name = visible_surface_field(scene); !vectors && use(scene, visible_name, false).get() != nullptr)
+    return scene::to_json(visible_name);
   for (const std::string& name : list_field_names(scene, vectors))
     if (use(scene, name, vectors).get() != nullptr) return scene::to_json(name);
   return {};
@@ -178,7 +178,7 @@ std::string default_key_value(scene::Scene& scene, const schema::Key& key, const
 }
 
 Result<std::string> make_link_json(scene::Scene& scene, std::string_view type, const Vec3& probe, double length,
-                                   const std::vector<std::pair<std::string, std::string>>& given) {
+                                   const std::vector<std::pair<std::string, std::string>>& known_keys) {
   // find an unused name
   std::vector<std::string> taken{"t", "probe", "force"};
   scene.entities.each<scene::Link>([&](scene::Entity, const scene::Link& link) { taken.push_back(link.name); });
@@ -189,11 +189,11 @@ Result<std::string> make_link_json(scene::Scene& scene, std::string_view type, c
   link.kind = json::Kind::object;
   std::string text = "\"name\": " + scene::to_json(name) + ", \"type\": " + scene::to_json(type);
   for (const schema::Key& key : link_type_keys(type)) {
-    const auto known = std::ranges::find(given, key.name, &std::pair<std::string, std::string>::first);
-    if (known == given.end() && !key.is_required && !key.is_recommended) continue;
-    const std::string value = known != given.end() ? known->second : default_key_value(scene, key, link, probe, length);
+    const auto known = std::ranges::find(known_keys, key.name, &std::pair<std::string, std::string>::first);
+    if (known == known_keys.end() && !key.is_required && !key.is_recommended) continue;
+    const std::string value = known != known_keys.end() ? known->second : default_key_value(scene, key, link, probe, length);
     if (value.empty() && (key.role == Role::curves || key.role == Role::points))
-      return Error{key.name + " cannot be felt, for the scene has none"};
+      return Error{key.name + " cannot be felt: the scene has none"};
     if (value.empty())
       return Error{"a " + std::string(type) + " needs a " +
                    (key.role == Role::vector_field   ? "vector field"

@@ -35,10 +35,10 @@ std::vector<std::string> link_types();
 
 /// Returns a new link with working defaults as JSON text. Field: that of a visible isosurface, or else the first field or mesh of the scene
 /// that fits (loaded if necessary). Level: that of the visible isosurface, or else the field's value at the probe, or the middle of its
-/// range. Positions: at the probe. Lengths: fractions of `length` (the diagonal of the whole scene). `given`: keys with known values as
-/// JSON text; those that the type does not have are ignored. An Error if the scene has no such field.
+/// range. Positions: at the probe. Lengths: fractions of `length` (the diagonal of the whole scene). `known_keys`: keys with known values
+/// as JSON text; those that the type does not have are ignored. An Error if the scene has no such field.
 Result<std::string> make_link_json(scene::Scene& scene, std::string_view type, const Vec3& probe, double length,
-                                   const std::vector<std::pair<std::string, std::string>>& given = {});
+                                   const std::vector<std::pair<std::string, std::string>>& known_keys = {});
 /// Returns the default value of a missing key as JSON text; empty if there is none.
 std::string default_key_value(scene::Scene& scene, const schema::Key& key, const json::Node& link, const Vec3& probe, double length);
 

@@ -19,14 +19,14 @@ namespace {
 
 constexpr double kSnapShare = 0.02;  // fraction of the diagonal of all lines or points
 
-/// "isosurfaces" of "isosurfaces[2]".
+/// Returns the list of an item: "isosurfaces" for "isosurfaces[2]".
 std::string part_of(const std::string& item) { return item.substr(0, item.find('[')); }
 
 /// Side of a level on which the camera is: by the gradient at the picked point, otherwise by the field's corners, which count as outside.
-const char* side_of_eye(const field::ScalarField& field, double level, const std::optional<Vec3>& at, const Vec3& eye) {
+const char* side_of_eye(const field::ScalarField& field, double level, const std::optional<Vec3>& at, const Vec3& camera_position) {
   field::Cursor cursor;
   if (at) {
-    const double rises = dot(field.sample(*at, cursor).gradient, eye - *at);
+    const double rises = dot(field.sample(*at, cursor).gradient, camera_position - *at);
     if (rises != 0) return rises > 0 ? "above" : "below";
   }
   int above = 0;
@@ -59,10 +59,10 @@ std::optional<Given> given_by_label(const scene::Scene& scene, const std::string
   const double value = field::label_at(*scene::loaded_field(scene, entity).scalar->grid(), at);
   const scene::LabelEntry* label = map->find(value);
   if (label == nullptr) return std::nullopt;
-  scene::LabelSource wanted{map_name, {value}, {}, false, smooth.value_or(field::kDefaultLabelSmoothing)};
+  scene::LabelSource requested{map_name, {value}, {}, false, smooth.value_or(field::kDefaultLabelSmoothing)};
   std::string name;
   scene.entities.each<scene::FieldSource>([&](scene::Entity e, const scene::FieldSource& source) {
-    if (source.label == wanted) name = entity_name(scene, e);
+    if (source.label == requested) name = entity_name(scene, e);
   });
   Given given;
   if (name.empty()) {
@@ -78,10 +78,10 @@ std::optional<Given> given_by_label(const scene::Scene& scene, const std::string
   return given;
 }
 
-Result<Given> given_by(scene::Scene& scene, const scene::Isosurface& surface, const std::optional<Vec3>& at, const Vec3& eye) {
+Result<Given> given_by(scene::Scene& scene, const scene::Isosurface& surface, const std::optional<Vec3>& at, const Vec3& camera_position) {
   const std::string name = entity_name(scene, surface.field);
   CATENA_TRY(const field::AnyField field, scene::resolve_field(scene, surface.field, surface.where));
-  if (!field.scalar) return Error{in_quotes(name) + " is no scalar field: it has no surface to feel"};
+  if (!field.scalar) return Error{in_quotes(name) + " is not a scalar field and has no surface to feel"};
   const auto& label = scene.entities.get<scene::FieldSource>(surface.field).label;
   if (at && label && (label->all_labels || label->values.size() + label->names.size() > 1))
     if (auto given = given_by_label(scene, label->label_map, *at, label->smoothing_voxels)) return *std::move(given);
@@ -89,31 +89,31 @@ Result<Given> given_by(scene::Scene& scene, const scene::Isosurface& surface, co
                                                  : scene::to_json(surface.level);
   return Given{{{"field", scene::to_json(name)},
                 {"level", level},
-                {"free", scene::to_json(std::string(side_of_eye(*field.scalar, surface.level, at, eye)))}},
+                {"free", scene::to_json(std::string(side_of_eye(*field.scalar, surface.level, at, camera_position)))}},
                "isosurface " + name + " at " + to_text(surface.level)};
 }
 
-Result<Given> given_by(scene::Scene& scene, const scene::Volume& volume, const std::optional<Vec3>& at, const Vec3& eye) {
+Result<Given> given_by(scene::Scene& scene, const scene::Volume& volume, const std::optional<Vec3>& at, const Vec3& camera_position) {
   const std::string name = entity_name(scene, volume.field);
-  if (!at) return Error{"no place of volume " + name + " is pointed at: point at it in the picture and press H"};
+  if (!at) return Error{"no point of volume " + name + " is selected: point at the volume in the image and press H"};
   CATENA_TRY(const field::AnyField field, scene::resolve_field(scene, volume.field, volume.where));
-  if (!field.scalar) return Error{in_quotes(name) + " is no scalar field: it has no surface to feel"};
+  if (!field.scalar) return Error{in_quotes(name) + " is not a scalar field and has no surface to feel"};
   if (scene::find_label_map(scene, volume.field) != nullptr) {
     if (auto given = given_by_label(scene, name, *at, {})) return *std::move(given);
-    return Error{"volume " + name + " has no label at the place that is pointed at"};
+    return Error{"volume " + name + " has no label under the pointer"};
   }
   field::Cursor cursor;
   const field::ScalarSample here = field.scalar->sample(*at, cursor);
-  if (!here.inside || !std::isfinite(here.value)) return Error{"volume " + name + " has no value at the place that is pointed at"};
+  if (!here.inside || !std::isfinite(here.value)) return Error{"volume " + name + " has no value under the pointer"};
   if (!(field.scalar->min_value() < field.scalar->max_value()))
-    return Error{"volume " + name + " has one value everywhere: no surface to feel"};
+    return Error{"volume " + name + " has the same value everywhere and no surface to feel"};
   // rounded to four digits: a level is a choice, not a measurement
   const double rounded = round_to_digits(here.value, 4);
   const bool fits = rounded > field.scalar->min_value() && rounded < field.scalar->max_value();
   const double level = fits ? rounded : here.value;
   return Given{{{"field", scene::to_json(name)},
                 {"level", scene::to_json(level)},
-                {"free", scene::to_json(std::string(side_of_eye(*field.scalar, level, at, eye)))}},
+                {"free", scene::to_json(std::string(side_of_eye(*field.scalar, level, at, camera_position)))}},
                "isosurface of volume " + name + " at " + to_text(level)};
 }
 
@@ -128,12 +128,12 @@ Result<Given> given_by(scene::Scene& scene, scene::Entity entity, const scene::S
   }
   CATENA_TRY(const std::vector<flow::CurvePtr> lines, scene::resolve_lines(scene, entity));
   const flow::Curve* nearest = nullptr;
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (const flow::CurvePtr& line : lines) {
     for (const flow::Knot& knot : line->knots()) {
       const Vec3 away = at ? knot.p - *at : Vec3(0.0);
-      if (!(dot(away, away) < least)) continue;
-      least = dot(away, away);
+      if (!(dot(away, away) < minimum)) continue;
+      minimum = dot(away, away);
       nearest = line.get();
       if (!at) break;
     }
@@ -144,24 +144,25 @@ Result<Given> given_by(scene::Scene& scene, scene::Entity entity, const scene::S
 }
 
 Result<Given> given_by(const scene::Scene& scene, const scene::Slice& slice) {
-  if (slice.where.find("widget") != nullptr) return Error{"this slice follows a widget, which the hand takes hold of itself"};
+  if (slice.where.find("widget") != nullptr) return Error{"this slice follows a widget; grab the widget to feel its plane"};
   return Given{{{"point", scene::to_json(slice.point)}, {"normal", scene::to_json(slice.normal)}},
                "slice " + entity_name(scene, slice.color_by.field)};
 }
 
 /// Side of the mesh face at the picked point on which the camera is, "above" where its normal points; without a point: outside.
-const char* side_of_eye(const mesh::TriangleMesh& mesh, const std::optional<Vec3>& at, const Vec3& eye) {
+const char* side_of_eye(const mesh::TriangleMesh& mesh, const std::optional<Vec3>& at, const Vec3& camera_position) {
   if (!at) return "above";
   int budget = static_cast<int>(std::min<std::size_t>(4 * mesh.triangles().size() + 64, 1 << 30));
   const mesh::NearestResult nearest = mesh::nearest_point(mesh, *at, std::numeric_limits<double>::infinity(), budget);
   if (!nearest.found) return "above";
-  return dot(mesh::normal_at(mesh, nearest.closest), eye - *at) >= 0 ? "above" : "below";
+  return dot(mesh::normal_at(mesh, nearest.closest), camera_position - *at) >= 0 ? "above" : "below";
 }
 
-Result<Given> given_by(scene::Scene& scene, const scene::SurfaceMesh& surface, const std::optional<Vec3>& at, const Vec3& eye) {
+Result<Given> given_by(scene::Scene& scene, const scene::SurfaceMesh& surface, const std::optional<Vec3>& at, const Vec3& camera_position) {
   const std::string name = entity_name(scene, surface.mesh);
   CATENA_TRY(const mesh::MeshPtr mesh, scene::resolve_mesh(scene, surface.mesh));
-  return Given{{{"mesh", scene::to_json(name)}, {"free", scene::to_json(std::string(side_of_eye(*mesh, at, eye)))}}, "mesh " + name};
+  return Given{{{"mesh", scene::to_json(name)}, {"free", scene::to_json(std::string(side_of_eye(*mesh, at, camera_position)))}},
+               "mesh " + name};
 }
 
 Result<Given> curves_given(scene::Scene& scene, scene::Entity entity) {
@@ -179,16 +180,16 @@ Result<Given> points_given(scene::Scene& scene, scene::Entity entity) {
   return Given{{{"points", scene::to_json(name)}, {"snap", scene::to_json(snap)}}, "points " + name};
 }
 
-Result<Given> given_by(scene::Scene& scene, const std::string& item, const std::optional<Vec3>& at, const Vec3& eye) {
-  if (const auto surface = find_item<scene::Isosurface>(scene, item)) return given_by(scene, *surface, at, eye);
-  if (const auto volume = find_item<scene::Volume>(scene, item)) return given_by(scene, *volume, at, eye);
+Result<Given> given_by(scene::Scene& scene, const std::string& item, const std::optional<Vec3>& at, const Vec3& camera_position) {
+  if (const auto surface = find_item<scene::Isosurface>(scene, item)) return given_by(scene, *surface, at, camera_position);
+  if (const auto volume = find_item<scene::Volume>(scene, item)) return given_by(scene, *volume, at, camera_position);
   scene::Entity entity;
   if (const auto set = find_item<scene::StreamlineSet>(scene, item, &entity)) return given_by(scene, entity, *set, at);
   if (const auto slice = find_item<scene::Slice>(scene, item)) return given_by(scene, *slice);
   if (find_item<scene::PointsSource>(scene, item, &entity)) return points_given(scene, entity);
   if (find_item<scene::CurvesSource>(scene, item, &entity)) return curves_given(scene, entity);
-  if (const auto mesh = find_item<scene::SurfaceMesh>(scene, item)) return given_by(scene, *mesh, at, eye);
-  return Error{item + " is not there any more"};
+  if (const auto mesh = find_item<scene::SurfaceMesh>(scene, item)) return given_by(scene, *mesh, at, camera_position);
+  return Error{item + " was removed from the scene"};
 }
 
 }  // namespace
@@ -202,22 +203,22 @@ const haptics::ConstraintType* find_constraint_type(std::string_view part) {
 
 bool can_bind_haptics(std::string_view part) { return find_constraint_type(part) != nullptr; }
 
-Result<HapticBinding> make_haptic_binding(scene::Scene& scene, const std::string& item, const std::optional<Vec3>& at, const Vec3& eye,
-                                          double length) {
+Result<HapticBinding> make_haptic_binding(scene::Scene& scene, const std::string& item, const std::optional<Vec3>& at,
+                                          const Vec3& camera_position, double length) {
   const std::string part = part_of(item);
   const haptics::ConstraintType* type = find_constraint_type(part);
   if (type == nullptr) return Error{part + " cannot be felt"};
-  CATENA_TRY(const Given given, given_by(scene, item, at, eye));
-  CATENA_TRY(const std::string link, make_link_json(scene, type->type, at.value_or(eye), length, given.keys));
+  CATENA_TRY(const Given given, given_by(scene, item, at, camera_position));
+  CATENA_TRY(const std::string link, make_link_json(scene, type->type, at.value_or(camera_position), length, given.keys));
   return HapticBinding{link, given.words, given.field, given.is_label};
 }
 
-std::string find_bound_link(const scene::Scene& scene, const HapticBinding& thing) {
-  const auto wanted = json::parse(thing.link_json, "link");
+std::string find_bound_link(const scene::Scene& scene, const HapticBinding& binding) {
+  const auto parsed_link = json::parse(binding.link_json, "link");
   std::string name;
   scene.entities.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
-    if (!name.empty() || !wanted) return;
-    for (const auto& [key, value] : wanted->members) {
+    if (!name.empty() || !parsed_link) return;
+    for (const auto& [key, value] : parsed_link->members) {
       if (key == "name" || key == "free" || key == "release" || key == "snap") continue;
       const json::Node* stated = link.node.find(key);
       if (stated == nullptr || json::serialize_node(*stated) != json::serialize_node(value)) return;
@@ -227,14 +228,14 @@ std::string find_bound_link(const scene::Scene& scene, const HapticBinding& thin
   return name;
 }
 
-TextEdits make_binding_edits(scene::Scene& scene, const std::string& item, const HapticBinding& thing) {
+TextEdits make_binding_edits(scene::Scene& scene, const std::string& item, const HapticBinding& binding) {
   TextEdits edits;
-  if (thing.new_field) edits.push_back({thing.new_field->first, thing.new_field->second});
+  if (binding.new_field) edits.push_back({binding.new_field->first, binding.new_field->second});
   // a different label of the same map counts as a different item
-  const std::vector<std::string> before = thing.is_label ? std::vector<std::string>() : find_links_on(scene, item);
-  const auto link = json::parse(thing.link_json, "link");
+  const std::vector<std::string> before = binding.is_label ? std::vector<std::string>() : find_links_on(scene, item);
+  const auto link = json::parse(binding.link_json, "link");
   if (before.empty() || !link) {
-    edits.push_back({"/chain/-", thing.link_json});
+    edits.push_back({"/chain/-", binding.link_json});
     return edits;
   }
   for (const auto& [key, value] : link->members)

@@ -36,17 +36,17 @@ struct HapticBinding {
 };
 
 /// Returns the link for an item. `item`: its place in the scene, "isosurfaces[0]" (json::Node::label). `at`: the picked point, if any;
-/// required for a volume. `eye`: position of the camera. `length`: diagonal of the scene. World units. An Error states why the item cannot
-/// be bound.
-Result<HapticBinding> make_haptic_binding(scene::Scene& scene, const std::string& item, const std::optional<Vec3>& at, const Vec3& eye,
-                                          double length);
+/// required for a volume. `camera_position`: position of the camera. `length`: diagonal of the scene. World units. An Error states why the
+/// item cannot be bound.
+Result<HapticBinding> make_haptic_binding(scene::Scene& scene, const std::string& item, const std::optional<Vec3>& at,
+                                          const Vec3& camera_position, double length);
 
 /// Returns the name of an existing link with the same keys (apart from name, free, release and snap); empty if there is none.
-std::string find_bound_link(const scene::Scene& scene, const HapticBinding& thing);
+std::string find_bound_link(const scene::Scene& scene, const HapticBinding& binding);
 
 /// Returns the edits that add the link. A link that already lies on the same item (remove_item.h), at another level or on another line of
 /// it, is modified instead: it keeps its name and its other keys.
-TextEdits make_binding_edits(scene::Scene& scene, const std::string& item, const HapticBinding& thing);
+TextEdits make_binding_edits(scene::Scene& scene, const std::string& item, const HapticBinding& binding);
 
 /// Returns pointers to all plane links that coincide with the slice's plane, which are to be moved together with it.
 std::vector<std::string> find_coplanar_links(const scene::Scene& scene, const Vec3& point, const Vec3& normal);

@@ -19,16 +19,16 @@ std::vector<float> histogram_bars(const std::vector<float>& sorted, double lo, d
   std::vector<float> heights(static_cast<std::size_t>(std::max(bars, 0)), 0.0f);
   if (heights.empty() || !(lo < hi) || !std::isfinite(hi - lo)) return heights;
   auto from = std::lower_bound(sorted.begin(), sorted.end(), lo, [](float v, double edge) { return v < edge; });
-  float most = 0;
+  float maximum = 0;
   for (int i = 0; i < bars; ++i) {
     // the last bar includes its upper edge
     const double edge = i + 1 == bars ? std::nextafter(hi, HUGE_VAL) : symlog_interpolate(lo, hi, (i + 1.0) / bars, linear_below);
     const auto to = std::lower_bound(from, sorted.end(), edge, [](float v, double e) { return v < e; });
     heights[static_cast<std::size_t>(i)] = std::log1p(static_cast<float>(to - from));
-    most = std::max(most, heights[static_cast<std::size_t>(i)]);
+    maximum = std::max(maximum, heights[static_cast<std::size_t>(i)]);
     from = to;
   }
-  for (float& h : heights) h = most > 0 ? h / most : 0;
+  for (float& h : heights) h = maximum > 0 ? h / maximum : 0;
   return heights;
 }
 
@@ -49,11 +49,11 @@ SortedSamples HistogramCache::find_or_request(scene::Scene& scene, scene::Entity
   const field::AnyField& any = source.rendered.get() != nullptr ? source.rendered : source.loaded;
   if (any.get() == nullptr || !any.get()->is_grid()) return nullptr;
   // reuse the sample that the transfer functions may have cached, or cache it for them
-  const auto* sample = scene.cache.has<scene::ValueSample>(field) ? &scene.cache.get<scene::ValueSample>(field) : nullptr;
+  const auto* sample = scene.cache.has<scene::SortedValues>(field) ? &scene.cache.get<scene::SortedValues>(field) : nullptr;
   if (sample != nullptr && sample->grid == any.get()) return sample->sorted;
   const std::uint64_t version = any.get()->version();
   if (const auto it = cached_.find(version); it != cached_.end()) {
-    if (source.rendered.scalar && sample == nullptr) scene.cache.emplace<scene::ValueSample>(field, {source.rendered.get(), it->second});
+    if (source.rendered.scalar && sample == nullptr) scene.cache.emplace<scene::SortedValues>(field, {source.rendered.get(), it->second});
     return it->second;
   }
   if (job_) return nullptr;

@@ -54,11 +54,11 @@ double default_level(const field::ScalarField& field, const std::vector<float>& 
 
 /// Takes the level at which a link of the chain lies on the field, so that the visible surface matches the haptic one. False: no such link.
 bool take_felt_level(const scene::Scene& scene, scene::Entity field, scene::Isosurface& surface) {
-  const auto felt = json::parse(first_link_level(scene, entity_name(scene, field)), "level");
-  if (!felt) return false;
-  if (const json::Node* widget = felt->find("widget")) surface.level_widget = scene::find_widget(scene, widget->string);
-  surface.level = felt->number;
-  return felt->kind == json::Kind::number || surface.level_widget;
+  const auto level = json::parse(first_link_level(scene, entity_name(scene, field)), "level");
+  if (!level) return false;
+  if (const json::Node* widget = level->find("widget")) surface.level_widget = scene::find_widget(scene, widget->string);
+  surface.level = level->number;
+  return level->kind == json::Kind::number || surface.level_widget;
 }
 
 }  // namespace

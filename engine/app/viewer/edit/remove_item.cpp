@@ -126,10 +126,10 @@ Rule rule_of(const scene::Scene& scene, const std::string& item, const scene::Is
   const std::string field = entity_name(scene, surface.field);
   const scene::LabelSource* labels = label_of(scene, field);
   return [&scene, item, surface, field, labels](const json::Node& link) {
-    const std::string felt = scene::level_field_name(link);
-    if (felt.empty() || is_drawn_beside(scene, item, link)) return false;
-    if (felt == field) return is_at(scene, surface, link);
-    const scene::LabelSource* label = label_of(scene, felt);
+    const std::string field_name = scene::level_field_name(link);
+    if (field_name.empty() || is_drawn_beside(scene, item, link)) return false;
+    if (field_name == field) return is_at(scene, surface, link);
+    const scene::LabelSource* label = label_of(scene, field_name);
     if (labels == nullptr || label == nullptr || label->label_map != labels->label_map || label->values.size() != 1) return false;
     return labels->all_labels || std::ranges::find(labels->values, label->values.front()) != labels->values.end();
   };
@@ -138,9 +138,9 @@ Rule rule_of(const scene::Scene& scene, const std::string& item, const scene::Is
 Rule rule_of(const scene::Scene& scene, const std::string& item, const scene::Volume& volume) {
   const std::string field = entity_name(scene, volume.field);
   return [&scene, item, field](const json::Node& link) {
-    const std::string felt = scene::level_field_name(link);
-    const scene::LabelSource* label = label_of(scene, felt);
-    return (felt == field || (label != nullptr && label->label_map == field)) && !is_drawn_beside(scene, item, link);
+    const std::string field_name = scene::level_field_name(link);
+    const scene::LabelSource* label = label_of(scene, field_name);
+    return (field_name == field || (label != nullptr && label->label_map == field)) && !is_drawn_beside(scene, item, link);
   };
 }
 

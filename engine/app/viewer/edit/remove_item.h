@@ -20,7 +20,7 @@ TextEdits make_remove_edits(const std::string& text, const std::string& item);
 /// levels of its field without a visible isosurface; for a set of streamlines: links whose seed is the seed of one of its lines.
 std::vector<std::string> find_links_on(scene::Scene& scene, const std::string& item);
 
-/// The same as make_remove_edits, including the links that lie on the item.
+/// Returns the edits that remove the item and the links that lie on the item.
 TextEdits make_remove_edits_with_links(scene::Scene& scene, const std::string& text, const std::string& item);
 
 }  // namespace catena::app

@@ -37,7 +37,7 @@ std::optional<T> find_item(const scene::Scene& scene, const std::string& item, s
 /// Returns pointers to the levels of all links of the chain that lie on the surface `field` = `level`, of any type (isosurface, friction,
 /// texture): the same field, the same number.
 std::vector<std::string> find_link_levels(const scene::Scene& scene, const std::string& field, double level);
-/// The same for the isosurfaces, visible or hidden.
+/// Returns pointers to the levels of all isosurfaces, visible or hidden, with this field and level.
 std::vector<std::string> find_isosurface_levels(const scene::Scene& scene, const std::string& field, double level);
 /// Returns the edits that change the level of an isosurface, together with the links that lie on it.
 TextEdits make_level_edits(const scene::Scene& scene, const scene::Isosurface& surface, double level);
@@ -45,7 +45,7 @@ TextEdits make_level_edits(const scene::Scene& scene, const scene::Isosurface& s
 /// Returns the level of the field's visible isosurface as JSON text: a number, or {"widget": NAME} if it follows a widget. Of several, the
 /// one nearest to `value`. Empty: none is visible.
 std::string visible_surface_level(const scene::Scene& scene, const std::string& field, double value);
-/// The same for the links that lie on a level of the field: the first one's level.
+/// Returns the level of the first link that lies on a level of the field, as JSON text; empty if there is none.
 std::string first_link_level(const scene::Scene& scene, const std::string& field);
 /// Returns the field of the first visible isosurface; empty if there is none.
 std::string visible_surface_field(const scene::Scene& scene);

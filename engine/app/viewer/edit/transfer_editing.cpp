@@ -28,10 +28,10 @@ std::optional<double> between(const double* below, const double* above, const Pl
   // in the coordinates of the plot's scale
   const auto place = [&](double v) { return symlog(v, frame.linear_below); };
   const double lo = place(frame.lo), hi = place(frame.hi), gap = kGap * (hi - lo);
-  const double least = below ? place(*below) + gap : lo, most = above ? place(*above) - gap : hi;
-  double to = std::clamp(place(value), least, std::max(least, most));
+  const double minimum = below ? place(*below) + gap : lo, maximum = above ? place(*above) - gap : hi;
+  double to = std::clamp(place(value), minimum, std::max(minimum, maximum));
   // no space: the only neighbor lies beyond the plot, or two neighbors are too close
-  if (!(least <= most)) to = !above ? least : !below ? most : 0.5 * place(*below) + 0.5 * place(*above);
+  if (!(minimum <= maximum)) to = !above ? minimum : !below ? maximum : 0.5 * place(*below) + 0.5 * place(*above);
   if (to != place(value)) value = symlog_inverse(to, frame.linear_below);
   if ((below && !(*below < value)) || (above && !(value < *above)) || !std::isfinite(value)) return std::nullopt;
   return value;
@@ -84,9 +84,9 @@ auto around(const Points& points, double value, double linear_below) {
 
 }  // namespace
 
-std::optional<std::size_t> find_point(const OpacityPoints& points, const PlotTransform& frame, double x, double y, double reach) {
+std::optional<std::size_t> find_point(const OpacityPoints& points, const PlotTransform& frame, double x, double y, double max_distance_px) {
   std::optional<std::size_t> found;
-  double nearest = reach;
+  double nearest = max_distance_px;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double distance = std::hypot(frame.to_x(points[i].value) - x, frame.to_y(points[i].alpha) - y);
     if (distance <= nearest) nearest = distance, found = i;
@@ -94,9 +94,9 @@ std::optional<std::size_t> find_point(const OpacityPoints& points, const PlotTra
   return found;
 }
 
-std::optional<std::size_t> find_point(const ColorPoints& points, const PlotTransform& frame, double x, double reach) {
+std::optional<std::size_t> find_point(const ColorPoints& points, const PlotTransform& frame, double x, double max_distance_px) {
   std::optional<std::size_t> found;
-  double nearest = reach;
+  double nearest = max_distance_px;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double distance = std::fabs(frame.to_x(points[i].value) - x);
     if (distance <= nearest) nearest = distance, found = i;
@@ -142,14 +142,14 @@ Color evaluate_color(const ColorPoints& points, double value, double linear_belo
 }
 
 std::optional<std::array<double, 2>> value_range(const ColorPoints& colors, const OpacityPoints& opacities) {
-  std::optional<std::array<double, 2>> reach;
+  std::optional<std::array<double, 2>> bounds;
   const auto take = [&](double value) {
-    if (!reach) reach = {value, value};
-    reach = {std::min((*reach)[0], value), std::max((*reach)[1], value)};
+    if (!bounds) bounds = {value, value};
+    bounds = {std::min((*bounds)[0], value), std::max((*bounds)[1], value)};
   };
   for (const auto& p : colors) take(p.value);
   for (const auto& p : opacities) take(p.value);
-  return reach;
+  return bounds;
 }
 
 bool fit_to_range(ColorPoints& colors, OpacityPoints& opacities, double lo, double hi, double linear_below) {
@@ -233,8 +233,8 @@ std::optional<TransferEdit> make_transfer_edit(const scene::Volume& volume, doub
 
 std::array<double, 2> plottable_range(const TransferEdit& edit, double lo, double hi) {
   if (edit.mapping.kind != scene::ValueMapping::Kind::log || lo > 0) return make_plot_range(lo, hi);
-  const auto reach = *value_range(edit.colors, edit.opacities);
-  return make_plot_range(reach[0], std::max(reach[1], hi));
+  const auto bounds = *value_range(edit.colors, edit.opacities);
+  return make_plot_range(bounds[0], std::max(bounds[1], hi));
 }
 
 TextEdits make_opacity_edits(const scene::Volume& volume, TransferEdit edit) {
@@ -266,8 +266,8 @@ TextEdits make_color_map_edits(const scene::Volume& volume, TransferEdit edit, c
 }
 
 TextEdits make_mapping_edits(const scene::Volume& volume, TransferEdit edit, const scene::ValueMapping& mapping) {
-  const auto reach = value_range(edit.colors, edit.opacities);
-  if (!reach || !scene::mapping_error(mapping, (*reach)[0], "range").empty()) return {};
+  const auto bounds = value_range(edit.colors, edit.opacities);
+  if (!bounds || !scene::mapping_error(mapping, (*bounds)[0], "range").empty()) return {};
   // a named map lies on the new scale between the same ends
   edit.has_range =
       edit.has_range || (!edit.color_map.empty() && scene::is_color_range(edit.colors.front().value, edit.colors.back().value));

@@ -15,17 +15,18 @@ namespace catena::app {
 using OpacityPoints = std::vector<scene::TransferFunction::OpacityPoint>;
 using ColorPoints = std::vector<scene::TransferFunction::ColorPoint>;
 
-/// Largest opacity of a point.
+/// Maximum opacity of a point.
 inline constexpr double kMaxAlpha = scene::TransferFunction::OpacityPoint::kMaxAlpha;
 
-/// Returns the nearest handle within `reach` pixels; of several at one position the last.
-std::optional<std::size_t> find_point(const OpacityPoints& points, const PlotTransform& frame, double x, double y, double reach);
-/// The same for color points, by x only.
-std::optional<std::size_t> find_point(const ColorPoints& points, const PlotTransform& frame, double x, double reach);
+/// Returns the index of the nearest opacity point within `max_distance_px` pixels; the last one if several have this position.
+std::optional<std::size_t> find_point(const OpacityPoints& points, const PlotTransform& frame, double x, double y, double max_distance_px);
+/// Returns the index of the color point with the nearest x within `max_distance_px` pixels.
+std::optional<std::size_t> find_point(const ColorPoints& points, const PlotTransform& frame, double x, double max_distance_px);
 
 /// Adds a point and returns its index; nothing if there is no space between its neighbors, or the value is not finite.
 std::optional<std::size_t> add_point(OpacityPoints& points, const PlotTransform& frame, double value, double alpha);
-/// The same for a color point, which gets the color shown at that value.
+/// Adds a color point with the color shown at that value, and returns its index; nothing if there is no space between its neighbors, or the
+/// value is not finite.
 std::optional<std::size_t> add_point(ColorPoints& points, const PlotTransform& frame, double value);
 
 /// Moves a point as close to the position as its neighbors allow. A point outside the plot stays outside until it is moved.

@@ -16,7 +16,7 @@ enum class Held : std::uint8_t { no, yes, any };
 struct KeyChord {
   int key = 0;  ///< GLFW key number, or kQuestionMark; 0: none
   Held control = Held::no, shift = Held::any;
-  bool told = true;  ///< shown in the list of keys
+  bool is_listed = true;  ///< shown in the list of keys
 };
 /// Matched by the character, not by a key: keyboard layouts place it differently.
 constexpr int kQuestionMark = '?';
@@ -26,17 +26,17 @@ struct CommandRow {
   const char* menu = nullptr;      ///< nullptr: in no menu; for an axis view, the axis in the format of render::axis_view
   KeyChord stroke{}, other{};      ///< either triggers the action
   const char* section = nullptr;   ///< section of the list of keys; nullptr: same line as the row above
-  const char* does = nullptr;      ///< description; nullptr: not in the list
+  const char* does = nullptr;      ///< description; nullptr: the row is not in the list
   const char* by = nullptr;        ///< input shown in the list if it is not a key
 };
 
-constexpr const char *kEye = "The eye", *kHand = "The hand", *kScene = "The scene", *kWindow = "The window";
+constexpr const char *kEye = "Camera", *kHand = "Probe", *kScene = "Scene", *kWindow = "Window";
 constexpr KeyChord kNoChord{};
 
 constexpr CommandRow by_pointer(const char* section, const char* by, const char* does) {
   return {.section = section, .does = does, .by = by};
 }
-constexpr KeyChord with_control(int key, Held shift = Held::any, bool told = true) { return {key, Held::yes, shift, told}; }
+constexpr KeyChord with_control(int key, Held shift = Held::any, bool is_listed = true) { return {key, Held::yes, shift, is_listed}; }
 constexpr KeyChord with_shift(int key) { return {key, Held::no, Held::yes}; }
 constexpr KeyChord alone(int key) { return {key, Held::no, Held::no}; }
 
@@ -47,55 +47,65 @@ constexpr CommandRow kCommandRows[] = {
     by_pointer(kEye, "wheel", "zoom"),
     {Action::view_along_plus_x, "+x", alone(GLFW_KEY_1), kNoChord, kEye, "look along +x"},
     {Action::view_along_plus_y, "+y", alone(GLFW_KEY_2), kNoChord, nullptr, "+y"},
-    {Action::view_along_plus_z, "+z", alone(GLFW_KEY_3), kNoChord, nullptr, "+z, at all that is drawn; with shift along -x, -y, -z"},
+    {Action::view_along_plus_z, "+z", alone(GLFW_KEY_3), kNoChord, nullptr, "+z at the whole scene; with shift along -x, -y, -z"},
     {Action::view_along_minus_x, "-x", with_shift(GLFW_KEY_1)},
     {Action::view_along_minus_y, "-y", with_shift(GLFW_KEY_2)},
     {Action::view_along_minus_z, "-z", with_shift(GLFW_KEY_3)},
-    {Action::fit_view, "Everything", {GLFW_KEY_A}, {GLFW_KEY_HOME}, kEye, "all that is drawn into the picture, from the same direction"},
+    {Action::fit_view,
+     "Show everything",
+     {GLFW_KEY_A},
+     {GLFW_KEY_HOME},
+     kEye,
+     "fit the whole scene into the image, from the same direction"},
     {Action::toggle_projection, "Orthographic", {GLFW_KEY_O}, kNoChord, kEye, "orthographic or perspective"},
-    {Action::reset_view, "First view", {GLFW_KEY_R}, kNoChord, kEye, "the first view again"},
-    {Action::toggle_turntable, "Turntable", {GLFW_KEY_T}, kNoChord, kEye, "turntable, until T or the mouse"},
+    {Action::reset_view, "First view", {GLFW_KEY_R}, kNoChord, kEye, "return to the first view"},
+    {Action::toggle_turntable, "Turntable", {GLFW_KEY_T}, kNoChord, kEye, "start the turntable; T or the mouse stops it"},
     {Action::toggle_fly,
      "Fly",
      {GLFW_KEY_V},
      kNoChord,
      kEye,
-     "fly: W S A D or arrows, E up, Q down, shift faster, left drag looks about, wheel: pace; V or Esc ends it"},
+     "fly: W S A D or arrows, E up, Q down, shift faster, left drag turns, wheel: speed; V or Esc ends flying"},
 
-    by_pointer(kHand, "right drag, control", "move the hand in the picture's plane (wheel: depth)"),
+    by_pointer(kHand, "right drag, control", "move the probe in the image plane (wheel: depth)"),
     {Action::toggle_probe_mode,
-     "The mouse is the hand",
+     "Probe mode",
      {GLFW_KEY_H},
      kNoChord,
      kHand,
-     "the mouse is the hand, on what is under the pointer; the wheel pushes, the left button is its button 1"},
-    by_pointer(kHand, "space", "the hand's button 1"),
-    {Action::toggle_forces, "Forces", {GLFW_KEY_F}, kNoChord, kHand, "a haptic device's forces on and off (off at first)"},
+     "probe mode: the mouse moves the probe on the object under the pointer; wheel: depth, left button: button 1"},
+    by_pointer(kHand, "space", "button 1 of the probe"),
+    {Action::toggle_forces, "Forces", {GLFW_KEY_F}, kNoChord, kHand, "forces of a haptic device on or off (initially off)"},
     {Action::register_device,
      "Register in the room",
      {GLFW_KEY_G},
      kNoChord,
      kHand,
-     "with a headset: touch three places, which says where a haptic device stands; again: not now"},
-    by_pointer(kHand, "device button 1", "takes hold of widgets, selects; what the scene's \"active_when\" says"),
+     "with a headset: register a haptic device in the room by touching three points; again: cancel"},
+    by_pointer(kHand, "device button 1", "grab widgets, select, or as stated by \"active_when\" in the scene"),
 
-    {Action::open, "Open...", with_control(GLFW_KEY_O), kNoChord, kScene, "open; a file can be dropped on the window as well"},
-    {Action::save, "Save", with_control(GLFW_KEY_S, Held::no), kNoChord, kScene, "save (with the view, if it was moved)"},
+    {Action::open, "Open...", with_control(GLFW_KEY_O), kNoChord, kScene, "open a file; a file can also be dropped on the window"},
+    {Action::save, "Save", with_control(GLFW_KEY_S, Held::no), kNoChord, kScene, "save, including a changed view"},
     {Action::save_as, "Save as...", with_control(GLFW_KEY_S, Held::yes), kNoChord, nullptr, "save as"},
     {Action::undo, "Undo", with_control(GLFW_KEY_Z, Held::no), kNoChord, kScene, "undo"},
     {Action::redo, "Redo", with_control(GLFW_KEY_Y), with_control(GLFW_KEY_Z, Held::yes, false), nullptr, "redo"},
-    {Action::play_time_steps, nullptr, {GLFW_KEY_K}, kNoChord, kScene, "play the steps in time, or stop"},
-    {Action::previous_time_step, nullptr, {GLFW_KEY_COMMA}, kNoChord, kScene, "the step before"},
-    {Action::next_time_step, nullptr, {GLFW_KEY_PERIOD}, kNoChord, nullptr, "and after"},
-    {Action::toggle_band_animation, nullptr, {GLFW_KEY_P}, kNoChord, kScene, "the pulses along streamlines stand or run"},
+    {Action::play_time_steps, nullptr, {GLFW_KEY_K}, kNoChord, kScene, "play or stop the time steps"},
+    {Action::previous_time_step, nullptr, {GLFW_KEY_COMMA}, kNoChord, kScene, "previous time step"},
+    {Action::next_time_step, nullptr, {GLFW_KEY_PERIOD}, kNoChord, nullptr, "next time step"},
+    {Action::toggle_band_animation, nullptr, {GLFW_KEY_P}, kNoChord, kScene, "start or stop the moving bands along streamlines"},
 
-    {Action::toggle_panels, "Panels", {GLFW_KEY_TAB, Held::any}, kNoChord, kWindow, "panels"},
-    {Action::next_stereo_mode, nullptr, {GLFW_KEY_F2}, kNoChord, kWindow, "the next stereo mode"},
-    {Action::toggle_fullscreen, "Full screen", {GLFW_KEY_F11, Held::any}, kNoChord, kWindow, "full screen"},
-    {Action::save_image, "Picture as PNG", {GLFW_KEY_F12, Held::any, Held::no}, kNoChord, kWindow, "write the picture"},
-    {Action::save_window_image, "Window as PNG", {GLFW_KEY_F12, Held::any, Held::yes}, kNoChord, nullptr, "the window, as SCENE-001.png"},
-    {Action::toggle_help, "Keys and buttons", {GLFW_KEY_F1}, {kQuestionMark}, kWindow, "these keys"},
-    {Action::dismiss, nullptr, {GLFW_KEY_ESCAPE}, kNoChord, kWindow, "closes or cancels what is open, ends flying, hand mode, full screen"},
+    {Action::toggle_panels, "Panels", {GLFW_KEY_TAB, Held::any}, kNoChord, kWindow, "show or hide the panels"},
+    {Action::next_stereo_mode, nullptr, {GLFW_KEY_F2}, kNoChord, kWindow, "next stereo mode"},
+    {Action::toggle_fullscreen, "Full screen", {GLFW_KEY_F11, Held::any}, kNoChord, kWindow, "full screen on or off"},
+    {Action::save_image, "Save image as PNG", {GLFW_KEY_F12, Held::any, Held::no}, kNoChord, kWindow, "save the image"},
+    {Action::save_window_image,
+     "Save window as PNG",
+     {GLFW_KEY_F12, Held::any, Held::yes},
+     kNoChord,
+     nullptr,
+     "save the window, as SCENE-001.png"},
+    {Action::toggle_help, "Keys and buttons", {GLFW_KEY_F1}, {kQuestionMark}, kWindow, "show this list"},
+    {Action::dismiss, nullptr, {GLFW_KEY_ESCAPE}, kNoChord, kWindow, "close or cancel an open dialog; end flying, probe mode, full screen"},
     {Action::quit, "Quit", with_control(GLFW_KEY_Q), kNoChord, kWindow, "quit"},
 };
 
@@ -146,7 +156,7 @@ std::string stroke_words(const KeyChord& stroke) {
 
 std::string listed_keys(const CommandRow& row) {
   if (row.by != nullptr) return row.by;
-  return stroke_words(row.stroke) + (row.other.key != 0 && row.other.told ? ", " + stroke_words(row.other) : "");
+  return stroke_words(row.stroke) + (row.other.key != 0 && row.other.is_listed ? ", " + stroke_words(row.other) : "");
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ struct SaveAs {
 struct CancelSave {};
 /// Choices of the dialog "Before this scene is left".
 enum class UnsavedChangesChoice : std::uint8_t { save, discard, cancel };
-/// Choices of the dialog "The file is not as it was read".
+/// Choices of the dialog "The file has changed on disk".
 enum class FileConflictChoice : std::uint8_t { overwrite, take_disk_version, save_as, cancel };
 /// Choices of the dialog "Unsaved changes of an earlier run".
 enum class RecoveryChoice : std::uint8_t { restore, discard, later };

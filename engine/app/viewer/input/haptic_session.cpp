@@ -26,10 +26,10 @@ std::vector<std::string> names_of(const haptics::HapticProgram& program) {
 }
 
 /// The last proxy that is held away from the probe; std::nullopt if there is none.
-std::optional<Vec3> held_place(const HapticState& felt) {
+std::optional<Vec3> held_place(const HapticState& haptic_state) {
   std::optional<Vec3> place;
-  for (int i = 0; i < felt.link_count; ++i) {
-    const LinkReport& link = felt.links[static_cast<std::size_t>(i)];
+  for (int i = 0; i < haptic_state.link_count; ++i) {
+    const LinkReport& link = haptic_state.links[static_cast<std::size_t>(i)];
     if (link.active && link.gap > 0) place = link.proxy;
   }
   return place;
@@ -90,7 +90,7 @@ Outcome HapticSession::open_device(const scene::Scene& scene) {
     const std::string why = opened.error().message;
     name = "mouse";
     opened = open(scene, name);
-    opened->note = why + "; the mouse holds the probe";
+    opened->note = why + "; the mouse moves the probe";
   }
   device_ = std::move(*opened);
   device_name_ = name;

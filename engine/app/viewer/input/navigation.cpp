@@ -76,13 +76,13 @@ void look_along(Navigation& controls, std::string_view axis, double aspect) {
 }  // namespace
 
 Vec3 compliant_motion(const Vec3& motion, const Vec3& force_n, double max_force_n) {
-  constexpr double kLeast = 0.25;
+  constexpr double kMinimum = 0.25;
   const double force = norm(force_n);
   if (!(max_force_n > 0) || !(force > 0)) return motion;
   const Vec3 away = 1 / force * force_n;
   const double along = dot(motion, away);
   if (along >= 0) return motion;
-  return motion - (1 - kLeast) * std::min(1.0, force / max_force_n) * along * away;
+  return motion - (1 - kMinimum) * std::min(1.0, force / max_force_n) * along * away;
 }
 
 void orbit(render::View& view, double yaw, double pitch) {

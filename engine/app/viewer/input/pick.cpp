@@ -55,7 +55,7 @@ double extinction_at(const render::TransferTable& table, double value) {
   return render::interpolate_piecewise(table.extinctions, value, 1);
 }
 
-std::optional<PickHit> pick_volume(const render::FramePacket& packet, const render::Ray& ray, double farthest) {
+std::optional<PickHit> pick_volume(const render::FramePacket& packet, const render::Ray& ray, double max_depth) {
   std::vector<Marched> marched;
   RaySpan all{kInfinity, -kInfinity};
   double edge = kInfinity;
@@ -63,7 +63,7 @@ std::optional<PickHit> pick_volume(const render::FramePacket& packet, const rend
     RaySpan span = domain_span(*item.grid, ray);
     if (item.is_clipped)
       for (const Plane& plane : packet.clip_planes) clip_to_plane(span, ray, plane);
-    span.exit = std::min(span.exit, farthest);
+    span.exit = std::min(span.exit, max_depth);
     if (span.is_empty()) continue;
     marched.push_back({&item, span});
     all = {std::min(all.enter, span.enter), std::max(all.exit, span.exit)};
@@ -77,24 +77,25 @@ std::optional<PickHit> pick_volume(const render::FramePacket& packet, const rend
     if (is_extreme(m.item->projection))
       if (const auto place = pick_extreme(*m.item, ray, m.span, step)) return place;
 
-  const double wanted = -std::log(1 - kHalfOpaque);
+  const double target_depth = -std::log(1 - kHalfOpaque);
   double depth = 0, best = 0, best_at = 0;
   std::uint32_t best_id = 0;
   std::vector<double> before(marched.size(), 0);
   for (double t = all.enter; t < all.exit; t += step) {
     const double length = std::min(step, all.exit - t), middle = t + 0.5 * length;
-    double sum = 0, most = 0;
+    double sum = 0, max_contribution = 0;
     std::uint32_t id = 0;
     for (Marched& m : marched) {
       if (is_extreme(m.item->projection)) continue;
       const double sigma = m.sigma(ray, middle);
       sum += sigma;
-      if (sigma > most) {
-        most = sigma;
+      if (sigma > max_contribution) {
+        max_contribution = sigma;
         id = m.item->id;
       }
     }
-    if (depth + sum * length >= wanted) return PickHit{ray.origin + (t + (wanted - depth) / sum) * ray.direction, id, true, kHalfOpaque};
+    if (depth + sum * length >= target_depth)
+      return PickHit{ray.origin + (t + (target_depth - depth) / sum) * ray.direction, id, true, kHalfOpaque};
     const double contribution = std::exp(-depth) * (1 - std::exp(-sum * length)) / length;
     if (contribution > best) {
       best = contribution;

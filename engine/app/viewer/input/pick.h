@@ -26,16 +26,16 @@ struct PickHit {
 /// Returns the extinction per world unit at a value: linear between the table's points, constant beyond them.
 double extinction_at(const render::TransferTable& table, double value);
 
-/// Picks in the volumes, along the ray from the camera to `farthest` (world units, may be infinite).
-std::optional<PickHit> pick_volume(const render::FramePacket& packet, const render::Ray& ray, double farthest);
+/// Picks in the volumes, along the ray from the camera to `max_depth` (world units, may be infinite).
+std::optional<PickHit> pick_volume(const render::FramePacket& packet, const render::Ray& ray, double max_depth);
 
 /// Picks at `x, y`, in pixels of the packet. `depth`, `id`: of the nearest opaque object there (Renderer::pick); infinite depth: none.
 std::optional<PickHit> pick(const render::FramePacket& packet, double x, double y, double depth, std::uint32_t id);
 
-/// Returns the nearest solid object on the ray up to `farthest`: isosurfaces, slices, meshes, tubes, glyphs and spheres, opaque or not,
+/// Returns the nearest solid object on the ray up to `max_depth`: isosurfaces, slices, meshes, tubes, glyphs and spheres, opaque or not,
 /// where the clip planes keep them. Excludes probe, overlays and widgets: it is what the probe can be placed on. Isosurfaces: the first
 /// sign change in steps of half a voxel, refined by bisection; a tube: where the ray enters its cylinder.
-std::optional<PickHit> pick_solid(const render::FramePacket& packet, const render::Ray& ray, double farthest);
+std::optional<PickHit> pick_solid(const render::FramePacket& packet, const render::Ray& ray, double max_depth);
 
 /// Picks at `x, y` on the processor, without a rendered image, ignoring the probe: otherwise as pick(). With several eyes, from the point
 /// between them.

@@ -40,13 +40,13 @@ std::optional<Vec3> SmoothedHead::update(double t_s, const std::optional<Vec3>& 
 }
 
 Result<std::unique_ptr<TrackedHead>> TrackedHead::open(const std::string& words, const scene::Scene& scene) {
-  if (!scene.stereo.screen_index) return Error{"--head " + words + ": expected --screen, before which the head is"};
+  if (!scene.stereo.screen_index) return Error{"--head " + words + ": a display screen was expected (--screen)"};
   const scene::DisplayScreen& screen = scene.stereo.screens[*scene.stereo.screen_index];
   std::unique_ptr<TrackedHead> self(new TrackedHead(screen));
   const std::string type = haptics::parse_device_type(words);
   if (type != "recorded" && haptics::is_device_type(type)) {
     if (!scene.workspace.is_explicit)
-      return Error{"--head " + words + ": where a device's metres are in the world is not said; the scene's \"workspace\" was expected"};
+      return Error{"--head " + words + ": device metres are not mapped to the world; the scene's \"workspace\" was expected"};
     CATENA_TRY(self->device_, open_haptic_device(scene, words));
     auto program = std::make_shared<haptics::HapticProgram>();
     program->meters_per_unit = scene.workspace.meters_per_unit;
@@ -62,7 +62,7 @@ Result<std::unique_ptr<TrackedHead>> TrackedHead::open(const std::string& words,
   }
   CATENA_TRY(self->path_, read_head_path(type == "recorded" ? words.substr(words.find(':') + 1) : words));
   if (const Outcome seen = before_screen(screen, *self->tracked_position(0)); !seen)
-    return Error{fmt::format("--head {}: its first place: screen \"{}\": {}", words, screen.name, seen.error().message)};
+    return Error{fmt::format("--head {}: first position: screen \"{}\": {}", words, screen.name, seen.error().message)};
   return self;
 }
 
@@ -84,8 +84,8 @@ std::optional<Vec3> TrackedHead::tracked_position(double t_s) {
 }
 
 bool TrackedHead::take_lost() {
-  const bool told = std::exchange(loss_reported_, smoothed_.is_lost());
-  return loss_reported_ && !told;
+  const bool was_reported = std::exchange(loss_reported_, smoothed_.is_lost());
+  return loss_reported_ && !was_reported;
 }
 
 }  // namespace catena::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Panel of the chain: the links in their order, the status of each, and its keys.
+// Panel of the chain: the links in their order, with the status and the keys of each link.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -24,40 +24,40 @@ ImVec4 color_of(LinkStatus status, bool active) {
   return {1, 0.7f, 0.35f, 1};
 }
 
-/// Plain text of a status, and its explanation for the tooltip.
+/// Short text of a status, and its explanation for the tooltip.
 struct StatusWords {
   const char *plain, *meaning;
 };
 StatusWords words_of(LinkStatus status) {
   switch (status) {
     case LinkStatus::ok:
-      return {"holds", "the link holds the hand, or is ready to"};
+      return {"holds", "the constraint holds"};
     case LinkStatus::free:
-      return {"free", "the hand moves freely here, or the link is switched off"};
+      return {"free", "the probe is not in contact, or the link is inactive"};
     case LinkStatus::released:
-      return {"let go", "it has let go, or has not taken hold yet"};
+      return {"released", "the probe has left the feature, or has not snapped to it yet"};
     case LinkStatus::budget:
-      return {"searching", "the best place that one tick could find; it goes on in the next"};
+      return {"searching", "the proxy is the best position found in one tick; the search continues in the next tick"};
     case LinkStatus::critical:
-      return {"no direction", "held at a critical point, or where the field says nothing"};
+      return {"undefined", "the proxy is at a critical point, or at a point where the constraint is undefined"};
     case LinkStatus::boundary:
-      return {"at the end", "held at the end of the domain"};
+      return {"at the boundary", "the proxy is at the boundary of the domain"};
     case LinkStatus::no_surface:
-      return {"out of reach", "nothing to hold within reach"};
+      return {"out of reach", "no surface or line was found near the probe"};
     case LinkStatus::bad_probe:
-      return {"no place", "the probe is not finite"};
+      return {"bad probe", "the position of the probe is not finite"};
   }
   return {"", ""};
 }
 
-void draw_live(const LinkReport& link, const std::string& name, double most_n, const std::string& unit_length) {
+void draw_live(const LinkReport& link, const std::string& name, double max_n, const std::string& unit_length) {
   const double share = norm(link.force_n);
-  ImGui::ProgressBar(static_cast<float>(most_n > 0 ? share / most_n : 0), {-1, 0.8f * ImGui::GetFrameHeight()},
+  ImGui::ProgressBar(static_cast<float>(max_n > 0 ? share / max_n : 0), {-1, 0.8f * ImGui::GetFrameHeight()},
                      fmt::format("{:.2f} N", share).c_str());
-  show_tooltip(name + ": its share of the force, of the most that the coupling allows");
-  ImGui::TextDisabled("%.3g%s from the hand", link.gap, unit_length.empty() ? "" : (" " + unit_length).c_str());
+  show_tooltip("force of the link " + name + ", as a fraction of the coupling's maximum force");
+  ImGui::TextDisabled("gap %.3g%s", link.gap, unit_length.empty() ? "" : (" " + unit_length).c_str());
   show_tooltip(
-      fmt::format("the gap: from the link's proxy to its probe, the proxy before it. The proxy is off its constraint by {:.2g}; weight "
+      fmt::format("distance from the link's proxy to the preceding proxy, or to the probe for the first link; residual {:.2g}, weight "
                   "{:.2f}, stiffness {:.0f} N/m, {} field evaluations in the last tick",
                   link.residual, link.weight, link.stiffness_n_per_m, static_cast<int>(link.evaluations)));
 }
@@ -69,8 +69,8 @@ double length_of(const PanelContext& context) {
 }
 
 Vec3 probe_of(const PanelContext& context) {
-  const HapticState& felt = context.haptic_session.latest_state();
-  return felt.tick > 0 && is_finite(felt.probe) ? felt.probe : context.haptic_session.initial_probe();
+  const HapticState& haptic_state = context.haptic_session.latest_state();
+  return haptic_state.tick > 0 && is_finite(haptic_state.probe) ? haptic_state.probe : context.haptic_session.initial_probe();
 }
 
 void draw_name_choice(PanelContext& context, const ChainRow& row, const schema::Key& key, const std::vector<std::string>& words,
@@ -115,7 +115,7 @@ void draw_stated(PanelContext& context, const ChainRow& row, const schema::Key& 
   } else if (key.role == Role::points && word) {
     draw_name_choice(context, row, key, list_point_set_names(context.scene.scene()), value.string);
   } else {
-    ImGui::TextDisabled("%s: in the text", key.name.c_str());
+    ImGui::TextDisabled("%s: edit in the file", key.name.c_str());
   }
 }
 
@@ -133,14 +133,14 @@ void draw_keys(PanelContext& context, const ChainRow& row) {
     if (key.is_required) continue;
     ImGui::SameLine();
     if (ImGui::SmallButton(("x##" + key.name).c_str())) context.edits.remove(row.pointer(key.name), "remove " + key.name);
-    show_tooltip("the default again");
+    show_tooltip("reset to the default");
   }
   if (absent.empty() || !ImGui::BeginCombo("##key", "add a key", ImGuiComboFlags_HeightLarge)) return;
   for (const schema::Key& key : absent) {
     if (ImGui::Selectable(key.name.c_str())) {
       const auto edits = make_add_key_edits(context.scene.scene(), row, key, probe_of(context), length);
       if (edits.empty())
-        context.state.show_message("\"" + key.name + "\" has no value to begin with here; write it into the scene's text", true);
+        context.state.show_message("\"" + key.name + "\" has no initial value in this scene; write the key into the scene file", true);
       else
         context.edits.set(edits, key.name);
     }
@@ -155,9 +155,9 @@ struct Move {
   int by;  ///< -1 or 1: move up or down; 0: remove
 };
 
-std::optional<Move> draw_row(PanelContext& context, const ChainRow& row, std::size_t count, double most_n) {
+std::optional<Move> draw_row(PanelContext& context, const ChainRow& row, std::size_t count, double max_n) {
   std::optional<Move> move;
-  const HapticState& felt = context.haptic_session.latest_state();
+  const HapticState& haptic_state = context.haptic_session.latest_state();
   ImGui::PushID(row.name.c_str());
   bool enabled = row.enabled;
   if (ImGui::Checkbox("##on", &enabled)) {
@@ -166,13 +166,13 @@ std::optional<Move> draw_row(PanelContext& context, const ChainRow& row, std::si
     else
       context.edits.set(row.pointer("enabled"), "false", row.name + " off");
   }
-  show_tooltip("off for a try: the others go on as they are");
+  show_tooltip("switches the link on or off; the other links are not changed");
   ImGui::SameLine();
   const bool open = ImGui::TreeNodeEx("##keys", ImGuiTreeNodeFlags_SpanAvailWidth, "%s", row.name.c_str());
-  show_tooltip(row.name + ", " + row.type + ": opens its keys");
+  show_tooltip("keys of the link " + row.name + " of type " + row.type);
   for (const std::size_t link : row.links) {
-    if (link >= static_cast<std::size_t>(felt.link_count)) continue;
-    const LinkReport& report = felt.links[link];
+    if (link >= static_cast<std::size_t>(haptic_state.link_count)) continue;
+    const LinkReport& report = haptic_state.links[link];
     const StatusWords words = words_of(report.status);
     const char* word = row.enabled ? words.plain : "off";
     if (row.links.size() == 1) {
@@ -183,15 +183,15 @@ std::optional<Move> draw_row(PanelContext& context, const ChainRow& row, std::si
     }
     ImGui::TextColored(row.enabled ? color_of(report.status, report.active) : ImVec4(0.6f, 0.6f, 0.6f, 1), "%s", word);
     show_tooltip(row.enabled ? std::string(words.meaning) + " (" + to_string(report.status) + ")"
-                             : "switched off by the box before its name");
-    draw_live(report, context.haptic_session.link_names()[link], most_n, context.state.unit_length);
+                             : "the link is switched off by the checkbox beside its name");
+    draw_live(report, context.haptic_session.link_names()[link], max_n, context.state.unit_length);
   }
   if (open) {
     if (ImGui::ArrowButton("##up", ImGuiDir_Up) && row.index > 0) move = Move{row.index, -1};
-    show_tooltip("earlier in the chain");
+    show_tooltip("move the link up in the chain");
     ImGui::SameLine();
     if (ImGui::ArrowButton("##down", ImGuiDir_Down) && row.index + 1 < count) move = Move{row.index, 1};
-    show_tooltip("later in the chain");
+    show_tooltip("move the link down in the chain");
     ImGui::SameLine();
     if (ImGui::Button("Remove")) move = Move{row.index, 0};
     ImGui::SameLine();
@@ -204,16 +204,16 @@ std::optional<Move> draw_row(PanelContext& context, const ChainRow& row, std::si
   return move;
 }
 
-void draw_sum(const PanelContext& context, double most_n) {
-  const HapticState& felt = context.haptic_session.latest_state();
+void draw_sum(const PanelContext& context, double max_n) {
+  const HapticState& haptic_state = context.haptic_session.latest_state();
   Vec3 sum(0.0);
-  for (int i = 0; i < felt.link_count; ++i) sum += felt.links[static_cast<std::size_t>(i)].force_n;
-  ImGui::Text("Force %.2f N, of the links %.2f N", norm(felt.force_n), norm(sum));
+  for (int i = 0; i < haptic_state.link_count; ++i) sum += haptic_state.links[static_cast<std::size_t>(i)].force_n;
+  ImGui::Text("Force %.2f N, links %.2f N", norm(haptic_state.force_n), norm(sum));
   show_tooltip(
-      fmt::format("what the hand gets after damping, fading and all limits, at most {:g} N; and the sum of the links' shares", most_n));
-  if (felt.force_state == ForceState::on) return;
+      fmt::format("force on the hand after damping, ramp and limits, at most {:g} N; sum of the forces of the links before them", max_n));
+  if (haptic_state.force_state == ForceState::on) return;
   ImGui::SameLine();
-  ImGui::TextDisabled("%s", to_string(felt.force_state));
+  ImGui::TextDisabled("%s", to_string(haptic_state.force_state));
 }
 
 void draw_add(PanelContext& context) {
@@ -233,23 +233,23 @@ void draw_coupling(PanelContext& context) {
   const scene::Coupling c = context.scene.scene().coupling;
   ImGui::TextUnformatted("Coupling");
   edit_number(context.edits, {"stiffness", "/coupling/stiffness", c.stiffness_n_per_m, 0, 5000, 2, "%.4g N/m"});
-  show_tooltip("of links that do not say; a device may allow less");
+  show_tooltip("stiffness of links that do not state one; the device may limit it");
   edit_number(context.edits, {"damping", "/coupling/damping", c.damping_ns_per_m, 0, 100, 0.02, "%.3g N s/m"});
   edit_number(context.edits, {"maximum force", "/coupling/max_force", c.max_force_n, 0, 40, 0.02, "%.3g N"});
 }
 
 void draw_chain(PanelContext& context) {
-  const double most_n = context.scene.scene().coupling.max_force_n;
+  const double max_n = context.scene.scene().coupling.max_force_n;
   const std::vector<ChainRow> rows = make_chain_rows(context.scene.scene(), context.haptic_session.link_names());
   if (rows.empty()) {
-    ImGui::TextWrapped("Nothing is felt yet: click Feel beside a surface, or point at it in the picture and press H.");
+    ImGui::TextWrapped("The chain is empty: click Feel beside an object, or point at the object in the image and press H.");
   } else {
-    draw_sum(context, most_n);
+    draw_sum(context, max_n);
   }
   ImGui::Separator();
   std::optional<Move> move;
   for (const ChainRow& row : rows)
-    if (const auto asked = draw_row(context, row, rows.size(), most_n)) move = asked;
+    if (const auto asked = draw_row(context, row, rows.size(), max_n)) move = asked;
   draw_add(context);
   draw_coupling(context);
   if (!move) return;

@@ -50,12 +50,13 @@ std::optional<scene::ValueMapping> choose_mapping(const scene::ValueMapping& now
   ImGui::SetNextItemWidth(78);
   if (ImGui::Combo("mapping", &kind, "linear\0log\0symlog\0") && kind != static_cast<int>(now.kind))
     chosen = {static_cast<scene::ValueMapping::Kind>(kind), 0};
-  show_short_tooltip("the scale between the points: by the logarithm, or by it away from 0 on both sides");
+  show_short_tooltip("scale between the points: linear, logarithmic, or symmetric logarithmic with a linear part around 0");
   if (now.kind != scene::ValueMapping::Kind::symlog) return chosen;
   ImGui::SameLine();
   ImGui::SetNextItemWidth(78);
   double size = now.linear_below > 0 ? now.linear_below : linear_below;
-  if (input_number("linear below", size, "up to this size values are linear; Enter") && size > 0) chosen = {now.kind, size};
+  if (input_number("linear below", size, "absolute value up to which the scale is linear; Enter applies") && size > 0)
+    chosen = {now.kind, size};
   return chosen;
 }
 
@@ -67,7 +68,7 @@ void edit_color_scale(Edits& edits, const json::Node& item, const scene::ColorBy
   const bool file = by.where.find("transfer") != nullptr;
   ImGui::PushID("scale");
   if (const auto map = choose_color_map(table.empty() && named.map.empty() ? std::string(scene::kDefaultLineColorMap) : named.map,
-                                        file ? "of a file" : "a table")) {
+                                        file ? "from a file" : "custom")) {
     TextEdits change{{pointer + "/color", scene::to_json(*map)}};
     if (file) change.insert(change.begin(), {{pointer + "/transfer", std::nullopt}, {pointer + "/range", std::nullopt}});
     edits.set(change, "colours");
@@ -77,14 +78,14 @@ void edit_color_scale(Edits& edits, const json::Node& item, const scene::ColorBy
     if (named.range) {
       std::array<double, 2> range = *named.range;
       ImGui::SetNextItemWidth(0.32f * ImGui::GetContentRegionAvail().x);
-      bool typed = input_number("##from", range[0], "value at the first colour");
+      bool typed = input_number("##from", range[0], "value of the first colour; Enter applies");
       ImGui::SameLine();
       ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
-      typed = input_number("range", range[1], "value at the last colour") || typed;
+      typed = input_number("range", range[1], "value of the last colour; Enter applies") || typed;
       if (typed) edits.set(pointer + "/range", scene::to_json(range), "range");
       ImGui::SameLine();
       if (ImGui::Checkbox("##own", &own)) edits.remove(pointer + "/range", "range");
-      show_short_tooltip("off: the range of the values");
+      show_short_tooltip("off: the range of the field's values");
     } else if (ImGui::Checkbox("own range", &own)) {
       edits.set(pointer + "/range", "[0, 1]", "range");
     }
@@ -135,12 +136,12 @@ void edit_colors(Edits& edits, const scene::Scene& scene, const json::Node& item
     edit_color(edits, "colour", color, pointer + "/color");
 }
 
-void edit_auto_length(Edits& edits, const char* key, const json::Node& item, double value, double most, const char* hint) {
+void edit_auto_length(Edits& edits, const char* key, const json::Node& item, double value, double max_value, const char* hint) {
   const std::string pointer = item_pointer(item) + "/" + key;
   auto now = static_cast<float>(value);
-  if (ImGui::SliderFloat(key, &now, 0, static_cast<float>(most), value > 0 ? "%.4g" : "fitted",
+  if (ImGui::SliderFloat(key, &now, 0, static_cast<float>(max_value), value > 0 ? "%.4g" : "automatic",
                          ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat | ImGuiSliderFlags_Logarithmic)) {
-    const double to = round_within(now, 0, most);
+    const double to = round_within(now, 0, max_value);
     if (to > 0)
       edits.drag(pointer, scene::to_json(to), key);
     else if (item.find(key) != nullptr)
@@ -190,7 +191,7 @@ bool histogram_slider(PanelContext& context, const char* id, const SortedSamples
   const auto x = static_cast<float>(std::clamp(frame.to_x(value), frame.left, frame.right));
   list->AddLine({x, at.y}, {x, at.y + size.y}, ImGui::GetColorU32(ImVec4(0, 0, 0, 0.8f)), 5);
   list->AddLine({x, at.y}, {x, at.y + size.y}, to_imgui_color(color), 3);
-  if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) ImGui::SetTooltip("%.6g .. %.6g\nCtrl: finely", lo, hi);
+  if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) ImGui::SetTooltip("%.6g .. %.6g\nCtrl and drag: fine", lo, hi);
   return value != before;
 }
 

@@ -28,8 +28,8 @@ std::optional<std::string> choose_color_map(const std::string& now, const char* 
 /// nothing if unchanged.
 std::optional<scene::ValueMapping> choose_mapping(const scene::ValueMapping& now, double linear_below);
 
-/// Draws a slider for the length `key` of an item, from 0, which removes the key from the text, to `most`.
-void edit_auto_length(Edits& edits, const char* key, const json::Node& item, double value, double most, const char* hint);
+/// Draws a slider for the length `key` of an item, from 0, which removes the key from the text, to `max_value`.
+void edit_auto_length(Edits& edits, const char* key, const json::Node& item, double value, double max_value, const char* hint);
 
 /// Draws the histogram as bars.
 void draw_histogram_bars(const PlotTransform& frame, const SortedSamples& values, ImU32 color);

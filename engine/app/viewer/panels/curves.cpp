@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Panel of points from tables and curves from files: one color, colors by direction or by value; and their plain keys.
+// Panels of points from tables and of curves from files: one color, colors by direction or by value, and the simple keys.
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/color_widgets.h"
 #include "engine/scene/visibility.h"
@@ -17,7 +17,7 @@ void draw_curves(PanelContext& context) {
     bool directions = !curves.color;
     if (curves.color_by) {
       edit_color_scale(edits, curves.where, *curves.color_by);
-    } else if (ImGui::Checkbox("by direction", &directions)) {
+    } else if (ImGui::Checkbox("colour by direction", &directions)) {
       directions ? edits.remove(pointer, "colour") : edits.set(pointer, scene::to_json(Color{1.0f, 0.3f, 0.2f}), "colour");
     } else if (curves.color) {
       edit_color(edits, "colour", *curves.color, pointer);

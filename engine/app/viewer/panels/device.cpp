@@ -26,16 +26,16 @@ void draw_choice(PanelContext& context) {
     }
     ImGui::EndCombo();
   }
-  show_tooltip("what holds the probe; a click looks at what is plugged in. Its forces are off at first");
+  show_tooltip("device that moves the probe; opening the list scans for connected devices. Forces of a newly chosen device are off");
 }
 
 void draw_capabilities(const haptics::DeviceCapabilities& c) {
   ImGui::Text("%s", c.name.c_str());
   std::string text = fmt::format("{:.3g} cm, {} button{}", 100 * c.workspace_m, c.button_count, c.button_count == 1 ? "" : "s");
   text += c.max_force_n > 0 ? fmt::format(", {:.3g} N", c.max_force_n) : ", no force";
-  if (c.has_orientation) text += c.max_torque_nm > 0 ? fmt::format(", turns, {:.2g} N m", c.max_torque_nm) : ", turns";
+  if (c.has_orientation) text += c.max_torque_nm > 0 ? fmt::format(", 6-DOF, {:.2g} N m", c.max_torque_nm) : ", 6-DOF";
   ImGui::TextDisabled("%s", text.c_str());
-  show_tooltip("edge of the cube that the hand reaches, buttons, the maximum force");
+  show_tooltip("edge length of the workspace, number of buttons, maximum force; 6-DOF: the device reports its orientation");
 }
 
 void draw_buttons(std::uint32_t pressed, int count) {
@@ -55,7 +55,7 @@ void draw_buttons(std::uint32_t pressed, int count) {
 void draw_device(PanelContext& context) {
   HapticSession& hand = context.haptic_session;
   const haptics::DeviceCapabilities& c = hand.device().device->capabilities();
-  const HapticState& felt = hand.latest_state();
+  const HapticState& haptic_state = hand.latest_state();
   draw_choice(context);
   draw_capabilities(c);
   if (const std::string text = hand.device().device->status_text(); !text.empty()) ImGui::TextWrapped("%s", text.c_str());
@@ -64,29 +64,30 @@ void draw_device(PanelContext& context) {
   if (!hand.is_mouse() && c.max_force_n > 0) {
     bool on = hand.forces_enabled();
     if (ImGui::Checkbox("Forces (F)", &on)) context.push_command(Action::toggle_forces);
-    show_tooltip("the device may push; what a force does is felt at once");
+    show_tooltip("switches the forces of the device on or off; they act at once");
   }
   if (haptics::is_stationary(haptics::parse_device_type(hand.device_name()))) {
     if (ImGui::Button("Register in the room (G)")) context.push_command(Action::register_device);
-    show_tooltip(hand.room() ? "where it stands in the headset's room is known; touch three places again"
-                             : "with a headset: touch three places, which says where it stands");
+    show_tooltip(hand.room() ? "the device is registered in the headset's room; touch three points to register it anew"
+                             : "with a headset: touch three points to register the position of the device in the room");
   }
-  const Vec3 at = device_from_world(context.scene.scene().workspace, felt.probe);
-  ImGui::Text("At %.1f %.1f %.1f mm", 1e3 * at.x, 1e3 * at.y, 1e3 * at.z);
-  show_tooltip("the probe in the device's own axes");
-  ImGui::Text("Force %.2f N  (%.2f %.2f %.2f)", norm(felt.force_n), felt.force_n.x, felt.force_n.y, felt.force_n.z);
-  show_tooltip("on the hand now, world axes");
+  const Vec3 at = device_from_world(context.scene.scene().workspace, haptic_state.probe);
+  ImGui::Text("Probe %.1f %.1f %.1f mm", 1e3 * at.x, 1e3 * at.y, 1e3 * at.z);
+  show_tooltip("position of the probe in device coordinates");
+  ImGui::Text("Force %.2f N  (%.2f %.2f %.2f)", norm(haptic_state.force_n), haptic_state.force_n.x, haptic_state.force_n.y,
+              haptic_state.force_n.z);
+  show_tooltip("force on the hand: magnitude, and components in world axes");
   ImGui::SameLine();
-  ImGui::TextDisabled("%s", to_string(felt.force_state));
-  draw_buttons(felt.buttons, c.button_count);
+  ImGui::TextDisabled("%s", to_string(haptic_state.force_state));
+  draw_buttons(haptic_state.buttons, c.button_count);
 
   ImGui::Separator();
   const haptics::ServoStats servo = hand.servo().stats();
   ImGui::Text("%.0f Hz, %.0f us median", servo.rate_hz, servo.compute.p50_us);
-  show_tooltip("ticks a second; what one takes");
+  show_tooltip("ticks per second; median compute time of a tick");
   ImGui::Text("%llu deadlines missed, %llu watchdog trips", static_cast<unsigned long long>(servo.missed_deadlines),
               static_cast<unsigned long long>(servo.watchdog_trips));
-  if (felt.condition != TickCondition::normal) ImGui::TextColored({1, 0.7f, 0.35f, 1}, "%s", to_string(felt.condition));
+  if (haptic_state.condition != TickCondition::normal) ImGui::TextColored({1, 0.7f, 0.35f, 1}, "%s", to_string(haptic_state.condition));
   const haptics::RealtimeReport& r = servo.realtime;
   ImGui::TextDisabled("%s priority, memory %s, %s", r.fifo ? "fixed" : "normal", r.locked ? "locked" : "not locked",
                       r.cpu >= 0 ? fmt::format("core {}", r.cpu).c_str() : "any core");

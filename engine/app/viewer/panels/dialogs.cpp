@@ -36,9 +36,9 @@ void draw_help(ViewState& state) {
   ImGui::End();
 }
 
-/// Begins the modal of that title while `wanted`. True: the caller draws its content and calls EndPopup.
-bool begin_question(const char* title, bool wanted) {
-  if (wanted && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+/// Begins the modal of that title while `is_open`. True: the caller draws its content and calls EndPopup.
+bool begin_question(const char* title, bool is_open) {
+  if (is_open && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
   centre_next();
   return ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove);
 }
@@ -60,15 +60,15 @@ void answer(PanelContext& context, const char* label, ImGuiKey_ key, Command com
 
 void draw_unsaved(PanelContext& context) {
   const std::optional<PendingLeave>& leaving = context.state.dialogs.unsaved_changes;
-  if (!begin_question("Before this scene is left", leaving.has_value())) return;
+  if (!begin_question("Close this scene?", leaving.has_value())) return;
   if (!leaving) {
     ImGui::CloseCurrentPopup();
     return ImGui::EndPopup();
   }
   const bool modified = context.scene.document().is_modified();
-  if (modified) ImGui::Text("%s has changes that are not saved.", file_name_of(context.scene.document().path()).c_str());
+  if (modified) ImGui::Text("%s has unsaved changes.", file_name_of(context.scene.document().path()).c_str());
   if (leaving->quits() && context.haptic_session.recording().is_recording())
-    ImGui::Text("%s is being recorded: quitting ends it.", file_name_of(context.haptic_session.recording().path()).c_str());
+    ImGui::Text("%s is being recorded: quitting ends the recording.", file_name_of(context.haptic_session.recording().path()).c_str());
   ImGui::Spacing();
   if (modified) {
     answer(context, "Save", ImGuiKey_Enter, UnsavedChangesChoice::save);
@@ -92,14 +92,14 @@ std::string words_of_time(std::int64_t at_s) {
   return words;
 }
 
-void draw_left(PanelContext& context, bool wanted) {
+void draw_left(PanelContext& context, bool is_open) {
   const std::optional<OrphanedAutosave>& left = context.state.dialogs.recovery;
-  if (!begin_question("Unsaved changes of an earlier run", wanted)) return;
+  if (!begin_question("Unsaved changes of an earlier run", is_open)) return;
   if (!left) {
     ImGui::CloseCurrentPopup();
     return ImGui::EndPopup();
   }
-  ImGui::Text("%s had changes that were not saved when its window ended", file_name_of(context.scene.document().path()).c_str());
+  ImGui::Text("%s had unsaved changes when the window closed", file_name_of(context.scene.document().path()).c_str());
   ImGui::Text("(%s).", words_of_time(left->saved_at_s).c_str());
   ImGui::Spacing();
   answer(context, "Restore", ImGuiKey_Enter, RecoveryChoice::restore);
@@ -111,38 +111,38 @@ void draw_left(PanelContext& context, bool wanted) {
   ImGui::EndPopup();
 }
 
-void draw_changed(PanelContext& context, bool wanted) {
+void draw_changed(PanelContext& context, bool is_open) {
   using OnDisk = scene::Document::DiskState;
   const std::optional<OnDisk> changed = context.state.dialogs.file_conflict;
-  if (!begin_question("The file is not as it was read", wanted)) return;
+  if (!begin_question("The file has changed on disk", is_open)) return;
   if (!changed) {
     ImGui::CloseCurrentPopup();
     return ImGui::EndPopup();
   }
   const std::string name = file_name_of(context.scene.document().path());
   const char* const what = *changed == OnDisk::changed   ? "%s was changed by another program."
-                           : *changed == OnDisk::missing ? "%s was removed, or renamed, by another program."
-                                                         : "%s is no file any more that can be read.";
+                           : *changed == OnDisk::missing ? "%s was removed or renamed by another program."
+                                                         : "%s is not a readable file any more.";
   ImGui::Text(what, name.c_str());
   ImGui::Spacing();
   if (*changed != OnDisk::not_a_file) {
-    answer(context, *changed == OnDisk::changed ? "Keep mine" : "Write it again", kNoKey, FileConflictChoice::overwrite);
+    answer(context, *changed == OnDisk::changed ? "Overwrite" : "Write the file", kNoKey, FileConflictChoice::overwrite);
     ImGui::SameLine();
   }
   if (*changed == OnDisk::changed) {
-    answer(context, "Take theirs", kNoKey, FileConflictChoice::take_disk_version);
+    answer(context, "Reload", kNoKey, FileConflictChoice::take_disk_version);
     ImGui::SameLine();
   }
-  answer(context, "Save as ..", ImGuiKey_Enter, FileConflictChoice::save_as);
+  answer(context, "Save as...", ImGuiKey_Enter, FileConflictChoice::save_as);
   ImGui::SetItemDefaultFocus();
   ImGui::SameLine();
   answer(context, "Cancel", ImGuiKey_Escape, FileConflictChoice::cancel);
   ImGui::EndPopup();
 }
 
-void draw_dropped(PanelContext& context, bool wanted) {
+void draw_dropped(PanelContext& context, bool is_open) {
   const std::optional<std::string>& dropped = context.state.dialogs.dropped_file;
-  if (!begin_question("A file was dropped", wanted)) return;
+  if (!begin_question("A file was dropped", is_open)) return;
   if (!dropped) {
     ImGui::CloseCurrentPopup();
     return ImGui::EndPopup();

@@ -23,12 +23,12 @@ void edit_aid(PanelContext& context, Edits& edits, const char* label, const std:
   const bool clicked = ImGui::Checkbox(label, &on);
   show_short_tooltip(hint);
   if (!clicked) return;
-  auto& kept = context.state.appearance.disabled_text;
+  auto& disabled_text = context.state.appearance.disabled_text;
   if (on) {
-    edits.set(pointer, kept.contains(key) ? kept[key] : "true", label);
+    edits.set(pointer, disabled_text.contains(key) ? disabled_text[key] : "true", label);
     return;
   }
-  if (const auto stated = stated_object(context, key)) kept[key] = *stated;
+  if (const auto stated = stated_object(context, key)) disabled_text[key] = *stated;
   edits.set(pointer, "false", label);
 }
 
@@ -37,7 +37,7 @@ void draw_title(Edits& edits, const std::string& title) {
   std::strncpy(text, title.c_str(), sizeof text - 1);
   if (ImGui::InputText("title", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue))
     edits.set("/title", scene::to_json(text), "title");
-  show_short_tooltip("over the picture; Enter");
+  show_short_tooltip("title above the image; Enter applies");
 }
 
 void choose_projection(PanelContext& context) {
@@ -64,19 +64,19 @@ void draw_scene_view(PanelContext& context) {
     ImGui::TextDisabled("transparent background");
   else
     edit_color(edits, "background", scene.background.color, "/background");
-  edit_aid(context, edits, "bounding box", "bounding_box", scene.bounding_box.has_value(), "the edges of what is drawn");
+  edit_aid(context, edits, "bounding box", "bounding_box", scene.bounding_box.has_value(), "edges of the bounding box");
   ImGui::SameLine();
-  edit_aid(context, edits, "axes", "axes", scene.axes.has_value(), "three edges with ticks and numbers");
-  edit_aid(context, edits, "ground", "ground", scene.ground.has_value(), "a checkerboard below");
+  edit_aid(context, edits, "axes", "axes", scene.axes.has_value(), "three edges of the bounding box with ticks and numbers");
+  edit_aid(context, edits, "ground", "ground", scene.ground.has_value(), "checkerboard below the scene");
   ImGui::SameLine();
   edit_aid(context, edits, "marker", "orientation_marker", scene.annotations.orientation_marker.has_value(),
-           "three arrows in the corner: which way x, y, z point");
+           "three arrows in the corner of the image, along x, y and z");
   ImGui::SameLine();
-  edit_aid(context, edits, "fog", "fog", scene.fog.has_value(), "far things turn to the background");
+  edit_aid(context, edits, "fog", "fog", scene.fog.has_value(), "distant items fade to the background colour");
   if (scene.fog) {
-    auto most = static_cast<float>(scene.fog->max_opacity);
-    if (ImGui::SliderFloat("fog at the far end", &most, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp)) {
-      const std::string value = scene::to_json(round_within(most, 0, 1, 1000));
+    auto maximum = static_cast<float>(scene.fog->max_opacity);
+    if (ImGui::SliderFloat("fog at the far end", &maximum, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp)) {
+      const std::string value = scene::to_json(round_within(maximum, 0, 1, 1000));
       if (stated_object(context, "fog"))
         edits.drag("/fog/max_opacity", value, "fog");
       else
@@ -84,9 +84,9 @@ void draw_scene_view(PanelContext& context) {
     }
   }
   choose_projection(context);
-  show_short_tooltip("key O");
+  show_short_tooltip("key O switches the projection");
   choose_stereo(context);
-  show_short_tooltip("key F2: the next");
+  show_short_tooltip("key F2 selects the next stereo mode");
   draw_title(edits, scene.annotations.title);
 }
 

@@ -43,8 +43,8 @@ void draw_values(PanelContext& context) {
   for (int axis = 0; axis < 3; ++axis) draw_coordinate(axis == 0 ? "x" : axis == 1 ? "y" : "z", axis, places, state.unit_length);
 
   // rows of the longest list: the loaded fields are the same at every point
-  const PointSamples& most = **std::ranges::max_element(places, {}, [](const PointSamples* p) { return p->samples.size(); });
-  for (const FieldSample& row : most.samples) {
+  const PointSamples& maximum = **std::ranges::max_element(places, {}, [](const PointSamples* p) { return p->samples.size(); });
+  for (const FieldSample& row : maximum.samples) {
     ImGui::TableNextRow();
     cell(row.name + scene::unit_suffix(row.unit));
     for (const PointSamples* place : places) {

@@ -55,7 +55,7 @@ void draw_facts(const scene::FieldSource& source, const field::AnyField& shown) 
 void draw_histogram(const SortedSamples& values, const field::AnyField& shown) {
   const ImVec2 at = ImGui::GetCursorScreenPos(), size{ImGui::GetContentRegionAvail().x, 36};
   ImGui::Dummy(size);
-  show_short_tooltip("how often values occur, logarithmic");
+  show_short_tooltip("histogram of the field's values; the counts are logarithmic");
   ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg), 3);
   if (!values || values->empty()) return;
   const DisplayRange values_range = field::display_range(shown);
@@ -95,7 +95,7 @@ void draw_fields(PanelContext& context) {
   look.histograms.prune(scene);
   std::vector<scene::Entity> fields;
   scene.entities.each<scene::FieldSource>([&](scene::Entity e, const scene::FieldSource&) { fields.push_back(e); });
-  if (fields.empty()) ImGui::TextDisabled("the scene has none");
+  if (fields.empty()) ImGui::TextDisabled("the scene has no fields");
   for (const scene::Entity e : fields) {
     const scene::FieldSource& source = scene.entities.get<scene::FieldSource>(e);
     const field::AnyField shown = source.rendered.get() != nullptr ? source.rendered : source.loaded;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Dialogs Open and Save as: a folder, its files, and a path to type (Tab completes it).
+// Dialogs Open and Save as: the files of a folder, and a text field for a path, with completion by Tab.
 #include <imgui.h>
 
 #include <algorithm>

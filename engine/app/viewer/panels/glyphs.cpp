@@ -10,7 +10,7 @@ namespace catena::app {
 
 namespace {
 
-/// Choice of positions: JSON text of the scene, and the label shown. The first choice, without text, is the field's domain.
+/// Choice of the glyphs' positions: JSON text of the scene, and the label shown. The first choice, without text, is the field's domain.
 struct Stand {
   std::string text, words;
 };
@@ -40,7 +40,7 @@ std::vector<Stand> stands_of(const scene::Scene& scene, const Vec3& middle) {
   });
   for (int a = 0; a < 3; ++a)
     stands.push_back({"{\"plane\": {\"axis\": \"" + std::string(1, "xyz"[a]) + "\", \"at\": " + scene::to_json(middle[a]) + "}}",
-                      std::string("plane across ") + "xyz"[a]});
+                      std::string("plane normal to ") + "xyz"[a]});
   return stands;
 }
 
@@ -112,12 +112,13 @@ void draw_glyphs(PanelContext& context) {
     choose_stand(edits, scene, set, loaded != nullptr ? loaded->world_bounds().center() : Vec3(0.0));
     edit_stand(edits, set, length);
     edit_auto_length(edits, "spacing", set.where, set.spacing, 0.25 * length,
-                     "of neighbours, world units; at the left end: fitted to the domain");
-    edit_auto_length(edits, "length", set.where, set.length, 0.5 * length, "of the longest, world units; at the left end: the spacing");
+                     "distance between neighbouring glyphs, world units; left end: chosen from the size of the domain");
+    edit_auto_length(edits, "length", set.where, set.length, 0.5 * length,
+                     "length of the longest arrow, world units; left end: the spacing");
     edit_auto_length(edits, "radius", set.where, set.radius, 0.05 * length,
-                     "of the longest one's shaft, world units; at the left end: fitted");
+                     "shaft radius of the longest arrow, world units; left end: chosen automatically");
     edit_number(edits, {"min_speed", pointer + "/min_speed", set.min_speed, 0, 1e30, 0.005 * fastest(scene, set)});
-    show_short_tooltip("slower vectors have no arrow");
+    show_short_tooltip("minimum speed: shorter vectors have no arrow");
     edit_colors(edits, scene, set.where, set.color, set.color_by, {"speed"});
     edit_simple_keys(edits, "glyphs", set.where);
     end_item();

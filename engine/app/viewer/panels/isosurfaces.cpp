@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Panel of the isosurfaces: level on the field's histogram, color, opacity. The link on a surface follows its level.
+// Panel of the isosurfaces: level on the field's histogram, color, opacity. A link on a surface follows the surface's level.
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/color_widgets.h"
 #include "engine/field/field_display_range.h"
@@ -25,12 +25,12 @@ void draw_level(PanelContext& context, Edits& edits, const scene::Isosurface& su
     moved = histogram_slider(context, "##level", context.state.appearance.histograms.find_or_request(scene, surface.field), range.lo,
                              range.hi, surface.color, level);
   }
-  moved = input_number("level", level, "the field's value on the surface; Enter") || moved;
-  const std::vector<std::string> felt = find_link_levels(scene, entity_name(scene, surface.field), surface.level);
-  if (!felt.empty()) {
+  moved = input_number("level", level, "value of the field on the surface; Enter applies") || moved;
+  const std::vector<std::string> link_levels = find_link_levels(scene, entity_name(scene, surface.field), surface.level);
+  if (!link_levels.empty()) {
     ImGui::SameLine();
     ImGui::TextDisabled("felt");
-    show_short_tooltip("a link of the chain lies on this surface: its level goes along");
+    show_short_tooltip("a link of the chain lies on this surface: a change of the level moves the link");
   }
   if (!moved) return;
   edits.drag(make_level_edits(scene, surface, level), "isolevel");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Panel of the meshes: color and plain keys.
+// Panel of the meshes: color and simple keys.
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/color_widgets.h"
 #include "engine/scene/visibility.h"

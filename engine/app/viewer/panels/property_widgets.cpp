@@ -48,7 +48,7 @@ bool begin_item(Edits& edits, const json::Node& where, bool visible, const std::
   } else {
     bool seen = visible;
     if (ImGui::Checkbox("##seen", &seen)) edits.set(pointer + "/visible", scene::to_json(seen), seen ? "show " + word : "hide " + word);
-    show_short_tooltip(visible ? "seen" : "hidden");
+    show_short_tooltip(visible ? "hide the item" : "show the item");
     ImGui::SameLine();
     if (!visible) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
     open = ImGui::TreeNodeEx("##open", ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_AllowItemOverlap, "%s", name.c_str());
@@ -57,11 +57,11 @@ bool begin_item(Edits& edits, const json::Node& where, bool visible, const std::
       const float width = ImGui::CalcTextSize("Feel").x + 2 * ImGui::GetStyle().FramePadding.x;
       ImGui::SameLine(ImGui::GetContentRegionMax().x - button - width - ImGui::GetStyle().ItemSpacing.x);
       if (ImGui::Button("Feel", {width, 0})) edits.bind_haptics(where.label);
-      show_short_tooltip("the hand feels this: a link of the chain that lies on it, and goes along with it");
+      show_short_tooltip("add a link to the chain that lies on this object and follows the object's changes");
     }
     ImGui::SameLine(ImGui::GetContentRegionMax().x - button);
     if (ImGui::Button("x", {button, 0})) edits.remove_item(where.label, "remove " + word);
-    show_short_tooltip("remove");
+    show_short_tooltip("remove the item from the scene");
   }
   if (!open) ImGui::PopID();
   return open;
@@ -104,7 +104,7 @@ bool is_plain(const schema::Key& key) {
 }
 
 void edit_plain_key(Edits& edits, const schema::Key& key, const json::Node& value, const std::string& pointer) {
-  const std::string label = key.name == "clip" ? "cut by the clip planes" : key.name;
+  const std::string label = key.name == "clip" ? "clipped by the clip planes" : key.name;
   if (key.value_type == schema::ValueType::boolean && value.kind == json::Kind::boolean) {
     edit_boolean(edits, label.c_str(), value.boolean, pointer);
   } else if (key.value_type == schema::ValueType::number && value.kind == json::Kind::number) {

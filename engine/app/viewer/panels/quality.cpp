@@ -29,10 +29,10 @@ void draw_goal(PanelContext& context) {
     if (auto quality = parse_quality(words)) context.push_command(SetQuality{*quality});
   };
   if (ImGui::RadioButton("time", time)) ask("time=50");
-  show_tooltip("the best picture that comes within so many milliseconds, and better ones while nothing moves");
+  show_tooltip("best image within this time, in milliseconds; the image is refined while nothing moves");
   ImGui::SameLine();
   if (ImGui::RadioButton("error", error)) ask("error=1");
-  show_tooltip("at rest, until the picture's estimated error is this small (root mean square, 1/255)");
+  show_tooltip("refine the still image until its estimated error is below this value (root mean square, in 1/255)");
   const std::string words = words_of(now);
   for (const char* word : {"draft", "balanced", "reference"}) {
     if (word[0] != 'd') ImGui::SameLine();
@@ -57,7 +57,7 @@ void draw_memory(const render::RenderStats& stats) {
   const double share = stats.gpu_budget > 0 ? static_cast<double>(stats.gpu_bytes) / static_cast<double>(stats.gpu_budget) : 0;
   const std::string text = megabytes(stats.gpu_bytes) + " of " + megabytes(stats.gpu_budget);
   ImGui::ProgressBar(static_cast<float>(share), {-1, 0}, text.c_str());
-  show_tooltip("memory held on " + stats.device + ", and the most that may be (--gpu-memory)");
+  show_tooltip("memory used on " + stats.device + ", of the maximum (--gpu-memory)");
   for (const render::GridDownsampling& coarser : stats.downsampled_grids) ImGui::TextWrapped("%s", coarser.message().c_str());
   for (const std::string& note : stats.warnings) ImGui::TextWrapped("%s", note.c_str());
 }
@@ -66,10 +66,10 @@ void draw_quality(PanelContext& context) {
   draw_goal(context);
   ImGui::TextWrapped("%s", context.scheduler.status_text().c_str());
   if (const auto rmse = context.scheduler.rmse())
-    ImGui::Text("error now about %.2f / 255", *rmse);
+    ImGui::Text("estimated error %.2f / 255", *rmse);
   else
-    ImGui::TextDisabled("error: once it rests");
-  show_tooltip("against converged rays, over all pixels");
+    ImGui::TextDisabled("error: measured at rest");
+  show_tooltip("root mean square error against an image of converged rays, over all pixels");
   context.push_command(EstimateImageError{});
   ImGui::Separator();
   draw_memory(context.presenter.renderer().stats());

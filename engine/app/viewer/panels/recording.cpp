@@ -35,14 +35,14 @@ void draw_recording(PanelContext& context) {
     }
     ImGui::SetNextItemWidth(-1);
     const bool enter = ImGui::InputText("##file", name, sizeof name, ImGuiInputTextFlags_EnterReturnsTrue);
-    show_tooltip("the recording, .catlog");
+    show_tooltip("file of the recording (.catlog)");
     // an existing file is replaced only by a click on the button that says so, never by Enter
     std::error_code ignored;
     const bool exists = name[0] != 0 && std::filesystem::exists(name, ignored);
     const bool clicked = ImGui::Button(exists ? "Replace the file" : "Record");
     if (name[0] != 0 && (clicked || (enter && !exists))) context.push_command(SetRecording{name});
-    show_tooltip(exists ? "a file of that name is there: the recording takes its place"
-                        : "every tick, from now on, with the scene as it is and as you edit it; catena replay --log runs it again");
+    show_tooltip(exists ? "the file exists: the recording replaces it"
+                        : "record every tick, the scene and all edits; catena replay --log replays the recording");
     return;
   }
   // the Stop button takes the position of the Record button
@@ -58,7 +58,7 @@ void draw_recording(PanelContext& context) {
   ImGui::Text("%d:%02d  %llu ticks, %.1f MB", s / 60, s % 60, static_cast<unsigned long long>(status.ticks),
               1e-6 * static_cast<double>(status.bytes));
   if (status.lost > 0) ImGui::TextColored({1, 0.5f, 0.4f, 1}, "%llu ticks lost", static_cast<unsigned long long>(status.lost));
-  if (status.failed) ImGui::TextColored({1, 0.5f, 0.4f, 1}, "writing has failed");
+  if (status.failed) ImGui::TextColored({1, 0.5f, 0.4f, 1}, "the recording cannot be written");
 }
 
 }  // namespace

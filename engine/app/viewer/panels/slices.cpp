@@ -53,7 +53,7 @@ void draw_plane(Edits& edits, const scene::Scene& scene, const scene::Slice& sli
               "slice");
     return;
   }
-  show_short_tooltip("the axis across which the slice lies");
+  show_short_tooltip("axis normal to the slice; free: any point and normal");
   if (!free) {
     ImGui::SameLine();
     const double lo = box.lo[which], hi = box.hi[which];
@@ -102,10 +102,11 @@ void draw_contours(Edits& edits, const scene::Slice& slice) {
       edits.drag(pointer + "/count", std::to_string(count), "contours");
   } else if (slice.contours->spacing > 0) {
     double spacing = slice.contours->spacing;
-    if (input_number("##spacing", spacing, "from line to line, field units; Enter") && spacing > 0)
+    if (input_number("##spacing", spacing, "difference between neighbouring contour levels, in the field's unit; Enter applies") &&
+        spacing > 0)
       edits.drag(pointer + "/spacing", scene::to_json(spacing), "contours");
   } else {
-    ImGui::TextDisabled("%zu stated levels", slice.contours->levels.size());
+    ImGui::TextDisabled("%zu levels in the file", slice.contours->levels.size());
   }
 }
 

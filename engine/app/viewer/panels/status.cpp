@@ -39,15 +39,15 @@ void draw_force(const PanelContext& context) {
   const std::string newtons = fmt::format("{:.2f} N", norm(context.haptic_session.latest_state().force_n));
   ImGui::ProgressBar(static_cast<float>(state.force_ratio), {110, ImGui::GetTextLineHeight()}, newtons.c_str());
   ImGui::PopStyleColor();
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("the force on the hand, of at most %.3g N", context.scene.scene().coupling.max_force_n);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("force on the hand; the maximum is %.3g N", context.scene.scene().coupling.max_force_n);
 }
 
 /// Status text such as "skin 5.1 mm": the last link in contact and the distance of the probe from it, in device millimeters.
 std::string held_words(const PanelContext& context) {
-  const HapticState& felt = context.haptic_session.latest_state();
+  const HapticState& haptic_state = context.haptic_session.latest_state();
   const auto& program = context.haptic_session.program();
-  for (int i = felt.link_count - 1; i >= 0; --i) {
-    const LinkReport& link = felt.links[static_cast<std::size_t>(i)];
+  for (int i = haptic_state.link_count - 1; i >= 0; --i) {
+    const LinkReport& link = haptic_state.links[static_cast<std::size_t>(i)];
     if (link.active && link.gap > 0 && static_cast<std::size_t>(i) < context.haptic_session.link_names().size())
       return fmt::format("{} {:.1f} mm", context.haptic_session.link_names()[static_cast<std::size_t>(i)],
                          1e3 * program->meters_per_unit * link.gap);
@@ -71,7 +71,7 @@ void draw_prompt(PanelContext& context) {
       ImGui::TextWrapped("%s", message->text.c_str());
       ImGui::PopStyleColor();
     }
-    if (ImGui::Button("Not now (G)")) context.push_command(Action::register_device);
+    if (ImGui::Button("Cancel (G)")) context.push_command(Action::register_device);
   }
   ImGui::End();
 }
@@ -119,9 +119,9 @@ void draw_status(PanelContext& context) {
       if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", m->text.c_str());
     } else {
       std::string words = format_point_samples(state.pointer_samples, state.unit_length);
-      if (words.empty() && context.navigation.probe_mode) words = "hand mode: the mouse is the hand (H)";
+      if (words.empty() && context.navigation.probe_mode) words = "probe mode: the mouse moves the probe (H)";
       if (words.empty() && context.navigation.fly)
-        words = fmt::format("fly: W S A D E Q, left drag looks about, pace {:.2g} (V)", context.navigation.fly_speed);
+        words = fmt::format("fly: W S A D E Q, left drag turns the camera, speed {:.2g} (V)", context.navigation.fly_speed);
       ImGui::TextUnformatted(words.c_str());
     }
   }

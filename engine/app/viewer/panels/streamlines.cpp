@@ -17,7 +17,7 @@ void draw_lines(PanelContext& context) {
     const scene::FieldSource& source = scene.entities.get<scene::FieldSource>(set.field);
     const double length = source.loaded.get() != nullptr ? source.loaded.get()->domain_length() : 1;
     edit_auto_length(edits, "radius", set.where, set.radius, 0.05 * length,
-                     "of the tubes, world units; at the left end: fitted to the domain");
+                     "radius of the tubes, world units; left end: chosen from the size of the domain");
     edit_simple_keys(edits, "streamlines", set.where, {"tolerance"});
     end_item();
   });

@@ -17,13 +17,13 @@ void draw_time(PanelContext& context) {
   int step = std::min(scene.time.step, last);
   ImGui::SetNextItemWidth(-1);
   if (ImGui::SliderInt("##step", &step, 0, last, "step %d", ImGuiSliderFlags_AlwaysClamp)) context.push_command(ShowTimeStep{step});
-  show_tooltip("the step that is shown; , and . go to the one before and after");
+  show_tooltip("time step shown; the keys , and . go to the previous and next step");
   if (ImGui::Button(context.state.playback.is_playing ? "Stop" : "Play")) context.push_command(Action::play_time_steps);
   ImGui::SameLine();
   auto rate = static_cast<float>(scene.time.steps_per_second);
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.6f);
-  if (ImGui::SliderFloat("a second", &rate, 0.1f, 60, "%.3g", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
-    context.edits.drag("/time/per_second", scene::to_json(static_cast<double>(rate)), "steps a second");
+  if (ImGui::SliderFloat("steps/s", &rate, 0.1f, 60, "%.3g", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
+    context.edits.drag("/time/per_second", scene::to_json(static_cast<double>(rate)), "steps per second");
   if (scene::current_step_time(scene)) ImGui::Text("t = %s", scene::format_time(scene).c_str());
 }
 

@@ -38,7 +38,7 @@ std::string time_text(double us) {
 void draw_histogram(const char* name, const char* what, const haptics::HistogramSummary& f) {
   const auto number = [](double us) { return us < 1000 ? fmt::format("{:.0f} us", us) : fmt::format("{:.3g} ms", 1e-3 * us); };
   ImGui::Text("%s  %s, p99 %s", name, number(f.p50_us).c_str(), number(f.p99_us).c_str());
-  show_tooltip(fmt::format("{}: the median, the 99th percentile; the longest took {}", what, number(f.max_us)));
+  show_tooltip(fmt::format("{}: median and 99th percentile; maximum {}", what, number(f.max_us)));
   if (f.bins.empty()) return;
   const PlotArea area = take_area(40);
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -47,10 +47,10 @@ void draw_histogram(const char* name, const char* what, const haptics::Histogram
   const auto x_of = [&](double us) {
     return area.from.x + area.width() * static_cast<float>(std::clamp((std::log10(std::max(us, 1e-3)) - lo) / (hi - lo), 0.0, 1.0));
   };
-  double most = 1;
-  for (const auto& bin : f.bins) most = std::max(most, static_cast<double>(bin.count));
+  double maximum = 1;
+  for (const auto& bin : f.bins) maximum = std::max(maximum, static_cast<double>(bin.count));
   for (const auto& bin : f.bins) {
-    const double share = std::log1p(static_cast<double>(bin.count)) / std::log1p(most);
+    const double share = std::log1p(static_cast<double>(bin.count)) / std::log1p(maximum);
     const float left = x_of(bin.from_us), right = std::max(left + 1.5f, x_of(bin.from_us * 1.09) - 0.5f);
     list.AddRectFilled({left, area.to.y - static_cast<float>(share) * (area.height() - 2)}, {right, area.to.y}, kBar);
   }
@@ -70,8 +70,8 @@ void draw_histogram(const char* name, const char* what, const haptics::Histogram
 /// Draws the most recent frame times, the latest at the right; the line is the budget of interactive frames.
 void draw_recent_frames(const FrameTimes& times, double budget_ms) {
   const auto& ring = times.recent();
-  float most = static_cast<float>(1.5 * budget_ms);
-  for (const float ms : ring) most = std::max(most, ms);
+  float maximum = static_cast<float>(1.5 * budget_ms);
+  for (const float ms : ring) maximum = std::max(maximum, ms);
   const PlotArea area = take_area(56);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float step = area.width() / static_cast<float>(FrameTimes::kRecent);
@@ -79,24 +79,24 @@ void draw_recent_frames(const FrameTimes& times, double budget_ms) {
     const float ms = ring[(times.recent_begin() + i) % FrameTimes::kRecent];
     if (ms <= 0) continue;
     const float x = area.from.x + step * static_cast<float>(i);
-    list.AddRectFilled({x, area.to.y - ms / most * (area.height() - 1)}, {x + std::max(1.0f, step - 0.3f), area.to.y},
+    list.AddRectFilled({x, area.to.y - ms / maximum * (area.height() - 1)}, {x + std::max(1.0f, step - 0.3f), area.to.y},
                        static_cast<double>(ms) > budget_ms ? kBudget : kBar);
   }
-  const float y = area.to.y - static_cast<float>(budget_ms) / most * (area.height() - 1);
+  const float y = area.to.y - static_cast<float>(budget_ms) / maximum * (area.height() - 1);
   list.AddLine({area.from.x, y}, {area.to.x, y}, kBudget);
-  list.AddText({area.from.x + 2, area.from.y}, kLine, fmt::format("{:.0f} ms", most).c_str());
-  show_tooltip(
-      fmt::format("the newest {} pictures; the line: {:g} ms, what one may take while something moves", FrameTimes::kRecent, budget_ms));
+  list.AddText({area.from.x + 2, area.from.y}, kLine, fmt::format("{:.0f} ms", maximum).c_str());
+  show_tooltip(fmt::format("render times of the latest {} images; line: {:g} ms, the time allowed while something moves",
+                           FrameTimes::kRecent, budget_ms));
 }
 
 void draw_times(PanelContext& context) {
   const FrameTimes& times = context.frame_times;
   draw_recent_frames(times, context.scheduler.budget_ms());
-  draw_histogram("Pictures", "drawing a picture", times.draw_times());
-  draw_histogram("Interface", "laying the interface over it", times.interface_times());
+  draw_histogram("Images", "time to render an image", times.draw_times());
+  draw_histogram("Interface", "time to draw the interface over the image", times.interface_times());
   const haptics::ServoStats servo = context.haptic_session.servo().stats();
-  draw_histogram("Ticks", "computing a tick of the servo", servo.compute);
-  draw_histogram("Tick to tick", "from the begin of a tick to the next", servo.period);
+  draw_histogram("Ticks", "time to compute a tick of the servo", servo.compute);
+  draw_histogram("Period", "time from the beginning of a tick to the beginning of the next", servo.period);
   ImGui::Text("%llu ticks, %llu deadlines missed", static_cast<unsigned long long>(servo.ticks),
               static_cast<unsigned long long>(servo.missed_deadlines));
 }

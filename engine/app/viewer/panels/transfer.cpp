@@ -170,14 +170,14 @@ void move_opacities(Editor& editor) {
   if (there)
     ImGui::SetTooltip("%.6g: %.3g", editor.edit.opacities[*there].value, editor.edit.opacities[*there].alpha);
   else
-    ImGui::SetTooltip("%.5g\nclick: new point, right click: remove", plot.value_at(io.MousePos.x));
+    ImGui::SetTooltip("%.5g\nclick: add a point, right click: remove a point", plot.value_at(io.MousePos.x));
 }
 
 void move_colors(Editor& editor) {
   const ImGuiIO& io = ImGui::GetIO();
   const PlotTransform& bar = editor.bar;
   AppearanceState& look = editor.context.state.appearance;
-  if (!editor.edit.color_map.empty()) return show_short_tooltip("a map by its name; \"points\" makes it one of your own");
+  if (!editor.edit.color_map.empty()) return show_short_tooltip("named colour map; the button \"points\" converts it into editable points");
   const auto there = find_point(editor.edit.colors, bar, io.MousePos.x, kReach);
   if (ImGui::IsItemActivated() && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     pressed<ColorPoints>(
@@ -191,7 +191,7 @@ void move_colors(Editor& editor) {
   }
   if (ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right))
     remove_at(editor, &TransferEdit::colors, &AppearanceState::TransferEditor::selected_color, there, make_color_edits, "colours");
-  if (!ImGui::IsItemActive()) show_short_tooltip("click: new colour, drag: move, right click: remove");
+  if (!ImGui::IsItemActive()) show_short_tooltip("click: add a colour, drag: move a colour, right click: remove a colour");
 }
 
 // ---- typed values and selections ----
@@ -203,10 +203,10 @@ void draw_opacity_line(Editor& editor, bool mine) {
   auto point = has ? editor.edit.opacities[*selected] : scene::TransferFunction::OpacityPoint{0, 0};
   ImGui::BeginDisabled(!has);
   ImGui::SetNextItemWidth(78);
-  bool typed = input_number("##value", point.value, "value of the selected point; Enter");
+  bool typed = input_number("##value", point.value, "value of the selected point; Enter applies");
   ImGui::SameLine();
   ImGui::SetNextItemWidth(78);
-  typed = input_number("opacity", point.alpha, "opacity of the selected point per unit of length, below 1; Enter") || typed;
+  typed = input_number("opacity", point.alpha, "opacity of the selected point along the length `unit`, below 1; Enter applies") || typed;
   ImGui::EndDisabled();
   if (!typed || !has) return;
   TransferEdit now = editor.edit;
@@ -220,7 +220,7 @@ void draw_color_line(Editor& editor, bool mine) {
   auto point = has ? editor.edit.colors[*selected] : scene::TransferFunction::ColorPoint{0, {0.3f, 0.3f, 0.3f}};
   ImGui::BeginDisabled(!has);
   ImGui::SetNextItemWidth(78);
-  bool changed = input_number("##color value", point.value, "value of the selected colour; Enter");
+  bool changed = input_number("##color value", point.value, "value of the selected colour; Enter applies");
   ImGui::SameLine();
   float rgb[3] = {point.color.r, point.color.g, point.color.b};
   changed = ImGui::ColorEdit3("colour", rgb, ImGuiColorEditFlags_NoInputs) || changed;
@@ -238,31 +238,31 @@ void draw_choices(Editor& editor) {
   if (!editor.edit.color_map.empty()) {
     ImGui::SameLine();
     if (ImGui::SmallButton("points")) editor.edits.drag(make_color_edits(editor.volume, editor.edit), "colours");
-    show_short_tooltip("makes the map's colours points that can be moved");
+    show_short_tooltip("convert the named colour map into points that can be edited");
   }
   if (const auto mapping = choose_mapping(editor.edit.mapping, editor.edit.linear_below)) {
     const auto writes = make_mapping_edits(editor.volume, editor.edit, *mapping);
     if (writes.empty())
-      editor.context.state.show_message("the points reach down to 0 or below, where there is no logarithm; symlog shows them", true);
+      editor.context.state.show_message("a logarithmic mapping needs points above 0; choose symlog for values of 0 or below", true);
     else
       editor.edits.set(writes, "mapping");
   }
   auto reach = *value_range(editor.edit.colors, editor.edit.opacities);
   ImGui::SetNextItemWidth(78);
-  bool typed = input_number("##from", reach[0], "the least value with a point; moving it moves all; Enter");
+  bool typed = input_number("##from", reach[0], "minimum value of the points; a change rescales all points; Enter applies");
   ImGui::SameLine();
   ImGui::SetNextItemWidth(78);
-  typed = input_number("range", reach[1], "the greatest value with a point; moving it moves all; Enter") || typed;
+  typed = input_number("range", reach[1], "maximum value of the points; a change rescales all points; Enter applies") || typed;
   if (typed) {
     const auto writes = make_range_edits(editor.volume, editor.edit, reach[0], reach[1]);
     if (writes.empty())
-      editor.context.state.show_message("the points cannot lie in this range; two rising numbers were expected", true);
+      editor.context.state.show_message("the points do not fit into this range; two increasing numbers were expected", true);
     else
       editor.edits.drag(writes, "range");
   }
   ImGui::SameLine();
   ImGui::Checkbox("all", &editor.state.show_full_range);
-  show_short_tooltip("plot all values of the field, not only those with points and the frequent ones");
+  show_short_tooltip("plot the full range of the field, including rare values");
 
   auto unit = static_cast<float>(editor.edit.opacity_unit);
   ImGui::SetNextItemWidth(78);
@@ -272,10 +272,11 @@ void draw_choices(Editor& editor) {
     now.opacity_unit = round_within(unit, 0, unit, 500);
     editor.edits.drag(make_unit_edits(editor.volume, now), "opacity unit");
   }
-  show_short_tooltip("the opacities hold for a way of this length through the volume, world units; longer: thinner");
+  show_short_tooltip(
+      "length of the ray segment to which the opacities refer, world units; a longer unit makes the volume more transparent");
   ImGui::SameLine();
   edit_boolean(editor.edits, "shade", editor.volume.shaded, item_pointer(editor.volume.where) + "/shade");
-  if (!editor.volume.transfer.gradient_factors.empty()) ImGui::TextDisabled("opacity follows the gradient too (kept)");
+  if (!editor.volume.transfer.gradient_factors.empty()) ImGui::TextDisabled("gradient opacity: edit in the file");
 }
 
 void draw_editor(PanelContext& context, Edits& edits, const scene::Volume& volume) {
@@ -284,7 +285,7 @@ void draw_editor(PanelContext& context, Edits& edits, const scene::Volume& volum
   AppearanceState::TransferEditor& state = context.state.appearance.transfer_editor;
   const auto edit = source.rendered.scalar ? make_transfer_edit(volume, source.rendered.scalar->mapping().min_voxel_edge()) : std::nullopt;
   if (!edit) {
-    ImGui::TextDisabled("drawn once it is seen");
+    ImGui::TextDisabled("the field is not loaded: show the volume first");
     return;
   }
   if (const std::string pointer = item_pointer(volume.where); state.volume != pointer) {

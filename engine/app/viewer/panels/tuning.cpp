@@ -22,10 +22,10 @@ void draw_eye(PanelContext& context) {
   const tuning::ImageTuning& eye = *live.image_tuning;
   ImGui::TextWrapped("%s", render::describe(eye.settings()).c_str());
   const auto error = context.scheduler.rmse();
-  draw_numbers("the picture", fmt::format("{:.2g}/255, {:.3g} ms", eye.expected_error(), eye.expected_ms()),
-               fmt::format("{}, {}", error ? fmt::format("{:.2g}/255", *error) : "once it rests",
-                           live.tuned_image_ms > 0 ? fmt::format("{:.3g} ms", live.tuned_image_ms) : "not yet"));
-  show_tooltip("root mean square over the covered pixels against converged rays; milliseconds of drawing");
+  draw_numbers("image", fmt::format("{:.2g}/255, {:.3g} ms", eye.expected_error(), eye.expected_ms()),
+               fmt::format("{}, {}", error ? fmt::format("{:.2g}/255", *error) : "measured at rest",
+                           live.tuned_image_ms > 0 ? fmt::format("{:.3g} ms", live.tuned_image_ms) : "not measured"));
+  show_tooltip("root mean square error of the covered pixels against an image of converged rays; render time");
   context.push_command(EstimateImageError{});
 }
 
@@ -33,9 +33,9 @@ void draw_hand(PanelContext& context) {
   const LiveTuning& live = context.tuning;
   for (const tuning::TunedLink& link : live.tick_tuning->links()) ImGui::TextWrapped("%s: %s", link.link.c_str(), link.setting.c_str());
   const double us = context.haptic_session.servo().stats().compute.p50_us;
-  draw_numbers("the hand", fmt::format("{:.2g}, {:.3g} us", live.tick_tuning->expected_error(), live.tick_tuning->expected_us()),
-               fmt::format("{}, {:.3g} us", live.tracking_error ? fmt::format("{:.2g}", *live.tracking_error) : "not yet", us));
-  show_tooltip("how far proxies are off their lines at most, world units; microseconds a tick");
+  draw_numbers("links", fmt::format("{:.2g}, {:.3g} us", live.tick_tuning->expected_error(), live.tick_tuning->expected_us()),
+               fmt::format("{}, {:.3g} us", live.tracking_error ? fmt::format("{:.2g}", *live.tracking_error) : "not measured", us));
+  show_tooltip("maximum distance of a proxy from its converged streamline, world units; compute time of a tick");
   context.push_command(ObserveTrackingError{});
 }
 
@@ -43,7 +43,7 @@ void draw_tuning(PanelContext& context) {
   const LiveTuning& live = context.tuning;
   const bool eye = live.image_tuning && !live.has_fixed_quality, hand = live.tick_tuning && !live.tick_tuning->is_empty();
   if (!eye && !hand) {
-    ImGui::TextWrapped("What a setting costs and what it buys is not measured yet; the picture stands still for some seconds.");
+    ImGui::TextWrapped("The cost and accuracy of the settings are not measured. Measuring stops the image for some seconds.");
     if (ImGui::Button("Measure")) context.push_command(MeasureCosts{});
     return;
   }
@@ -62,7 +62,7 @@ void draw_tuning(PanelContext& context) {
   if (ImGui::IsItemDeactivatedAfterEdit()) context.edits.set(live.edits_at(place), "accuracy");
   if (eye) draw_eye(context);
   if (hand) draw_hand(context);
-  if (live.has_fixed_quality) ImGui::TextDisabled("the image has fixed settings: its quality is stated");
+  if (live.has_fixed_quality) ImGui::TextDisabled("the scene states a fixed image quality");
 }
 
 }  // namespace

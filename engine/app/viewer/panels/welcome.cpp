@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Panel shown when no scene is open: how to begin.
+// Panel shown when no scene is open: openable file types, the command Open, recent files.
 #include <imgui.h>
 
 #include <filesystem>

@@ -40,7 +40,7 @@ void draw_pose(PanelContext& context, const Row& row) {
       if (ImGui::InputScalarN("normal", ImGuiDataType_Double, n, 3, nullptr, nullptr, "%.3g", ImGuiInputTextFlags_EnterReturnsTrue))
         context.edits.set({{row.pointer + "/orientation", std::nullopt}, {row.pointer + "/normal", scene::to_json(Vec3(n[0], n[1], n[2]))}},
                           "turn " + row.name);
-      show_tooltip("Enter takes it");
+      show_tooltip("Enter applies");
       break;
     }
     case widget::Kind::seed:
@@ -86,10 +86,10 @@ void draw_row(PanelContext& context, const Row& row) {
     ImGui::TextDisabled("%s, button %d", scene::to_string(row.widget.spec.kind), row.widget.spec.button);
     draw_pose(context, row);
     if (ImGui::Button("Reset")) reset(context, row);
-    show_tooltip("back to the middle");
+    show_tooltip("reset the widget to its initial pose");
     ImGui::SameLine();
     if (ImGui::Button("Remove")) context.edits.remove(row.pointer, "remove " + row.name);
-    show_tooltip("what follows it must go first, or name another one");
+    show_tooltip("remove the widget; first remove the items that follow it, or let them follow another widget");
     ImGui::TreePop();
   }
   ImGui::PopID();

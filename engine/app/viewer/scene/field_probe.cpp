@@ -27,7 +27,7 @@ std::vector<FieldSample> sample_fields(const scene::Scene& scene, const Vec3& wo
         value.label = scene::describe_label(*map, sample.value);
         // a surface of labels runs between labeled and unlabeled voxels
         if (const double near = field::label_at(*any.scalar->grid(), world); sample.value == 0 && near != 0)
-          value.label = "beside " + scene::describe_label(*map, near);
+          value.label = "near " + scene::describe_label(*map, near);
       }
     } else {
       const field::VectorSample sample = any.vector->sample(world, cursor);
@@ -52,12 +52,12 @@ std::string format_point(const Vec3& world, const std::string& unit_length) {
   return fmt::format("{:.5g}, {:.5g}, {:.5g}{}", world.x, world.y, world.z, scene::unit_suffix(unit_length));
 }
 
-std::string format_point_samples(const PointSamples& place, const std::string& unit_length) {
-  if (!place.world) return {};
-  std::string words = format_point(*place.world, unit_length);
-  for (const FieldSample& value : place.samples)
+std::string format_point_samples(const PointSamples& samples, const std::string& unit_length) {
+  if (!samples.world) return {};
+  std::string words = format_point(*samples.world, unit_length);
+  for (const FieldSample& value : samples.samples)
     if (value.is_inside) words += "   " + value.name + " " + format_sample(value) + scene::unit_suffix(value.unit);
-  if (!place.object.empty()) words += "   " + place.object;
+  if (!samples.object.empty()) words += "   " + samples.object;
   return words;
 }
 

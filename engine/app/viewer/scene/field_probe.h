@@ -33,6 +33,6 @@ std::string format_sample(const FieldSample& value, bool components = false);
 /// Returns "1.2, 3.4, 5.6 mm".
 std::string format_point(const Vec3& world, const std::string& unit_length);
 /// Returns "1.2, 3.4, 5.6 mm   density 0.43   isosurface density"; empty without a position.
-std::string format_point_samples(const PointSamples& place, const std::string& unit_length);
+std::string format_point_samples(const PointSamples& samples, const std::string& unit_length);
 
 }  // namespace catena::app

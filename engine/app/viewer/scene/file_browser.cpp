@@ -64,7 +64,7 @@ Result<std::vector<FileEntry>> list_folder(const std::string& folder, bool scene
   std::error_code code;
   fs::directory_iterator it(folder, fs::directory_options::skip_permission_denied, code);
   if (code)
-    return Error{one_line(folder + ": " + describe_errno(code.value()) + "; a folder that can be read was expected"),
+    return Error{one_line(folder + ": " + describe_errno(code.value()) + "; a readable folder was expected"),
                  is_system_failure(code.value())};
   std::vector<FileEntry> entries;
   for (; it != fs::directory_iterator(); it.increment(code)) {

@@ -46,8 +46,8 @@ Result<LoadedScene> load_initial_scene(SceneModel& scene, HapticSession& hand, s
   return loaded;
 }
 
-SceneFiles::SceneFiles(ViewerContext& shared, CameraController& eye, Viewport& picture)
-    : context_(shared), camera_(eye), viewport_(picture) {
+SceneFiles::SceneFiles(ViewerContext& shared, CameraController& camera, Viewport& viewport)
+    : context_(shared), camera_(camera), viewport_(viewport) {
   context_.state.is_untitled = shared.options.source.empty();
   context_.state.owns_file = is_scene_path(shared.options.source);
 }
@@ -82,11 +82,11 @@ void SceneFiles::leave(const PendingLeave& leaving) {
   autosave_.remove();
 }
 
-void SceneFiles::on_choice(UnsavedChangesChoice given) {
+void SceneFiles::on_choice(UnsavedChangesChoice choice) {
   const auto leaving = std::exchange(context_.state.dialogs.unsaved_changes, std::nullopt);
   if (!leaving) return;
-  if (given == UnsavedChangesChoice::discard) leave(*leaving);
-  if (given != UnsavedChangesChoice::save) return;
+  if (choice == UnsavedChangesChoice::discard) leave(*leaving);
+  if (choice != UnsavedChangesChoice::save) return;
   after_save_ = leaving;
   save();
 }
@@ -113,19 +113,19 @@ void SceneFiles::save_as(const std::string& path) {
     save_and_continue(path);
 }
 
-void SceneFiles::on_choice(FileConflictChoice given) {
+void SceneFiles::on_choice(FileConflictChoice choice) {
   ViewState& state = context_.state;
   if (!std::exchange(state.dialogs.file_conflict, std::nullopt)) return;
-  if (given == FileConflictChoice::overwrite) return save_and_continue(context_.scene.document().path());
-  if (given == FileConflictChoice::save_as) {
+  if (choice == FileConflictChoice::overwrite) return save_and_continue(context_.scene.document().path());
+  if (choice == FileConflictChoice::save_as) {
     state.dialogs.show_save_as = true;
     return;
   }
   const auto next = std::exchange(after_save_, std::nullopt);
-  if (given != FileConflictChoice::take_disk_version) return;
+  if (choice != FileConflictChoice::take_disk_version) return;
   if (const Outcome taken = context_.scene.reload_from_disk(); !taken) return state.show_message(taken.error().message, true);
   autosave_.remove();
-  state.show_message("the scene is as the file says; undo brings back yours");
+  state.show_message("the scene was read from the file; undo restores your version");
   if (next) leave(*next);
 }
 
@@ -160,16 +160,17 @@ void SceneFiles::open_dropped(const std::string& dropped) {
   context_.state.dialogs.dropped_file = path;
 }
 
-void SceneFiles::on_choice(DroppedFileChoice given) {
+void SceneFiles::on_choice(DroppedFileChoice choice) {
   const auto path = std::exchange(context_.state.dialogs.dropped_file, std::nullopt);
   if (!path) return;
-  if (given == DroppedFileChoice::add) start_loading(*path, true);
-  if (given == DroppedFileChoice::open) open(*path);
+  if (choice == DroppedFileChoice::add) start_loading(*path, true);
+  if (choice == DroppedFileChoice::open) open(*path);
 }
 
-void SceneFiles::start_loading(const std::string& path, bool adds) {
-  if (loader_.is_busy()) return context_.state.show_message("still loading " + name_of_file(loader_.path()) + "; then again", true);
-  loading_joins_scene_ = adds;
+void SceneFiles::start_loading(const std::string& path, bool to_current_scene) {
+  if (loader_.is_busy())
+    return context_.state.show_message("still loading " + name_of_file(loader_.path()) + "; try again when it is open", true);
+  loading_joins_scene_ = to_current_scene;
   context_.state.loading_path = path;
   const auto [width, height] = viewport_.size();
   loader_.start(path, width, height);
@@ -232,7 +233,7 @@ void SceneFiles::add_to_scene(LoadedScene loaded, const std::string& path) {
   context_.navigation.bounds = scene.bounds;
   print_scene_notes(loaded.model.scene());
   const std::string notes = noted(loaded.model.scene());
-  state.show_message("added " + name_of_file(path) + " (A brings all into the picture)" + (notes.empty() ? "" : "; " + notes));
+  state.show_message("added " + name_of_file(path) + " (A shows the whole scene)" + (notes.empty() ? "" : "; " + notes));
 }
 
 void SceneFiles::add_to_recent(const std::string& path) {
@@ -252,7 +253,7 @@ void SceneFiles::autosave(bool now) {
     return autosave_.save_text(document.path(), text);
   }();
   const std::string why = kept ? "" : kept.error().message;
-  if (!kept && why != autosave_error_) context_.state.show_message("unsaved changes are not kept: " + why, true);
+  if (!kept && why != autosave_error_) context_.state.show_message("unsaved changes cannot be stored: " + why, true);
   autosave_error_ = why;
 }
 
@@ -270,20 +271,20 @@ void SceneFiles::offer_recovery() {
   }
 }
 
-void SceneFiles::on_choice(RecoveryChoice given) {
+void SceneFiles::on_choice(RecoveryChoice choice) {
   ViewState& state = context_.state;
   const auto left = std::exchange(state.dialogs.recovery, std::nullopt);
-  if (!left || given == RecoveryChoice::later) return;
-  if (given == RecoveryChoice::restore) {
+  if (!left || choice == RecoveryChoice::later) return;
+  if (choice == RecoveryChoice::restore) {
     const Outcome done = context_.scene.replace(left->text, "unsaved changes");
-    if (!done) return state.show_message(done.error().message + " (" + left->path + " is still there)", true);
-    state.show_message("the unsaved changes are here again; undo takes them back");
+    if (!done) return state.show_message(done.error().message + " (" + left->path + " is kept)", true);
+    state.show_message("the unsaved changes were restored; undo reverts them");
     // write the new autosave before the old one is removed
     autosave(true);
     if (!autosave_error_.empty()) return;
   }
   remove_orphaned_autosave(*left);
-  if (given == RecoveryChoice::discard) offer_recovery();
+  if (choice == RecoveryChoice::discard) offer_recovery();
 }
 
 }  // namespace catena::app

@@ -23,7 +23,7 @@ Result<LoadedScene> load_initial_scene(SceneModel& scene, HapticSession& hand, s
 /// Executes the file commands; holds the state of pending loads, saves and dialogs.
 class SceneFiles {
  public:
-  SceneFiles(ViewerContext& shared, CameraController& eye, Viewport& picture);
+  SceneFiles(ViewerContext& shared, CameraController& camera, Viewport& viewport);
 
   /// Call when a loaded scene has become the visible one: adopts its bounds and camera. Edits are then accepted only if the haptic program
   /// can be built.
@@ -44,10 +44,10 @@ class SceneFiles {
   void cancel_save() { after_save_.reset(); }
   void quit() { confirm_leave({}); }
   /// Choices of the dialogs.
-  void on_choice(UnsavedChangesChoice given);
-  void on_choice(DroppedFileChoice given);
-  void on_choice(FileConflictChoice given);
-  void on_choice(RecoveryChoice given);
+  void on_choice(UnsavedChangesChoice choice);
+  void on_choice(DroppedFileChoice choice);
+  void on_choice(FileConflictChoice choice);
+  void on_choice(RecoveryChoice choice);
 
   /// Takes over a finished load. Returns true if the image must be rendered again.
   bool poll_loaded();
@@ -63,7 +63,7 @@ class SceneFiles {
   void leave(const PendingLeave& leaving);
   void save_and_continue(const std::string& path);
   bool write(const std::string& path);
-  void start_loading(const std::string& path, bool adds);
+  void start_loading(const std::string& path, bool to_current_scene);
   void replace_scene(LoadedScene loaded, const std::string& path);
   void add_to_scene(LoadedScene loaded, const std::string& path);
   void offer_recovery();

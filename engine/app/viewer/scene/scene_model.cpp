@@ -91,13 +91,13 @@ std::string SceneModel::recording_text() const {
   return text ? std::move(*text) : document_.text();
 }
 
-void SceneModel::transfer_session_state(scene::Scene& fresh) const {
-  fresh.camera = scene_.camera;
-  fresh.stereo.mode = scene_.stereo.mode;
-  fresh.animation_phase = scene_.animation_phase;
+void SceneModel::transfer_session_state(scene::Scene& reloaded) const {
+  reloaded.camera = scene_.camera;
+  reloaded.stereo.mode = scene_.stereo.mode;
+  reloaded.animation_phase = scene_.animation_phase;
   // the workspace is fitted to the device only once; a scene that states another one takes effect when it is opened
-  fresh.workspace = scene_.workspace;
-  if (!fresh.coupling.ramp_s) fresh.coupling.ramp_s = scene_.coupling.ramp_s;
+  reloaded.workspace = scene_.workspace;
+  if (!reloaded.coupling.ramp_s) reloaded.coupling.ramp_s = scene_.coupling.ramp_s;
 }
 
 Outcome SceneModel::edit_document(const std::function<Outcome(scene::Document&)>& edit) {
@@ -105,20 +105,20 @@ Outcome SceneModel::edit_document(const std::function<Outcome(scene::Document&)>
   CATENA_CHECK(edit(edited));
   std::swap(document_, edited);
   // after the swap `edited` holds the previous document, restored on an error
-  auto fresh = parse_document();
-  if (!fresh) {
+  auto reloaded = parse_document();
+  if (!reloaded) {
     std::swap(document_, edited);
-    return fresh.error();
+    return reloaded.error();
   }
-  scene::transfer_state(scene_, *fresh);
-  transfer_session_state(*fresh);
+  scene::transfer_state(scene_, *reloaded);
+  transfer_session_state(*reloaded);
   if (validator_)
-    if (const Outcome good = validator_(*fresh); !good) {
-      scene::transfer_state(*fresh, scene_);
+    if (const Outcome valid_outcome = validator_(*reloaded); !valid_outcome) {
+      scene::transfer_state(*reloaded, scene_);
       std::swap(document_, edited);
-      return good;
+      return valid_outcome;
     }
-  scene_ = std::move(*fresh);
+  scene_ = std::move(*reloaded);
   changed_ = true;
   return Done{};
 }

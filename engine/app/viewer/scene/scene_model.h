@@ -68,7 +68,7 @@ class SceneModel {
   /// Applies `edit` to the document and reads the scene from it; on an Error both stay unchanged.
   Outcome edit_document(const std::function<Outcome(scene::Document&)>& edit);
   /// Copies what the user changed without editing the text: camera, stereo mode, animation phase, fitted workspace.
-  void transfer_session_state(scene::Scene& fresh) const;
+  void transfer_session_state(scene::Scene& reloaded) const;
 
   scene::Document document_;
   std::function<Outcome(scene::Scene&)> apply_overrides_;

@@ -23,7 +23,7 @@ Result<bool> TimeStepWatcher::poll(SceneModel& host, TimePlayback& steps) {
       });
     } catch (const std::system_error& error) {
       last_poll_ns_ = now_ns();
-      return thread_start_error("following the steps in time", error);
+      return thread_start_error("watching for new time steps", error);
     }
     is_searching_ = true;
     return false;

@@ -12,13 +12,13 @@
 namespace catena::app {
 
 namespace {
-constexpr std::uint32_t kLeastPixels = 16;  // minimum image size in each direction: any packing of views has at least one pixel per view
+constexpr std::uint32_t kMinPixels = 16;  // minimum image size in each direction: any packing of views has at least one pixel per view
 }
 
 Result<render::FramePacket> FrameBuilder::make_packet(std::uint32_t width, std::uint32_t height) const {
   scene::Scene& scene = scene_.scene();
   const auto eye = render::view_size(render::stereo_packing(scene.stereo), render::stereo_view_count(scene.stereo),
-                                     std::max(kLeastPixels, width), std::max(kLeastPixels, height));
+                                     std::max(kMinPixels, width), std::max(kMinPixels, height));
   // with a mouse-driven probe, the drop line shows its depth
   const auto drop_line = [&]() -> bool& { return scene.entities.get<scene::Cursor>(scene.cursor).drop_line; };
   const bool stated = std::exchange(drop_line(), drop_line() || navigation_.probe_mode);
@@ -51,11 +51,11 @@ double FrameBuilder::idle_s() const { return 1e-3 * ms_since(last_change_ns_); }
 
 void FrameBuilder::mark_changed() { last_change_ns_ = now_ns(); }
 
-std::optional<FrameRequest> FrameBuilder::next_frame(bool moved, bool hand_moved, std::uint32_t width, std::uint32_t height) {
+std::optional<FrameRequest> FrameBuilder::next_frame(bool moved, bool probe_moved, std::uint32_t width, std::uint32_t height) {
   if (moved) mark_changed();
   const double rested_s = idle_s();
   if (moved) return interactive_frame();
-  if (!hand_moved) return rested_s >= kRefineDelayS ? refined_frame() : std::nullopt;
+  if (!probe_moved) return rested_s >= kRefineDelayS ? refined_frame() : std::nullopt;
   const FrameRequest next = frame_after_probe_motion(width, height);
   if (!next.settings.reuse_rays) mark_changed();
   // also refine during probe motion if time permits

@@ -29,7 +29,7 @@ class FrameBuilder {
   FrameRequest frame_after_probe_motion(std::uint32_t width, std::uint32_t height);
   /// Returns the next frame: interactive after a change, reused or interactive after probe motion, refined when idle; nothing if the last
   /// one is final.
-  std::optional<FrameRequest> next_frame(bool moved, bool hand_moved, std::uint32_t width, std::uint32_t height);
+  std::optional<FrameRequest> next_frame(bool moved, bool probe_moved, std::uint32_t width, std::uint32_t height);
   /// Returns the seconds since the content of the image changed.
   double idle_s() const;
   /// Records a change of the content.
@@ -37,8 +37,8 @@ class FrameBuilder {
 
   /// Makes the packet of the scene in its current state, for an image of that size in pixels.
   Result<render::FramePacket> make_packet(std::uint32_t width, std::uint32_t height) const;
-  /// The same for a request, with the size divided by its pixel stride; uses the packet prebuilt by frame_after_probe_motion() if there is
-  /// one.
+  /// Makes the packet for a request, with the size divided by the pixel stride of the request; uses the packet prebuilt by
+  /// frame_after_probe_motion() if there is one.
   Result<render::FramePacket> make_packet(const FrameRequest& next, std::uint32_t width, std::uint32_t height);
   /// Discards the prebuilt packet.
   void discard_prebuilt() { prebuilt_packet_.reset(); }

@@ -53,21 +53,21 @@ std::optional<Quality> LiveTuning::quality() const {
   return quality;
 }
 
-scene::TuningTargets LiveTuning::target_at(double place) const {
+scene::TuningTargets LiveTuning::target_at(double position) const {
   scene::TuningTargets targets;
   if (image_tuning && !has_fixed_quality) {
     const std::vector<double> errors = image_tuning->error_breakpoints();
-    targets.max_image_error = rounded_up(errors[index_at(place, errors.size())]);
+    targets.max_image_error = rounded_up(errors[index_at(position, errors.size())]);
   }
   if (tick_tuning && !tick_tuning->is_empty()) {
     const std::vector<double> errors = tick_tuning->error_breakpoints();
-    targets.max_proxy_error = rounded_up(errors[index_at(place, errors.size())]);
+    targets.max_proxy_error = rounded_up(errors[index_at(position, errors.size())]);
   }
   return targets;
 }
 
-std::vector<scene::Document::Edit> LiveTuning::edits_at(double place) const {
-  const scene::TuningTargets targets = target_at(place);
+std::vector<scene::Document::Edit> LiveTuning::edits_at(double position) const {
+  const scene::TuningTargets targets = target_at(position);
   std::vector<scene::Document::Edit> edits;
   if (targets.max_image_error) edits.push_back({"/quality", scene::to_json("error=" + to_text(*targets.max_image_error))});
   if (targets.max_proxy_error) {
@@ -90,24 +90,25 @@ bool LiveTuning::matches(const FrameRequest& next) const {
          render::describe(next.settings) == render::describe(image_tuning->settings());
 }
 
-Outcome measure_tick_costs(LiveTuning& live, SceneModel& scene, const HapticSession& hand, const tuning::MessageCallback& tell) {
+Outcome measure_tick_costs(LiveTuning& live, SceneModel& scene, const HapticSession& hand, const tuning::MessageCallback& report_message) {
   CATENA_TRY(tuning::TickTuning made, tuning::tune_ticks(scene.scene(), scene.document().text(), live.target,
-                                                         hand.device().settings.rate_hz, hand.field_options(), tell));
+                                                         hand.device().settings.rate_hz, hand.field_options(), report_message));
   if (made.is_empty()) return Done{};
   live.tick_tuning = std::move(made);
   return scene.set_tick_tuning(live.tick_tuning);
 }
 
 Outcome measure_image_costs(LiveTuning& live, ProgressiveScheduler& pacing, render::Renderer& renderer, const render::FramePacket& packet,
-                            const SceneModel& scene, const HapticSession& hand, const tuning::MessageCallback& tell) {
+                            const SceneModel& scene, const HapticSession& hand, const tuning::MessageCallback& report_message) {
   if (!render::uses_raycast(packet)) {
-    tell("tuning: the image has no settings: nothing in it is drawn by rays");
+    report_message("tuning: the image has no settings to tune, because nothing is rendered by ray casting");
     return Done{};
   }
-  auto made = tuning::tune_image(renderer, packet, live.target, {scene.scene(), scene.document().text(), hand.field_options()}, tell);
+  auto made =
+      tuning::tune_image(renderer, packet, live.target, {scene.scene(), scene.document().text(), hand.field_options()}, report_message);
   if (!made) return Error{made.error().message, true};
   live.image_tuning = std::move(*made);
-  tell(live.image_tuning->summary());
+  report_message(live.image_tuning->summary());
   if (const auto quality = live.quality()) pacing = ProgressiveScheduler(*quality);
   return Done{};
 }

@@ -35,20 +35,20 @@ struct LiveTuning {
   std::optional<Quality> quality() const;
 
   /// Returns the targets at a slider position, 0 fast to 1 exact; and the slider position of the current targets.
-  scene::TuningTargets target_at(double place) const;
+  scene::TuningTargets target_at(double position) const;
   double slider_position() const;
   /// Returns the edits of the scene's text that state the targets at a slider position.
-  std::vector<scene::Document::Edit> edits_at(double place) const;
+  std::vector<scene::Document::Edit> edits_at(double position) const;
 
   /// Returns whether the requested frame uses the tuned settings, with every pixel rendered.
   bool matches(const FrameRequest& next) const;
 };
 
 /// Measure the cost curves of tick or image, or take them from the cache, and apply the settings chosen for the targets. An Error means
-/// that there is no tick tuning, or a failure of the system. `packet`: of a refined frame; `tell` receives messages for the user.
-Outcome measure_tick_costs(LiveTuning& live, SceneModel& scene, const HapticSession& hand, const tuning::MessageCallback& tell);
+/// that there is no tick tuning, or a failure of the system. `packet`: of a refined frame; `report_message` receives messages for the user.
+Outcome measure_tick_costs(LiveTuning& live, SceneModel& scene, const HapticSession& hand, const tuning::MessageCallback& report_message);
 Outcome measure_image_costs(LiveTuning& live, ProgressiveScheduler& pacing, render::Renderer& renderer, const render::FramePacket& packet,
-                            const SceneModel& scene, const HapticSession& hand, const tuning::MessageCallback& tell);
+                            const SceneModel& scene, const HapticSession& hand, const tuning::MessageCallback& report_message);
 /// Sets default targets (image error 2/255, proxy error 1e-9) where there are none: equivalent to a scene without targets.
 void set_default_target(LiveTuning& live);
 /// Call after the scene's text was read again: applies the targets it states. An Error leaves the links as they are.

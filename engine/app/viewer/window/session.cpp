@@ -141,7 +141,7 @@ bool Session::animate_bands() {
 bool Session::update_head() {
   if (!head_) return false;
   const auto at = head_->position_at(s_since(start_ns_));
-  if (head_->take_lost()) context_.state.show_message("the head is not tracked, or not before the screen: the picture stays", true);
+  if (head_->take_lost()) context_.state.show_message("the head is not tracked, or is not in front of the screen: the camera stays", true);
   render::View view = view_without_head_;
   view.position = at.value_or(context_.navigation.view.position);
   const bool moved = view.position != std::exchange(context_.navigation.view, view).position;
@@ -154,7 +154,7 @@ void Session::poll_time_steps() {
   if (!more)
     context_.state.show_message(more.error().message, true);
   else if (*more)
-    context_.state.show_message(fmt::format("{} steps in time by now", scene::step_count(std::as_const(context_.scene).scene())));
+    context_.state.show_message(fmt::format("the scene has {} time steps", scene::step_count(std::as_const(context_.scene).scene())));
 }
 
 void Session::show_time_step(int step) { context_.state.show_error(context_.state.playback.show(context_.scene, step)); }
@@ -163,20 +163,20 @@ void Session::update_title() {
   const double since_s = s_since(last_title_ns_);
   if (last_title_ns_ != 0 && since_s < kTitleS) return;
   const HapticSession& hand = context_.haptic_session;
-  const HapticState& felt = hand.latest_state();
+  const HapticState& haptic_state = hand.latest_state();
   const scene::Document& document = context_.scene.document();
   const int pictures = context_.frame_times.count();
   const std::string name = context_.state.is_untitled ? "untitled" : std::filesystem::path(document.path()).filename().string();
   std::string title = fmt::format("catena  {}{}  {:.0f} fps  {:.2f} N", name, document.is_modified() ? " \u2022" : "",
-                                  last_title_ns_ == 0 ? 0 : (pictures - frames_at_last_title_) / since_s, norm(felt.force_n));
-  const auto links = std::min(static_cast<std::size_t>(felt.link_count), hand.link_names().size());
-  for (std::size_t k = 0; k < links; ++k) title += fmt::format("  {} {}", hand.link_names()[k], to_string(felt.links[k].status));
+                                  last_title_ns_ == 0 ? 0 : (pictures - frames_at_last_title_) / since_s, norm(haptic_state.force_n));
+  const auto links = std::min(static_cast<std::size_t>(haptic_state.link_count), hand.link_names().size());
+  for (std::size_t k = 0; k < links; ++k) title += fmt::format("  {} {}", hand.link_names()[k], to_string(haptic_state.links[k].status));
   if (const std::string text = hand.device().device->status_text(); !text.empty()) title += "  " + text;
   if (hand.recording().is_recording()) title += hand.recording().has_failed() ? "  the recording has stopped" : "  [recording]";
   if (!hand.is_mouse()) title += hand.forces_enabled() ? "  [forces on]" : "  [forces off]";
   const scene::StereoMode stereo = context_.scene.scene().stereo.mode;
   if (stereo != scene::StereoMode::mono) title += fmt::format("  [{}]", scene::to_string(stereo));
-  if (context_.navigation.probe_mode) title += "  [hand]";
+  if (context_.navigation.probe_mode) title += "  [probe mode]";
   if (const std::string headset = viewport_.headset_status(); !headset.empty()) title += "  [" + headset + "]";
   title += "  [" + context_.scheduler.status_text() + "]";
   context_.window.set_title(title);
@@ -191,11 +191,11 @@ bool Session::should_continue() const {
          (options.max_seconds <= 0 || s_since(start_ns_) < options.max_seconds);
 }
 
-std::optional<FrameRequest> Session::next_frame(bool moved, bool hand_moved) {
+std::optional<FrameRequest> Session::next_frame(bool moved, bool probe_moved) {
   const ViewOptions& options = context_.options;
   if (options.max_frames > 0 && context_.frame_times.count() + 1 == options.max_frames) return viewport_.frame_builder().final_frame();
   const auto [width, height] = viewport_.size();
-  return viewport_.frame_builder().next_frame(moved, hand_moved, width, height);
+  return viewport_.frame_builder().next_frame(moved, probe_moved, width, height);
 }
 
 std::optional<Failure> Session::run() {
@@ -223,10 +223,10 @@ std::optional<Failure> Session::run() {
       head_.reset();  // its display screen belongs to the closed scene
     }
     const bool edited = process_edits(), late = viewport_.take_late_probe_motion(),
-               news = context_.haptic_session.pull_state(scene.scene()) || late;
-    if (news && context_.tuning.observer) context_.tuning.observer->add(context_.haptic_session.latest_state());
-    live = live || news || files_.is_loading() || context_.haptic_session.recording().is_recording();
-    if (news) store_widget_edits();
+               state_changed = context_.haptic_session.pull_state(scene.scene()) || late;
+    if (state_changed && context_.tuning.observer) context_.tuning.observer->add(context_.haptic_session.latest_state());
+    live = live || state_changed || files_.is_loading() || context_.haptic_session.recording().is_recording();
+    if (state_changed) store_widget_edits();
     const auto followed = viewport_.poll_headset();
     if (!followed) return Failure{1, followed.error().message};
     const bool in_headset = *followed;
@@ -244,7 +244,7 @@ std::optional<Failure> Session::run() {
     const bool moved = by_input.view || std::exchange(content_changed_, false) || opened || edited || resized || pulsed || reloaded ||
                        turned || head_moved || context_.frame_times.count() == 0;
     if (in_headset && moved) viewport_.frame_builder().mark_changed();
-    auto next = in_headset ? viewport_.frame_builder().interactive_frame() : next_frame(moved, news || by_input.probe);
+    auto next = in_headset ? viewport_.frame_builder().interactive_frame() : next_frame(moved, state_changed || by_input.probe);
     if (!next && viewport_.frame_builder().idle_s() >= kEstimateS && std::exchange(estimate_requested_, false))
       if (auto failure = viewport_.estimate_error()) return failure;
     if (!next && (options.max_frames > 0 || options.max_seconds > 0)) next = context_.scheduler.current();
@@ -292,15 +292,14 @@ std::optional<Failure> Session::finish() {
 void Session::print_statistics() {
   Presenter& screen = viewport_.presenter();
   const FrameTimes& times = context_.frame_times;
-  const HapticState& felt = context_.haptic_session.latest_state();
+  const HapticState& haptic_state = context_.haptic_session.latest_state();
   fmt::print("{} frames, {:.1f} ms median, on {}\n", times.count(), 1e-3 * times.draw_times().p50_us,
              sanitize_for_terminal(screen.renderer().stats().device));
   if (const std::string headset = viewport_.headset_summary(); !headset.empty()) fmt::print("{}\n", headset);
   if (screen.recovery_count() > 0)
-    fmt::print("the graphics device was lost and started again {} time{}\n", screen.recovery_count(),
-               screen.recovery_count() == 1 ? "" : "s");
-  fmt::print("probe {:.6g} {:.6g} {:.6g}, force {:.3g} N, {} ticks, {} deadlines missed\n", felt.probe.x, felt.probe.y, felt.probe.z,
-             norm(felt.force_n), felt.tick, felt.missed_deadlines);
+    fmt::print("the graphics device was lost and restarted {} time{}\n", screen.recovery_count(), screen.recovery_count() == 1 ? "" : "s");
+  fmt::print("probe {:.6g} {:.6g} {:.6g}, force {:.3g} N, {} ticks, {} deadlines missed\n", haptic_state.probe.x, haptic_state.probe.y,
+             haptic_state.probe.z, norm(haptic_state.force_n), haptic_state.tick, haptic_state.missed_deadlines);
 }
 
 }  // namespace catena::app

@@ -36,7 +36,7 @@ class Session {
  private:
   // The loop.
   bool should_continue() const;
-  std::optional<FrameRequest> next_frame(bool moved, bool hand_moved);
+  std::optional<FrameRequest> next_frame(bool moved, bool probe_moved);
   bool process_edits();
   void store_widget_edits();
   void find_animated_bands();

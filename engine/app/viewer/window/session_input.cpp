@@ -33,7 +33,7 @@ void Session::execute(const Command& command) {
     // a device with forces receives every signal, even a repeated one, only as a request to stop
     if (done && !hand.is_mouse() && !(interrupt_ && interrupt_->is_requested())) interrupt_.emplace();
     context_.navigation.probe = hand.latest_state().tick > 0 ? hand.latest_state().probe : hand.initial_probe();
-    state.show_message(done ? hand.device().device->capabilities().name + " holds the probe" : done.error().message, !done);
+    state.show_message(done ? hand.device().device->capabilities().name + " moves the probe" : done.error().message, !done);
   };
   const auto record = [&](const SetRecording& asked) {
     const std::string before = hand.recording().path();
@@ -142,7 +142,7 @@ void Session::perform(Action action) {
 
 void Session::end_probe_mode() {
   context_.navigation.probe_mode = false;
-  if (context_.haptic_session.is_mouse()) context_.state.show_message("the hand stays where it is; H takes it again");
+  if (context_.haptic_session.is_mouse()) context_.state.show_message("the probe stays at its position; H moves it");
 }
 
 /// Moves the probe onto the item under the pointer. If the chain is empty, a link on that item is added.
@@ -156,7 +156,7 @@ void Session::begin_probe_mode() {
     if (!item.empty())
       bind_haptics(item, under->world);
     else
-      context_.state.show_message("nothing is felt yet: point at a thing in the picture and press H, or click Feel beside its name");
+      context_.state.show_message("the chain is empty: point at an object in the image and press H, or click Feel beside the object");
   }
   if (!context_.haptic_session.is_mouse()) return;
   controls.pointer_hit = under ? std::optional(under->world) : std::nullopt;
@@ -169,11 +169,11 @@ void Session::bind_haptics(const std::string& item, std::optional<Vec3> at) {
   SceneModel& scene = context_.scene;
   ViewState& state = context_.state;
   const double edge = scene.bounds.longest_edge();
-  const auto thing = app::make_haptic_binding(scene.scene(), item, at, context_.navigation.view.position, edge > 0 ? edge : 4);
-  if (!thing) return state.show_message(thing.error().message, true);
-  if (const std::string by = find_bound_link(scene.scene(), *thing); !by.empty())
-    return state.show_message(thing->description + " is felt already, by the link " + by);
-  const Outcome done = scene.apply(make_binding_edits(scene.scene(), item, *thing), "feel " + thing->description, {});
+  const auto binding = app::make_haptic_binding(scene.scene(), item, at, context_.navigation.view.position, edge > 0 ? edge : 4);
+  if (!binding) return state.show_message(binding.error().message, true);
+  if (const std::string by = find_bound_link(scene.scene(), *binding); !by.empty())
+    return state.show_message(binding->description + " has a link already: " + by);
+  const Outcome done = scene.apply(make_binding_edits(scene.scene(), item, *binding), "feel " + binding->description, {});
   if (!done) return state.show_message(done.error().message, true);
   // a mouse-driven probe starts on the item's surface, not inside it
   Navigation& controls = context_.navigation;
@@ -183,16 +183,16 @@ void Session::bind_haptics(const std::string& item, std::optional<Vec3> at) {
     context_.haptic_session.move_mouse(scene.scene(), controls.probe, controls.buttons);
   }
   const char* how = !context_.haptic_session.is_mouse() ? ""
-                    : controls.probe_mode               ? ". The wheel pushes; Esc ends it"
-                                                        : ". Point at it and press H: the pointer is the hand, the wheel pushes";
-  state.show_message("felt: " + thing->description + how);
+                    : controls.probe_mode               ? ". The wheel moves the probe in depth; Esc ends probe mode"
+                                                        : ". Point at the object and press H to move the probe with the mouse";
+  state.show_message("link added: " + binding->description + how);
 }
 
 /// Removes the item and the links on it, except links that something else needs.
 void Session::remove_item(const std::string& item, const std::string& what) {
   SceneModel& scene = context_.scene;
-  const TextEdits felt = make_remove_edits_with_links(scene.scene(), scene.document().text(), item);
-  if (scene.apply(felt, what)) return;
+  const TextEdits removal_edits = make_remove_edits_with_links(scene.scene(), scene.document().text(), item);
+  if (scene.apply(removal_edits, what)) return;
   context_.state.show_error(scene.apply(make_remove_edits(scene.document().text(), item), what));
 }
 
@@ -268,7 +268,7 @@ NavigationChanges Session::process_segment(Input piece) {
     }
   if (!piece.dropped_files.empty()) {
     const auto series = scene::make_pattern(piece.dropped_files);
-    if (!series) context_.state.show_message("several files that are no series were dropped: the last one counts");
+    if (!series) context_.state.show_message("the dropped files are not a series: only the last file is opened");
     commands.push_back(DropFile{series ? *series : piece.dropped_files.back()});
   }
   execute();

@@ -25,14 +25,14 @@ Result<ShaderReload> ShaderReload::open(const std::string& folder) {
 bool ShaderReload::poll(render::Renderer& renderer, std::int64_t now_ns) {
   if (last_poll_ns_ && now_ns - *last_poll_ns_ < kLookNs) return false;
   last_poll_ns_ = now_ns;
-  render::ShaderChanges news = watch_.poll();
-  for (const std::string& error : news.errors) print_message(error);
+  render::ShaderChanges changes = watch_.poll();
+  for (const std::string& error : changes.errors) print_message(error);
   bool any = false;
-  for (render::ChangedShader& shader : news.changed) {
+  for (render::ChangedShader& shader : changes.changed) {
     const auto replaced = renderer.replace_shader(shader.name, std::move(shader.words));
     if (!replaced) print_message(replaced.error().message);
     if (!replaced || !*replaced) continue;
-    fmt::print("{}: taken from the file\n", shader.name);
+    fmt::print("{}: reloaded from the file\n", shader.name);
     any = true;
   }
   std::fflush(stdout);
@@ -40,9 +40,9 @@ bool ShaderReload::poll(render::Renderer& renderer, std::int64_t now_ns) {
   return any;
 }
 
-bool ShaderReload::fall_back(render::Renderer& renderer, const std::string& why) {
+bool ShaderReload::fall_back(render::Renderer& renderer, const std::string& reason) {
   if (!replaced_) return false;
-  print_message(why + "; the shaders of the program are back");
+  print_message(reason + "; the shaders of the program are used");
   renderer.restore_shaders();
   replaced_ = false;
   return true;

@@ -18,9 +18,9 @@ class ShaderReload {
   static Result<ShaderReload> open(const std::string& folder);
   /// Checks the files, at most four times per second. Returns true if the next frame uses other shaders.
   bool poll(render::Renderer& renderer, std::int64_t now_ns);
-  /// Call when rendering with the replaced shaders fails: restores the embedded ones and prints `why` to stderr. Returns false if no shader
-  /// was replaced.
-  bool fall_back(render::Renderer& renderer, const std::string& why);
+  /// Call when rendering with the replaced shaders fails: restores the embedded ones and prints `reason` to stderr. Returns false if no
+  /// shader was replaced.
+  bool fall_back(render::Renderer& renderer, const std::string& reason);
 
  private:
   explicit ShaderReload(render::ShaderWatcher watch) : watch_(std::move(watch)) {}

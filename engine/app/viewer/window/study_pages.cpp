@@ -66,7 +66,7 @@ void sheet(const Area& area, const char* name, const std::string& foot, Fill&& f
 }
 
 void draw_page(const InstructionPage& page, const Area& area, const char* name) {
-  sheet(area, name, "Space: go on", [&](const Fonts& fonts, float) {
+  sheet(area, name, "Space: continue", [&](const Fonts& fonts, float) {
     write(fonts.heading, kInk, page.heading);
     for (const std::string& paragraph : page.paragraphs) {
       space(0.6f);
@@ -75,7 +75,7 @@ void draw_page(const InstructionPage& page, const Area& area, const char* name) 
   });
 }
 
-/// The answer without the number of its key, with which it may begin: "7 very much".
+/// Returns the answer without the number of its key at the beginning ("7 very much").
 std::string words_of(const std::string& answer, std::size_t key) {
   const std::string number = std::to_string(key);
   if (!answer.starts_with(number)) return answer;
@@ -132,7 +132,7 @@ void draw_question(const StudyView& view, const Area& area, const char* name) {
   const std::vector<std::string>& answers = question.answers;
   const std::string& entry = view.procedure.typed_answer();
   const std::string foot =
-      answers.empty() ? "Type your answer.  Enter: go on" : fmt::format("1 to {}: your answer.  Enter: go on", answers.size());
+      answers.empty() ? "Type your answer.  Enter: continue" : fmt::format("1 to {}: your answer.  Enter: continue", answers.size());
   sheet(area, name, foot, [&](const Fonts& fonts, float column) {
     write(fonts.small, kQuiet, fmt::format("Question {} of {}", view.procedure.question_index() + 1, view.procedure.question_count()));
     space(0.4f);
@@ -171,11 +171,11 @@ void draw_study(const StudyView& view, const std::vector<Area>& areas) {
         break;
       case Procedure::Stage::ready:
         draw_line(fmt::format("{}.  {}", view.procedure.trial_label(),
-                              view.is_at_start ? "Space: begin" : "Bring the cross to the start.  P: pause"),
+                              view.is_at_start ? "Space: begin" : "Move the cross to the start.  P: pause"),
                   areas[i], (name + "line").c_str());
         break;
       case Procedure::Stage::running:
-        if (view.must_return_to_start) draw_line("Back to the start", areas[i], (name + "line").c_str());
+        if (view.must_return_to_start) draw_line("Move back to the start", areas[i], (name + "line").c_str());
         break;
       case Procedure::Stage::finished:
         break;

@@ -155,10 +155,10 @@ void StudyWindow::place_probe_under_pointer() {
 
 // ---- display ----
 
-std::optional<FrameRequest> StudyWindow::next_frame(bool moved, bool hand_moved) {
+std::optional<FrameRequest> StudyWindow::next_frame(bool moved, bool probe_moved) {
   if (moved) return viewport_.frame_builder().interactive_frame();
   if (!shows_image()) return std::nullopt;
-  if (!hand_moved) return 1e-3 * ms_since(last_change_ns_) >= kRefineDelayS ? viewport_.frame_builder().refined_frame() : std::nullopt;
+  if (!probe_moved) return 1e-3 * ms_since(last_change_ns_) >= kRefineDelayS ? viewport_.frame_builder().refined_frame() : std::nullopt;
   const FrameRequest next = viewport_.frame_after_probe_motion();
   if (!next.settings.reuse_rays) last_change_ns_ = now_ns();
   return next;
@@ -185,7 +185,7 @@ void StudyWindow::update_title() {
                            session_.is_at_start(context_.haptic_session) ? ", at the start" : "");
       break;
     case Stage::running:
-      title += fmt::format("trial {} of {} runs", procedure.trial() + 1, trials);
+      title += fmt::format("trial {} of {}, running", procedure.trial() + 1, trials);
       break;
     case Stage::question:
       title += fmt::format("question {} of {}", procedure.question_index() + 1, procedure.question_count());

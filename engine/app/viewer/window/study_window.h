@@ -40,7 +40,7 @@ class StudyWindow {
   void show_scene(const LoadedScene& loaded);
   void move_probe(Input piece);
   void place_probe_under_pointer();
-  std::optional<FrameRequest> next_frame(bool moved, bool hand_moved);
+  std::optional<FrameRequest> next_frame(bool moved, bool probe_moved);
   void draw_pages();
   void update_title();
 

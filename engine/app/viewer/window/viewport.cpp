@@ -50,7 +50,7 @@ std::optional<Failure> Viewport::open() {
   if (!screen) return Failure{1, screen.error().message};
   presenter_ = std::move(*screen);
   const render::vk::DeviceInfo& device = presenter_->renderer().device().info();
-  if (device.is_cpu()) context_.state.show_message("no GPU: drawn by the processor (" + device.name + ")");
+  if (device.is_cpu()) context_.state.show_message("no GPU was found: the processor renders (" + device.name + ")");
   return std::nullopt;
 }
 
@@ -96,9 +96,9 @@ Result<bool> Viewport::poll_headset() {
 void Viewport::update_room_registration() {
   HapticSession& hand = context_.haptic_session;
   DeviceRegistration& desk = *headset_session_->device_registration();
-  for (const DeviceRegistration::Message& news : desk.take_messages()) {
-    context_.state.show_message(news.text, news.is_error);
-    print_message(news.text);
+  for (const DeviceRegistration::Message& message : desk.take_messages()) {
+    context_.state.show_message(message.text, message.is_error);
+    print_message(message.text);
   }
   context_.state.prompt = desk.prompt();
   if (const auto found = desk.take_registration()) save_registration(*found);
@@ -114,7 +114,7 @@ void Viewport::update_room_registration() {
 
 Outcome Viewport::toggle_registration() {
   DeviceRegistration* const desk = headset_session_ ? headset_session_->device_registration() : nullptr;
-  if (!desk) return Error{"there is no headset in whose room a device could be registered; view --xr was expected"};
+  if (!desk) return Error{"a device can be registered only with a headset; catena view --xr was expected"};
   if (!desk->is_active()) return desk->begin(context_.haptic_session);
   desk->cancel();
   return Done{};
@@ -126,19 +126,20 @@ void Viewport::save_registration(const haptics::DeviceSettings::RoomRegistration
   const std::vector<scene::Document::Edit> edits{{"/type", scene::to_json(type)},
                                                  {"/room_origin", scene::to_json(room.origin_m)},
                                                  {"/room_rotation", schema::write_value(room.room_from_workspace)}};
-  const auto say = [&](const Outcome& kept, const std::string& where) {
+  const auto report_result = [&](const Outcome& kept, const std::string& where) {
     context_.state.show_message(kept ? where : kept.error().message, !kept);
     print_message(kept ? where : kept.error().message);
   };
-  if (!file.empty()) return say(write_device_file(file, edits), "where it stands was written to " + file);
+  if (!file.empty()) return report_result(write_device_file(file, edits), "the registration was written to " + file);
   const auto& device = std::as_const(context_.scene).scene().device;
   const json::Node* const other = device ? device->find("type") : nullptr;
   if (other && other->string != type)
-    return say(
-        Error{"the scene's \"device\" is a " + other->string + ": where the " + type + " stands is not kept; --device-file keeps it"}, "");
+    return report_result(Error{"the scene's \"device\" is a " + other->string + ": the registration of the " + type +
+                               " is not saved; --device-file saves it"},
+                         "");
   std::vector<scene::Document::Edit> in_scene = edits;
   for (scene::Document::Edit& edit : in_scene) edit.pointer.insert(0, "/device");
-  say(context_.scene.apply(in_scene, "where the device stands"), "where it stands is part of the scene, which is saved with Ctrl+S");
+  report_result(context_.scene.apply(in_scene, "register the device"), "the registration is part of the scene; Ctrl+S saves the scene");
 }
 
 /// Draws into the headset. True: the window shows the image of one eye. Window positions cannot be picked there: each eye has its own
@@ -219,7 +220,7 @@ std::optional<Failure> Viewport::draw(const FrameRequest& next, bool for_file) {
     drawn = presenter_->draw(*packet, next.settings);
   if (!drawn) return Failure{1, drawn.error().message};
   const bool recovered = presenter_->recovery_count() != recoveries;
-  if (recovered) context_.state.show_message("the graphics device was lost and has been started again", true);
+  if (recovered) context_.state.show_message("the graphics device was lost and restarted", true);
   // the clock's renderer was destroyed with the lost device
   const double ms = ms_since(start), drawing_ms = recovered ? ms : clock.elapsed_ms();
   pacing.on_rendered(ms);
@@ -315,14 +316,14 @@ void Viewport::update_field_probes() {
     if (world) place.samples = sample_fields(scene, *world);
     return place;
   };
-  const HapticState& felt = hand.latest_state();
-  const bool feels = felt.tick > 0;
-  state.probe_samples = at(feels ? std::optional(felt.probe) : std::nullopt, {});
+  const HapticState& haptic_state = hand.latest_state();
+  const bool feels = haptic_state.tick > 0;
+  state.probe_samples = at(feels ? std::optional(haptic_state.probe) : std::nullopt, {});
   std::optional<Vec3> proxy;
-  if (feels && felt.link_count > 0) proxy = felt.links[static_cast<std::size_t>(felt.link_count - 1)].proxy;
-  state.proxy_samples = at(proxy, feels && felt.link_count > 0 && !hand.link_names().empty() ? hand.link_names().back() : "");
-  const double most = scene.coupling.max_force_n;
-  state.force_ratio = most > 0 ? std::clamp(norm(felt.force_n) / most, 0.0, 1.0) : 0;
+  if (feels && haptic_state.link_count > 0) proxy = haptic_state.links[static_cast<std::size_t>(haptic_state.link_count - 1)].proxy;
+  state.proxy_samples = at(proxy, feels && haptic_state.link_count > 0 && !hand.link_names().empty() ? hand.link_names().back() : "");
+  const double maximum = scene.coupling.max_force_n;
+  state.force_ratio = maximum > 0 ? std::clamp(norm(haptic_state.force_n) / maximum, 0.0, 1.0) : 0;
 
   const auto& shown = frame_builder_.last_packet();
   const bool can = state.pointer_on_image && !state.pointer_pressed && shown && shown->eyes.empty() && !state.is_untitled;
@@ -361,14 +362,14 @@ std::optional<Vec3> Viewport::find_visible_point(const std::string& item) const 
   if (const auto here = pick_under_pointer(); here && item_label(here->id) == item) return here->world;
   const Area& area = context_.state.image_area;
   std::optional<Vec3> place;
-  double least = 2;
+  double minimum = 2;
   for (int j = 0; j < lattice; ++j)
     for (int i = 0; i < lattice; ++i) {
       const double x = (i + 0.5) / lattice, y = (j + 0.5) / lattice, away = std::hypot(x - 0.5, y - 0.5);
-      if (away >= least) continue;
+      if (away >= minimum) continue;
       const auto there = pick_at(area.x + x * area.width, area.y + y * area.height);
       if (!there || item_label(there->id) != item) continue;
-      least = away;
+      minimum = away;
       place = there->world;
     }
   return place;

@@ -64,16 +64,16 @@ struct Window::Impl {
 };
 
 Result<std::unique_ptr<Window>> Window::create(std::uint32_t width, std::uint32_t height, const std::string& title) {
-  const std::string advice = "; `catena render SCENE -o FILE.png` makes pictures without a window";
+  const std::string advice = "; `catena render SCENE -o FILE.png` renders an image without a window";
   glfwSetErrorCallback([](int, const char* text) { last_error() = text; });
-  if (glfwInit() != GLFW_TRUE) return Error{"no display: " + last_error() + advice};
+  if (glfwInit() != GLFW_TRUE) return Error{"no display was found: " + last_error() + advice};
   std::unique_ptr<Window> result(new Window);
   result->impl_ = std::make_unique<Impl>();
   Impl& parts = *result->impl_;
-  if (glfwVulkanSupported() != GLFW_TRUE) return Error{"no Vulkan driver that can draw in a window was found" + advice};
+  if (glfwVulkanSupported() != GLFW_TRUE) return Error{"no Vulkan driver that can render to a window was found" + advice};
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
   parts.window = glfwCreateWindow(static_cast<int>(width), static_cast<int>(height), title.c_str(), nullptr, nullptr);
-  if (parts.window == nullptr) return Error{"no display: " + last_error() + advice};
+  if (parts.window == nullptr) return Error{"no display was found: " + last_error() + advice};
 
   glfwSetWindowUserPointer(parts.window, &parts);
   glfwSetCursorPosCallback(parts.window, [](GLFWwindow* w, double x, double y) {
@@ -224,7 +224,7 @@ void Window::set_fullscreen(bool on) {
   int count = 0;
   GLFWmonitor** monitors = glfwGetMonitors(&count);
   GLFWmonitor* best = nullptr;
-  long most = -1;
+  long maximum = -1;
   for (int i = 0; i < count; ++i) {
     const GLFWvidmode* mode = glfwGetVideoMode(monitors[i]);
     if (mode == nullptr) continue;
@@ -232,8 +232,8 @@ void Window::set_fullscreen(bool on) {
     glfwGetMonitorPos(monitors[i], &mx, &my);
     const long w = std::max(0, std::min(x + width, mx + mode->width) - std::max(x, mx));
     const long h = std::max(0, std::min(y + height, my + mode->height) - std::max(y, my));
-    if (w * h <= most) continue;
-    most = w * h;
+    if (w * h <= maximum) continue;
+    maximum = w * h;
     best = monitors[i];
   }
   if (best == nullptr) return;

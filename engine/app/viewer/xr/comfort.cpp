@@ -4,7 +4,7 @@
 namespace catena::xr_interaction {
 namespace {
 
-constexpr double kTurns = 0.7, kArms = 0.3, kLeastWish = 0.1;
+constexpr double kTurns = 0.7, kArms = 0.3, kMinWish = 0.1;
 
 }  // namespace
 
@@ -21,9 +21,10 @@ double Vignette::step(const Placement& before, const Placement& now, const Vec3&
   const double speed = norm(now.to_room(before.to_world(head_m)) - head_m) / dt_s;
   const double turn = norm(rotation_vector(normalized(glm::quat_cast(transpose(now.world_from_room) * before.world_from_room)))) / dt_s;
   const double scaling = std::fabs(std::log(now.meters_per_unit / before.meters_per_unit)) / dt_s;
-  double wish = std::max({speed / options_.full_speed_m_per_s, turn / options_.full_turn_rad_per_s, scaling / options_.full_scaling_per_s});
-  wish = wish >= kLeastWish ? std::min(1.0, wish) : 0;
-  strength_ = std::clamp(wish, strength_ - dt_s / options_.fall_s, strength_ + dt_s / options_.rise_s);
+  double request =
+      std::max({speed / options_.full_speed_m_per_s, turn / options_.full_turn_rad_per_s, scaling / options_.full_scaling_per_s});
+  request = request >= kMinWish ? std::min(1.0, request) : 0;
+  strength_ = std::clamp(request, strength_ - dt_s / options_.fall_s, strength_ + dt_s / options_.rise_s);
   return strength_;
 }
 

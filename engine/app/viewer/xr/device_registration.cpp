@@ -19,9 +19,9 @@ Outcome DeviceRegistration::begin(HapticSession& hand) {
   const std::string& name = hand.device_name();
   const haptics::DeviceSettings& settings = hand.device().settings;
   if (!haptics::is_stationary(haptics::parse_device_type(name)))
-    return Error{name + " has no place of its own on the desk, so there is nothing to register; a haptic device was expected"};
+    return Error{name + " has no fixed position in the room and cannot be registered; a haptic device was expected"};
   if (settings.scale != 1 || settings.clutch_button != 0)
-    return Error{fmt::format("{}: with {} its metres are not the room's; a device without was expected", name,
+    return Error{fmt::format("{}: a device with {} cannot be registered, because its motion is not the motion in the room", name,
                              settings.scale != 1 ? "\"scale\"" : "\"clutch_button\"")};
   if (hand.forces_enabled()) hand.set_forces_enabled(false);
   touch_registration_.emplace(name);
@@ -30,7 +30,7 @@ Outcome DeviceRegistration::begin(HapticSession& hand) {
 }
 
 void DeviceRegistration::cancel() {
-  if (touch_registration_) messages_.push_back({device_ + " is not registered; G, or the panel Device, asks for its three places again"});
+  if (touch_registration_) messages_.push_back({device_ + " is not registered; press G, or use the panel Device, to register the device"});
   touch_registration_.reset();
 }
 
@@ -43,7 +43,7 @@ void DeviceRegistration::track_device(HapticSession& hand, const StageSpace& spa
   device_ = hand.device_name();
   if (lost) {
     hand.set_room(std::nullopt);
-    messages_.push_back({"where " + device_ + " stands is not known: the headset has no space for the room itself (stage)", true});
+    messages_.push_back({"the registration of " + device_ + " is lost: the headset has no stage space, which is fixed in the room", true});
   }
   if (!is_new && !lost) return;
   touch_registration_.reset();
@@ -60,7 +60,8 @@ void DeviceRegistration::finish(HapticSession& hand, const xr_interaction::Regis
   if (space_->is_stage)
     found_pose_ = room;
   else
-    messages_.push_back({"the headset has no space for the room itself (stage): this holds until it is recentred", true});
+    messages_.push_back(
+        {"the headset has no stage space, which is fixed in the room: the registration holds until the view is recentred", true});
 }
 
 void DeviceRegistration::step(double t_s, HapticSession& hand, const std::array<XrHand, 2>& hands, const StageSpace& space) {

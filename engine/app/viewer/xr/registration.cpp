@@ -6,7 +6,7 @@
 namespace catena::xr_interaction {
 namespace {
 
-constexpr double kLeastEdge_m = 0.02, kLeastHeight_m = 0.01;
+constexpr double kMinEdge_m = 0.02, kMinHeight_m = 0.01;
 
 /// Three points as a plane through their centroid.
 struct Triangle {
@@ -18,19 +18,19 @@ struct Triangle {
 Result<Triangle> triangle_of(const std::array<Vec3, 3>& places, const char* whose) {
   Triangle out;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (!is_finite(places[i])) return Error{fmt::format("place {} of {} is not finite; numbers were expected", i + 1, whose)};
+    if (!is_finite(places[i])) return Error{fmt::format("point {} of {} is not finite; finite numbers were expected", i + 1, whose)};
     out.centre += places[i] / 3.0;
     out.edges[i] = norm(places[(i + 1) % 3] - places[i]);
-    if (out.edges[i] < kLeastEdge_m)
-      return Error{fmt::format("places {} and {} of {} are {:.1f} mm apart; at least {:.0f} mm were expected", i + 1, (i + 1) % 3 + 1,
-                               whose, 1e3 * out.edges[i], 1e3 * kLeastEdge_m)};
+    if (out.edges[i] < kMinEdge_m)
+      return Error{fmt::format("points {} and {} of {} are {:.1f} mm apart; at least {:.0f} mm were expected", i + 1, (i + 1) % 3 + 1,
+                               whose, 1e3 * out.edges[i], 1e3 * kMinEdge_m)};
   }
   for (std::size_t i = 0; i < 3; ++i) out.from_centre[i] = places[i] - out.centre;
   const Vec3 twice_area = cross(places[1] - places[0], places[2] - places[0]);
   const double height = norm(twice_area) / *std::max_element(out.edges.begin(), out.edges.end());
-  if (height < kLeastHeight_m)
-    return Error{fmt::format("the three places of {} are nearly on one line, {:.1f} mm off it; at least {:.0f} mm were expected", whose,
-                             1e3 * height, 1e3 * kLeastHeight_m)};
+  if (height < kMinHeight_m)
+    return Error{fmt::format("the three points of {} are nearly on one line, {:.1f} mm from it; at least {:.0f} mm were expected", whose,
+                             1e3 * height, 1e3 * kMinHeight_m)};
   out.normal = direction(twice_area);
   return out;
 }

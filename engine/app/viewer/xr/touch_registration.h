@@ -54,7 +54,7 @@ class TouchRegistration {
     int count = 0;
   };
   /// Processes one sample of a side; returns a message if a point was accepted or rejected.
-  std::optional<Message> add_sample(Side& side, const std::string& whose, double t_s, const TouchInput& now);
+  std::optional<Message> add_sample(Side& side, const std::string& target_name, double t_s, const TouchInput& now);
   /// Computes the registration from three points of both sides; on failure clears the points.
   Message finish();
 

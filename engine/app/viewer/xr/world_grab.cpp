@@ -6,7 +6,7 @@
 namespace catena::xr_interaction {
 namespace {
 
-constexpr double kLeastSpan_m = 0.02;
+constexpr double kMinSpan_m = 0.02;
 const Vec3 kUp{0.0, 1.0, 0.0};
 
 /// Angle of the component of q that turns about the unit axis, radians.
@@ -22,7 +22,7 @@ struct Pull {
 
 Pull pull_of(const std::array<GrabController, 2>& from, const std::array<GrabController, 2>& to) {
   const Vec3 before = from[1].position_m - from[0].position_m, after = to[1].position_m - to[0].position_m;
-  if (norm(before) < kLeastSpan_m || norm(after) < kLeastSpan_m) return {};
+  if (norm(before) < kMinSpan_m || norm(after) < kMinSpan_m) return {};
   const Vec3 axis = direction(after);
   const Quat swing = shortest_arc(direction(before), axis);
   double twist = 0;

@@ -26,10 +26,10 @@ constexpr std::chrono::milliseconds kTurn{10};       // wait per turn of the win
 constexpr double kFovea = 0.36;           // tan 20 degrees off the gaze, or the eye's axis: beyond it full resolution is not worth its cost
 constexpr double kAboveHandM = 0.06;      // offset of the scale label above the controllers that grab the world
 constexpr double kWordsAt_px = 1.0 / 50;  // label height, as a fraction of the view's
-constexpr double kMostStepS = 0.1;        // maximum time step of world motion: no jump after a pause
-constexpr std::int64_t kSayAgainNs = 30'000'000'000;  // interval after which the same loss is reported another time
-constexpr std::int64_t kSettlesNs = 300'000'000;      // forces are suspended so long after the world was placed: the probe jumps
-constexpr int kUnseen = 60;                           // frames without a view before this is reported
+constexpr double kMaxStepS = 0.1;         // maximum time step of world motion: no jump after a pause
+constexpr std::int64_t kRepeatNs = 30'000'000'000;  // interval after which the same loss is reported another time
+constexpr std::int64_t kSettlesNs = 300'000'000;    // forces are suspended so long after the world was placed: the probe jumps
+constexpr int kUnseen = 60;                         // frames without a view before this is reported
 
 /// Placement by the scene's camera, with its view straight ahead of the head: the local space of some runtimes begins elsewhere.
 Placement before(const render::xr::XrHeadPose& head, const render::View& view) {
@@ -48,8 +48,8 @@ struct HeadsetSession::Impl {
   std::unique_ptr<render::xr::Headset> headset;
   std::int64_t retry_ns = 0;    ///< earliest time of the next attempt
   std::int64_t started_ns = 0;  ///< start of the session
-  std::string said;             ///< last reported loss
-  std::int64_t said_ns = 0;
+  std::string reported_loss;    ///< last reported loss
+  std::int64_t reported_ns = 0;
   std::string broken;  ///< error in a frame; handled by follow()
   bool waits = false;  ///< waiting for a frame that the runtime delays longer than kPatience
   bool told_waits = false, waits_news = false;
@@ -107,14 +107,14 @@ void HeadsetSession::Impl::lose(std::int64_t now_ns) {
   if (headset && headset->loss() == render::xr::Loss::instance) headset.reset();
 }
 
-Outcome HeadsetSession::poll(Presenter& screen, std::int64_t now_ns, const std::function<void(const std::string&)>& say) {
+Outcome HeadsetSession::poll(Presenter& screen, std::int64_t now_ns, const std::function<void(const std::string&)>& report_message) {
   Impl& p = *impl_;
   if (p.left) return Done{};
   const auto lose = [&](const std::string& why) {
-    if (p.said != why || now_ns - p.said_ns > kSayAgainNs) {
-      say(why);
-      p.said = why;
-      p.said_ns = now_ns;
+    if (p.reported_loss != why || now_ns - p.reported_ns > kRepeatNs) {
+      report_message(why);
+      p.reported_loss = why;
+      p.reported_ns = now_ns;
     }
     p.lose(now_ns);
   };
@@ -129,7 +129,7 @@ Outcome HeadsetSession::poll(Presenter& screen, std::int64_t now_ns, const std::
     if (const Outcome made = screen.recreate(); !made) {
       p.headset.reset();
       CATENA_CHECK(screen.recreate());
-      lose("the headset's runtime is back without a device: " + made.error().message);
+      lose("the headset's runtime restarted without a graphics device: " + made.error().message);
       return Done{};
     }
   }
@@ -146,16 +146,16 @@ Outcome HeadsetSession::poll(Presenter& screen, std::int64_t now_ns, const std::
     lose(polled.error().message);
     return Done{};
   }
-  if (std::exchange(p.waits_news, false)) say("the headset's runtime lets its picture wait: the window goes on meanwhile");
+  if (std::exchange(p.waits_news, false)) report_message("the headset's runtime delays its images; the window continues");
   if (p.unseen == kUnseen) {
     ++p.unseen;
-    say("the headset says of its eyes no place or field of view that a picture can be made for");
+    report_message("the headset reports no usable pose or field of view of its eyes; its images are not rendered");
   }
-  if (const std::string news = p.pace.take_message(); !news.empty()) say(news);
+  if (const std::string message = p.pace.take_message(); !message.empty()) report_message(message);
   if (p.headset->session().has_exited()) {
     p.left = true;
     p.stop();
-    say("the headset's session was ended by its runtime");
+    report_message("the headset's runtime ended the session");
   }
   return Done{};
 }
@@ -210,7 +210,7 @@ Outcome HeadsetSession::Impl::take_hands(const render::xr::Frame& frame, HapticS
     gaze = rotate(eyes->orientation, Vec3(0.0, 0.0, -1.0));
   }
   hand.record_poses(poses);
-  const double dt_s = last_time == 0 ? 0 : std::clamp(1e-9 * (double(frame.display_time) - double(last_time)), 0.0, kMostStepS);
+  const double dt_s = last_time == 0 ? 0 : std::clamp(1e-9 * (double(frame.display_time) - double(last_time)), 0.0, kMaxStepS);
   last_time = frame.display_time;
   if (placement) hands.update(hands_then, head.position, dt_s, *placement);
   held_m = hands.grab_center(hands_then);
@@ -320,7 +320,7 @@ std::optional<scene::Workspace> HeadsetSession::probe_workspace(const HapticSess
 
 std::string HeadsetSession::summary_text() const {
   const Impl& p = *impl_;
-  return fmt::format("headset: {} pictures, {} late after the first {}, {} at half rate", p.pictures, p.pace.late_after_warmup(),
+  return fmt::format("headset: {} images, {} late after the first {}, {} at half rate", p.pictures, p.pace.late_after_warmup(),
                      render::XrFramePacing::kWarmupFrames, p.pace.half_rate_frames());
 }
 
@@ -347,7 +347,7 @@ struct HeadsetSession::Impl {};
 HeadsetSession::HeadsetSession(std::unique_ptr<Impl> parts) : impl_(std::move(parts)) {}
 HeadsetSession::~HeadsetSession() = default;
 Result<std::unique_ptr<HeadsetSession>> HeadsetSession::open() {
-  return Error{"no headset: this program was built without OpenXR, expected the package libopenxr-dev when it is built"};
+  return Error{"no headset: this program was built without OpenXR; the package libopenxr-dev was expected at build time"};
 }
 void HeadsetSession::configure(Presenter::Options&) {}
 Outcome HeadsetSession::poll(Presenter&, std::int64_t, const std::function<void(const std::string&)>&) { return Done{}; }

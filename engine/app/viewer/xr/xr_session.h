@@ -33,9 +33,9 @@ class HeadsetSession {
   /// destroyed before this session.
   void configure(Presenter::Options& options);
 
-  /// Call once per turn of the loop: handles session state changes and retries a lost headset. `say` receives the messages for the user. An
-  /// Error if the graphics device cannot be recreated.
-  Outcome poll(Presenter& screen, std::int64_t now_ns, const std::function<void(const std::string&)>& say);
+  /// Call once per turn of the loop: handles session state changes and retries a lost headset. `report_message` receives the messages for
+  /// the user. An Error if the graphics device cannot be recreated.
+  Outcome poll(Presenter& screen, std::int64_t now_ns, const std::function<void(const std::string&)>& report_message);
   /// Returns whether the headset displays frames; then draw() paces the loop.
   bool is_running() const;
   /// Functions that supply the content of a frame.
@@ -61,7 +61,7 @@ class HeadsetSession {
 
   /// Returns "headset focused, 1 unit = 23 cm", for the window title.
   std::string status_text() const;
-  /// Returns "headset: 880 pictures, 3 late after the first 30, 0 at half rate", for the summary.
+  /// Returns "headset: 880 images, 3 late after the first 30, 0 at half rate", for the summary.
   std::string summary_text() const;
   /// Returns whether a controller is grabbing the world.
   bool is_grabbing_world() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The page in a real browser, without a display. CATENA_SCREENSHOTS=FOLDER keeps what it looked like.
+/// The page in a headless browser. CATENA_SCREENSHOTS=FOLDER stores screenshots.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -24,7 +24,7 @@ void keep(test::Browser& browser, const std::string& name) {
   if (const char* folder = std::getenv("CATENA_SCREENSHOTS")) test::write_file(folder + ("/" + name + ".png"), picture);
 }
 
-TEST(BrowserClient, ThePageShowsTurnsFeelsAndChanges) {
+TEST(BrowserClient, ThePageShowsNavigatesFeelsAndEdits) {
   if (test::browser_path().empty()) GTEST_SKIP() << "there is no Chromium here: the page is not looked at in a browser";
   const test::TemporaryFolder folder;
   test::write_file(folder / "served.json", kScene);
@@ -34,19 +34,19 @@ TEST(BrowserClient, ThePageShowsTurnsFeelsAndChanges) {
   ASSERT_TRUE(browser.is_running());
   browser.open(served.url());
   ASSERT_TRUE(browser.wait_until("window.catena && catena.exact > 0"));
-  // the token is out of the address, and scripts cannot read the cookie
+  // The token is removed from the address, and scripts cannot read the cookie.
   EXPECT_EQ(browser.evaluate("location.search").string, "");
   EXPECT_EQ(browser.evaluate("document.cookie").string, "");
   EXPECT_EQ(browser.evaluate("document.title").string, "served.json - catena");
   EXPECT_EQ(browser.evaluate("catena.role").string, "yours");
-  // the picture has the page's size, and the ball is in its middle
+  // The image has the page's size, and the sphere is at the center.
   EXPECT_TRUE(browser.wait_until("picture.width == Math.round(picture.getBoundingClientRect().width)"));
   ASSERT_TRUE(browser.wait_until("catena.exact > 0"));
   const std::string middle = "pen.getImageData(picture.width * 0.4, picture.height * 0.4, 1, 1).data[2]";
   EXPECT_TRUE(browser.wait_until(middle + " > 60"));
   keep(browser, "rest");
 
-  // a drag turns the scene: the pictures that show it come back
+  // A drag orbits the scene, and images of it arrive.
   const int x = static_cast<int>(browser.evaluate_number("picture.getBoundingClientRect().width / 2")),
             y = static_cast<int>(browser.evaluate_number("picture.getBoundingClientRect().height / 2"));
   browser.mouse("mousePressed", x, y, "\"button\": \"left\", \"buttons\": 1, \"clickCount\": 1");
@@ -55,11 +55,11 @@ TEST(BrowserClient, ThePageShowsTurnsFeelsAndChanges) {
   ASSERT_TRUE(browser.wait_until("catena.latencies.length > 0 && sent.size == 0"));
   keep(browser, "turned");
 
-  // the pointer is the hand; the wheel pushes it into the ball until it pushes back
+  // The pointer moves the probe; the wheel pushes the probe into the sphere until there is a force.
   browser.mouse("mouseMoved", x, y);
   browser.key("h");
   ASSERT_TRUE(browser.wait_until("catena.state.probe"));
-  // it began within the ball, too deep to be held: out, and in again from there
+  // The probe starts beyond the release depth: the wheel moves it out, and in again.
   for (int i = 0; i < 4; ++i) browser.mouse("mouseWheel", x, y, "\"deltaX\": 0, \"deltaY\": 100");
   EXPECT_TRUE(browser.wait_until("catena.state.links[0].status == 'FREE'"));
   for (int i = 0; i < 9; ++i) browser.mouse("mouseWheel", x, y, "\"deltaX\": 0, \"deltaY\": -100");
@@ -67,7 +67,7 @@ TEST(BrowserClient, ThePageShowsTurnsFeelsAndChanges) {
   ASSERT_TRUE(browser.wait_until("document.getElementById('felt').textContent.includes('skin')"));
   keep(browser, "felt");
 
-  // the slider of the level: eye and hand follow
+  // The level's slider changes the image and the link.
   browser.evaluate(
       "(() => { const s = document.querySelector('#surfaces input'); s.value = 0.5; s.oninput(); s.onchange(); return 0; })()");
   EXPECT_TRUE(browser.wait_until("catena.scene.isosurfaces[0].level < 0.6"));
@@ -77,7 +77,7 @@ TEST(BrowserClient, ThePageShowsTurnsFeelsAndChanges) {
   EXPECT_TRUE(browser.wait_until("catena.exact > " + std::to_string(exact)));
   keep(browser, "changed");
 
-  // taken back; no steps in time here; a recording, which a link brings
+  // Undo; no time steps in this scene; a recording, offered as a link.
   const auto click = [&](const std::string& id) { browser.evaluate("document.getElementById('" + id + "').click()"); };
   EXPECT_TRUE(browser.wait_until("undoButton.title.includes('colours') && !undoButton.disabled && redoButton.disabled"));
   browser.evaluate("undoButton.click()");
@@ -122,7 +122,7 @@ TEST(BrowserClient, DISABLED_LatencyAndRate) {
               browser.evaluate_number("catena.bytes / catena.arrivals.length / 1000"),
               browser.evaluate_number(ordered + "[Math.floor(" + count + " / 2)]"),
               browser.evaluate_number(ordered + "[Math.floor(" + count + " * 0.95)]"));
-  // and what it looks like with a hand in it
+  // A screenshot with the probe in the scene.
   const int x = static_cast<int>(browser.evaluate_number("picture.getBoundingClientRect().width / 2"));
   browser.evaluate("picture.focus()");
   browser.key("r");

@@ -7,7 +7,7 @@
 
 namespace catena::test {
 
-/// Where it is installed; empty: it is not.
+/// The path of the browser; empty if none is installed.
 inline std::string browser_path() {
   for (const char* path : {"/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"})
     if (exists(path)) return path;
@@ -16,7 +16,7 @@ inline std::string browser_path() {
 
 class Browser {
  public:
-  /// `size`: "800,600". is_running() says whether it answers.
+  /// Starts the browser with a size like "800,600"; is_running() tells whether it responds.
   explicit Browser(const std::string& size) {
     std::vector<std::string> words{browser_path(),
                                    "--headless=new",
@@ -66,7 +66,7 @@ class Browser {
 
   bool is_running() const { return tab_ && tab_->is_open(); }
 
-  /// The result of a call; null: the browser has ended. `parameters`: JSON.
+  /// The result of a call with parameters as JSON; null if the browser has ended.
   json::Node call(const std::string& method, const std::string& parameters) {
     const int id = ++calls_;
     tab_->send("{\"id\": " + std::to_string(id) + ", \"method\": \"" + method + "\", \"params\": " + parameters + "}");
@@ -79,7 +79,7 @@ class Browser {
     return {};
   }
   void open(const std::string& url) { call("Page.navigate", "{\"url\": \"" + url + "\"}"); }
-  /// The value of an expression of the page's, without quotes in it but ' ones.
+  /// The value of an expression in the page; the expression may have single quotes only.
   json::Node evaluate(const std::string& expression) {
     const json::Node answer =
         call("Runtime.evaluate", "{\"returnByValue\": true, \"awaitPromise\": true, \"expression\": \"" + expression + "\"}");
@@ -91,7 +91,7 @@ class Browser {
     const json::Node node = evaluate("Number(" + expression + ")");
     return node.kind == json::Kind::number ? node.number : -1;
   }
-  /// Until the expression is true; false: it never was.
+  /// Waits until the expression is true; false if it never is.
   bool wait_until(const std::string& expression) {
     for (int i = 0; i < 600; ++i) {
       if (evaluate("Boolean(" + expression + ")").boolean) return true;
@@ -99,7 +99,7 @@ class Browser {
     }
     return false;
   }
-  /// "mousePressed", "mouseMoved", "mouseReleased", "mouseWheel".
+  /// Sends a mouse event: "mousePressed", "mouseMoved", "mouseReleased" or "mouseWheel".
   void mouse(const std::string& what, int x, int y, const std::string& more = "") {
     call("Input.dispatchMouseEvent", "{\"type\": \"" + what + "\", \"x\": " + std::to_string(x) + ", \"y\": " + std::to_string(y) +
                                          (more.empty() ? "" : ", " + more) + "}");

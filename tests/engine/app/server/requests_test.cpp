@@ -5,11 +5,11 @@
 
 #include <random>
 
-namespace wishes_test {
+namespace requests_test {
 
 using namespace catena::app;
 
-TEST(ClientRequests, SayWhatAPageMayAskFor) {
+TEST(ClientRequests, ValidRequestsAreParsed) {
   const auto move = parse_request(R"({"do": "move", "number": 7, "pieces": [[1, 2, 3, -4, 0.5, 9]]})");
   ASSERT_TRUE(move);
   const auto& pieces = std::get<MoveRequest>(*move);
@@ -32,7 +32,7 @@ TEST(ClientRequests, SayWhatAPageMayAskFor) {
   EXPECT_FALSE(std::get<TuningRequest>(*parse_request(R"({"do": "tune"})")).position);
 }
 
-TEST(ClientRequests, NothingElseIsTaken) {
+TEST(ClientRequests, InvalidRequestsAreRefused) {
   for (const char* bad : {"",
                           "{}",
                           "[]",
@@ -71,19 +71,19 @@ TEST(ClientRequests, NothingElseIsTaken) {
   EXPECT_FALSE(parse_request(R"({"do": "move", "pieces": [)" + pieces + "]}"));
 }
 
-TEST(ClientRequests, NoiseIsRefusedInOneLine) {
+TEST(ClientRequests, RandomChangesAreRefusedInOneLine) {
   const std::string good = R"({"do": "opacity", "item": "volumes[0]", "points": [[0, 0], [0.5, 0.25], [1, 1]]})";
   std::mt19937 random(7);
   int refused = 0;
   for (int i = 0; i < 3000; ++i) {
     std::string text = good;
     for (unsigned k = random() % 4 + 1; k > 0; --k) text[random() % text.size()] = static_cast<char>(random() % 256);
-    const auto wish = parse_request(text);
-    if (wish) continue;
+    const auto request = parse_request(text);
+    if (request) continue;
     ++refused;
-    EXPECT_EQ(wish.error().message.find('\n'), std::string::npos);
+    EXPECT_EQ(request.error().message.find('\n'), std::string::npos);
   }
   EXPECT_GT(refused, 1500);
 }
 
-}  // namespace wishes_test
+}  // namespace requests_test

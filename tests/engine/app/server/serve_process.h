@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena serve` as a program that runs beside a test.
+/// `catena serve` as a child process of a test.
 #pragma once
 #include <signal.h>
 #include <sys/wait.h>
@@ -20,7 +20,7 @@ namespace catena::test {
 
 class ServeProcess {
  public:
-  /// Port 0 and small pictures, with more options; waits for its address.
+  /// Starts the server with port 0, small images and more options, and waits for the address.
   explicit ServeProcess(const std::string& source, const std::vector<std::string>& options = {}) {
     std::vector<std::string> words{program_path(), "serve", source, "--port", "0", "--size", "160x120", "--seconds", "120"};
     words.insert(words.end(), options.begin(), options.end());
@@ -60,12 +60,12 @@ class ServeProcess {
   std::unique_ptr<WebSocketClient> page() const {
     return std::make_unique<WebSocketClient>(port_, WebSocketClient::Identity{cookie_, "http://127.0.0.1:" + std::to_string(port_)});
   }
-  /// By Ctrl-C; its exit code.
+  /// Sends SIGINT, and returns the exit code.
   int interrupt_and_wait() {
     kill(child_, SIGINT);
     return wait();
   }
-  /// Until it has ended; its exit code.
+  /// Waits for the end, and returns the exit code.
   int wait() {
     waitpid(child_, &status_, 0);
     ended_ = true;
@@ -80,8 +80,8 @@ class ServeProcess {
   std::string url_, cookie_;
 };
 
-/// The member `key` of the next such message, with pictures acknowledged on the way; null: the connection ended first. `passed` sees every
-/// message up to it: what is told once, in no fixed order, may come before.
+/// The member `key` of the next message that has it and is wanted; null if the connection ends first. Acknowledges images. `passed` gets
+/// every earlier message, because one-time messages have no fixed order.
 inline json::Node wait_for_message(WebSocketClient& page, const std::string& key, const std::function<bool(const json::Node&)>& wanted = {},
                                    const std::function<void(const json::Node&)>& passed = {}) {
   for (int i = 0; i < 2000; ++i) {
@@ -105,7 +105,7 @@ struct SentFrame {
   std::string file;
 };
 
-/// The next picture that is wanted, acknowledged; number 0: the connection ended first.
+/// The next wanted image, acknowledged; number 0 if the connection ends first.
 inline SentFrame wait_for_frame(WebSocketClient& page, const std::function<bool(const SentFrame&)>& wanted = {}) {
   for (int i = 0; i < 2000; ++i) {
     const auto message = page.read();

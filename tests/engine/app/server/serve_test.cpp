@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `catena serve` as a page sees it: pictures, the hand, what can be changed, who may change it.
+/// `catena serve` with a client: images, the probe, edits, and control by one client.
 #include <gtest/gtest.h>
 
 #include <fcntl.h>
@@ -17,7 +17,7 @@ namespace serve_test {
 namespace test = catena::test;
 using catena::json::Node;
 
-// a ball of which the hand feels the surface
+// A sphere with a link to its surface.
 constexpr const char* kBall = R"({
   "fields": {"ball": {"analytic": "sphere"}},
   "chain": [{"name": "skin", "type": "isosurface", "field": "ball", "level": 1, "free": "above", "release": 0.5}],
@@ -34,31 +34,31 @@ struct Ball {
 double number_of(const Node& node, const char* key) { return node.find(key) != nullptr ? node.find(key)->number : -1; }
 std::string word_of(const Node& node, const char* key) { return node.find(key) != nullptr ? node.find(key)->string : ""; }
 
-TEST(Serve, APageSeesMovesFeelsAndChanges) {
+TEST(Serve, AClientSeesNavigatesFeelsAndEdits) {
   const Ball ball;
   test::ServeProcess served(ball.path);
   ASSERT_NE(served.port(), 0) << served.err();
   const auto page = served.page();
   ASSERT_TRUE(page->is_open());
   EXPECT_EQ(word_of(test::wait_for_message(*page, "role"), "control"), "yours");
-  // coarse and quick at first, every pixel as it is when nothing moves
+  // The first image is coarse; at rest, every pixel is exact.
   const test::SentFrame first = test::wait_for_frame(*page);
   EXPECT_TRUE(first.file.starts_with("\xff\xd8\xff")) << "JPEG";
   EXPECT_EQ(first.width, 160u);
   const test::SentFrame last = test::wait_for_frame(*page, [](const test::SentFrame& p) { return p.exact; });
   EXPECT_TRUE(last.file.starts_with("\x89PNG"));
-  // an orbit: the picture that shows it says so
+  // An orbit: the image that shows it has the request's number.
   page->send(R"({"do": "move", "number": 5, "pieces": [[80, 60, 20, 0, 0, 1]]})");
   const test::SentFrame turned = test::wait_for_frame(*page, [](const test::SentFrame& p) { return p.motion == 5; });
   EXPECT_GT(turned.number, last.number);
   page->send(R"({"do": "first_view"})");
-  // another size
+  // A change of the size.
   page->send(R"({"do": "size", "width": 200, "height": 100})");
   EXPECT_EQ(test::wait_for_frame(*page, [](const test::SentFrame& p) { return p.width == 200; }).height, 100u);
-  // the hand goes onto the ball, and the wheel pushes it in
+  // The probe moves onto the sphere, and the wheel pushes it in.
   page->send(R"({"do": "move", "number": 6, "pieces": [[100, 50, 0, 0, 0, 0]]})");
   page->send(R"({"do": "probe"})");
-  // it began within the ball, too deep to be held: out, and in again from there
+  // The probe starts beyond the release depth: the wheel moves it out, and in again.
   page->send(R"({"do": "move", "number": 7, "pieces": [[100, 50, 0, 0, -5, 0]]})");
   test::wait_for_message(*page, "state", [](const Node& state) {
     const Node* links = state.find("links");
@@ -69,7 +69,7 @@ TEST(Serve, APageSeesMovesFeelsAndChanges) {
   EXPECT_TRUE(pushed.find("probe") != nullptr && pushed.find("probe")->boolean);
   ASSERT_TRUE(pushed.find("links") != nullptr && pushed.find("links")->items.size() == 1);
   EXPECT_EQ(word_of(pushed.find("links")->items[0], "name"), "skin");
-  // a smaller ball, for eye and hand: the hand is outside
+  // A smaller sphere, for the image and the link: the probe is outside.
   page->send(R"({"do": "level", "item": "isosurfaces[0]", "value": 0.5})");
   double force = -1;
   const Node scene = test::wait_for_message(
@@ -81,7 +81,7 @@ TEST(Serve, APageSeesMovesFeelsAndChanges) {
   if (force != 0)
     force = number_of(test::wait_for_message(*page, "state", [](const Node& s) { return number_of(s, "force") == 0; }), "force");
   EXPECT_EQ(force, 0);
-  // what cannot be done is said, and changes nothing
+  // Invalid requests are answered with a note, and change nothing.
   for (const char* bad : {R"({"do": "level", "item": "isosurfaces[7]", "value": 1})", R"({"do": "map", "item": "volumes[0]", "name": "x"})",
                           R"({"do": "quit"})", "nonsense"}) {
     page->send(bad);
@@ -89,12 +89,12 @@ TEST(Serve, APageSeesMovesFeelsAndChanges) {
   }
   EXPECT_EQ(served.interrupt_and_wait(), 0);
   EXPECT_FALSE(page->read() && page->read() && page->read() && page->read() && page->read());
-  EXPECT_NE(served.out().find(" pictures for at most 1 page at a time"), std::string::npos) << served.out();
+  EXPECT_NE(served.out().find(" images for at most 1 page at a time"), std::string::npos) << served.out();
   EXPECT_EQ(served.err(), "");
   EXPECT_EQ(test::read_file(ball.path), kBall) << "nothing is written to the scene";
 }
 
-TEST(Serve, OnePageHasTheHandAndOthersWatch) {
+TEST(Serve, OneClientHasControlAndOthersWatch) {
   const Ball ball;
   test::ServeProcess served(ball.path);
   ASSERT_NE(served.port(), 0) << served.err();
@@ -104,7 +104,7 @@ TEST(Serve, OnePageHasTheHandAndOthersWatch) {
   EXPECT_EQ(word_of(test::wait_for_message(*second, "role"), "control"), "taken");
   EXPECT_EQ(number_of(test::wait_for_message(*first, "role", [](const Node& r) { return number_of(r, "viewers") == 2; }), "viewers"), 2);
   EXPECT_NE(test::wait_for_frame(*second).number, 0u);
-  // who watches changes nothing
+  // Requests of a viewer without control change nothing.
   second->send(R"({"do": "level", "item": "isosurfaces[0]", "value": 0.25})");
   second->send(R"({"do": "take_control"})");
   first->send(R"({"do": "level", "item": "isosurfaces[0]", "value": 0.75})");
@@ -114,7 +114,7 @@ TEST(Serve, OnePageHasTheHandAndOthersWatch) {
     return levels.back() == 0.75;
   });
   for (const double level : levels) EXPECT_NE(level, 0.25);
-  // the hand is free when its page has gone
+  // Control is free after its client has disconnected.
   first->close();
   EXPECT_EQ(word_of(test::wait_for_message(*second, "role"), "control"), "free");
   second->send(R"({"do": "take_control"})");
@@ -126,7 +126,7 @@ TEST(Serve, OnePageHasTheHandAndOthersWatch) {
   EXPECT_EQ(served.interrupt_and_wait(), 0);
 }
 
-TEST(Serve, AVolumesTransferFunctionIsChanged) {
+TEST(Serve, TheTransferFunctionOfAVolumeIsEdited) {
   test::TemporaryFolder folder;
   test::write_file(folder / "cloud.json", R"({"fields": {"f": {"analytic": "sphere", "resolution": 24}},
     "volumes": [{"field": "f", "color": "viridis", "opacity": [[0, 0], [2, 0.5]]}], "camera": {"position": [0, -6, 0], "target": [0, 0, 0]}})");
@@ -141,12 +141,12 @@ TEST(Serve, AVolumesTransferFunctionIsChanged) {
   EXPECT_EQ(
       word_of(volume(test::wait_for_message(*page, "scene", [&](const Node& s) { return word_of(volume(s), "map") == "magma"; })), "map"),
       "magma");
-  // values that do not rise: refused as the scene's own would be
+  // Values that do not increase are refused, as in a scene file.
   page->send(R"({"do": "opacity", "item": "volumes[0]", "points": [[1, 0.1], [0, 0.2]]})");
   EXPECT_EQ(test::wait_for_message(*page, "note").kind, catena::json::Kind::string);
 }
 
-TEST(Serve, StepsUndoAndRecordings) {
+TEST(Serve, TimeStepsUndoAndRecordings) {
   const test::TemporaryFolder folder;
   for (const char* step : {"0", "1", "2"}) {
     const test::ProgramResult made = test::run_catena({"generate", "sphere", "--resolution", "12", "--scale", step[0] == '1' ? "2" : "1",
@@ -164,18 +164,18 @@ TEST(Serve, StepsUndoAndRecordings) {
   test::wait_for_message(*page, "state", step_is(1));
   page->send(R"({"do": "next_step"})");
   test::wait_for_message(*page, "state", step_is(2));
-  page->send(R"({"do": "next_step"})");  // round and round
+  page->send(R"({"do": "next_step"})");  // the step after the last is the first
   test::wait_for_message(*page, "state", step_is(0));
   page->send(R"({"do": "play_steps"})");
   for (const int wanted : {1, 2, 0})
     EXPECT_EQ(test::wait_for_message(*page, "state", step_is(wanted)).kind, catena::json::Kind::object) << wanted;
   page->send(R"({"do": "play_steps"})");
 
-  // what is changed is taken back
+  // Undo reverts the edit.
   const auto level_is = [](double wanted) {
     return [wanted](const Node& s) { return number_of(s.find("isosurfaces")->items.at(0), "level") == wanted; };
   };
-  std::string undo;  // what is told once may come before the scene or after it
+  std::string undo;  // a one-time message may arrive before or after the scene
   const auto look = [&](const Node& message) {
     if (const Node* state = message.find("state")) undo = word_of(*state, "undo");
   };
@@ -190,7 +190,7 @@ TEST(Serve, StepsUndoAndRecordings) {
   page->send(R"({"do": "redo"})");
   EXPECT_EQ(test::wait_for_message(*page, "scene", level_is(0.5)).kind, catena::json::Kind::object);
 
-  // what was felt can be fetched, and is a recording like any other; the next one takes its place
+  // The recording can be fetched and is a valid log; the next recording replaces it.
   const auto fetched = [&](const std::string& name) {
     const std::string answer = test::send_raw_request(
         served.port(),
@@ -216,7 +216,7 @@ TEST(Serve, StepsUndoAndRecordings) {
   EXPECT_EQ(served.err(), "");
 }
 
-TEST(Serve, StepsThatAreAddedAreShownOnceTheyAreWhole) {
+TEST(Serve, AddedTimeStepsAreShownOnceComplete) {
   const test::TemporaryFolder folder;
   const auto file = [&](int step) { return folder / ("a_" + std::to_string(step) + ".vdb"); };
   const test::ProgramResult made = test::run_catena({"generate", "sphere", "--resolution", "12", "-o", file(1)});
@@ -239,7 +239,7 @@ TEST(Serve, StepsThatAreAddedAreShownOnceTheyAreWhole) {
   EXPECT_EQ(served.err(), "");
 }
 
-TEST(Serve, ThePlanOfTheHandIsMeasuredAndChosen) {
+TEST(Serve, HapticTuningIsMeasuredAndChosen) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "line.json", R"({"fields": {"flow": {"analytic": "circle"}},
     "chain": [{"name": "curve", "type": "streamline", "field": "flow", "seed": [0.5, 0, 0]}],
@@ -260,10 +260,10 @@ TEST(Serve, ThePlanOfTheHandIsMeasuredAndChosen) {
   EXPECT_TRUE(planned(chosen));
 }
 
-TEST(Serve, ThePlanOfTheEyeIsMeasuredAndChosen) {
+TEST(Serve, ImageTuningIsMeasuredAndChosen) {
   const test::TemporaryFolder folder;
-  // a thin soft shell of a smooth field: what is as exact as can be told takes four times as long as what is quickest, so that a loaded
-  // machine confuses neither end
+  // A thin soft shell of a smooth field: the most exact setting takes four times as long as the fastest one, so that the load of the
+  // machine does not change their order.
   test::write_file(folder / "cloud.json", R"({"fields": {"f": {"analytic": "torus", "resolution": 128}},
     "volumes": [{"field": "f", "opacity": [[-0.2, 0], [0, 0.2], [0.2, 0]]}], "camera": {"position": [0, -4, 2], "target": [0, 0, 0]}})");
   test::ServeProcess served(folder / "cloud.json");
@@ -276,13 +276,13 @@ TEST(Serve, ThePlanOfTheEyeIsMeasuredAndChosen) {
   };
   const std::string measured = eye(test::wait_for_message(*page, "state", [&](const Node& s) { return !eye(s).empty(); }));
   EXPECT_NE(measured.find("/255, "), std::string::npos) << measured;
-  // the slider's two ends; the place that is told is that of the stop that was chosen
+  // The two ends of the slider; the reported position is that of the chosen setting.
   const auto error_of = [](const std::string& words) { return std::stod(words.substr(words.find(": ") + 2)); };
-  const auto at = [&](const char* place, double least, double most) {
+  const auto at = [&](const char* place, double min_position, double max_position) {
     page->send(R"({"do": "tune", "position": )" + std::string(place) + "}");
     return eye(test::wait_for_message(*page, "state", [&](const Node& s) {
-      const double told = eye(s).empty() ? -1 : number_of(*s.find("tuning"), "position");
-      return word_of(s, "undo") == "accuracy" && told >= least && told <= most;
+      const double position = eye(s).empty() ? -1 : number_of(*s.find("tuning"), "position");
+      return word_of(s, "undo") == "accuracy" && position >= min_position && position <= max_position;
     }));
   };
   const std::string fast = at("0", 0, 0.5), exact = at("1", 1, 1);
@@ -292,7 +292,7 @@ TEST(Serve, ThePlanOfTheEyeIsMeasuredAndChosen) {
   EXPECT_EQ(served.interrupt_and_wait(), 0);
 }
 
-TEST(Serve, WhatAKilledOneRecordedIsRemovedByTheNext) {
+TEST(Serve, RecordingsOfAKilledServerAreRemovedByTheNext) {
   const test::TemporaryFolder temporary;
   const auto make = [&](const char* name, std::time_t age_s) {
     const std::string path = temporary / name;
@@ -308,10 +308,10 @@ TEST(Serve, WhatAKilledOneRecordedIsRemovedByTheNext) {
   ASSERT_TRUE(lock);
   const Ball ball;
   const char* before = std::getenv("TMPDIR");
-  const std::string kept = before != nullptr ? before : "";
+  const std::string previous_folder = before != nullptr ? before : "";
   setenv("TMPDIR", temporary.path().c_str(), 1);
   test::ServeProcess served(ball.path);
-  before != nullptr ? setenv("TMPDIR", kept.c_str(), 1) : unsetenv("TMPDIR");
+  before != nullptr ? setenv("TMPDIR", previous_folder.c_str(), 1) : unsetenv("TMPDIR");
   ASSERT_NE(served.port(), 0) << served.err();
   EXPECT_TRUE(test::exists(left)) << "nothing is looked for before somebody records";
   const auto page = served.page();
@@ -322,7 +322,7 @@ TEST(Serve, WhatAKilledOneRecordedIsRemovedByTheNext) {
   EXPECT_EQ(served.interrupt_and_wait(), 0);
 }
 
-TEST(Serve, EndsWithTheProgramThatStartedIt) {
+TEST(Serve, EndsWhenStandardInputIsClosed) {
   const Ball ball;
   int ends[2] = {-1, -1};
   ASSERT_EQ(pipe2(ends, O_CLOEXEC), 0);

@@ -11,7 +11,7 @@ struct Pair {
   std::uint64_t a = 0, b = 0, c[30] = {};
 };
 
-TEST(TripleBuffer, GivesTheNewestOnceAndNothingTwice) {
+TEST(TripleBuffer, DeliversTheNewestValueExactlyOnce) {
   catena::TripleBuffer<int> buffer;
   EXPECT_FALSE(buffer.acquire());
   buffer.publish(1);
@@ -22,7 +22,7 @@ TEST(TripleBuffer, GivesTheNewestOnceAndNothingTwice) {
   EXPECT_EQ(buffer.front(), 2);
 }
 
-TEST(TripleBuffer, NeverTearsAndNeverGoesBack) {
+TEST(TripleBuffer, ValuesAreNeverTornAndNeverGoBack) {
   catena::TripleBuffer<Pair> buffer;
   constexpr std::uint64_t kCount = 200000;
   std::thread writer([&] {

@@ -6,9 +6,9 @@
 #include <random>
 
 namespace catena::curves {
-namespace core_test {
+namespace robust_bounds_test {
 
-TEST(RobustBounds, OfSpreadPointsNoneIsAStray) {
+TEST(RobustBounds, SpreadPointsHaveNoOutliers) {
   std::mt19937 random(5);
   std::normal_distribution<float> bell(3, 2);
   std::uniform_real_distribution<float> even(-1, 1);
@@ -21,7 +21,7 @@ TEST(RobustBounds, OfSpreadPointsNoneIsAStray) {
   for (const auto& points : {normal, box, flat}) EXPECT_EQ(compute_robust_bounds(points).outliers, 0u);
 }
 
-TEST(RobustBounds, AFewThatAreFarAwayAreLeftOut) {
+TEST(RobustBounds, AFewDistantPointsAreLeftOut) {
   std::vector<glm::vec3> points;
   for (int k = 0; k < 100; ++k) points.emplace_back(k % 10, k / 10, 0);
   for (const float far : {50.0f, -1e6f, 1e14f}) points.emplace_back(far, 0, 0);
@@ -32,7 +32,7 @@ TEST(RobustBounds, AFewThatAreFarAwayAreLeftOut) {
   EXPECT_EQ(core.box.hi, Vec3(9, 9, 0));
 }
 
-TEST(RobustBounds, WhereNothingTellsWhatIsFarAllBelong) {
+TEST(RobustBounds, WithoutASpreadAllPointsAreIncluded) {
   EXPECT_TRUE(compute_robust_bounds({}).box.empty());
   std::vector<glm::vec3> points(100, glm::vec3(1));
   points.emplace_back(7, 1, 1);
@@ -42,5 +42,5 @@ TEST(RobustBounds, WhereNothingTellsWhatIsFarAllBelong) {
   EXPECT_EQ(compute_robust_bounds(three).outliers, 0u);
 }
 
-}  // namespace core_test
+}  // namespace robust_bounds_test
 }  // namespace catena::curves

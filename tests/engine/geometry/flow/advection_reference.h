@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// The advection function f_V of Eqs. 3-4 in the field's own time, as the paper prints it: one call carries p along V for a signed dt.
-///   f_V(p, -dt) equals f_-V(p, dt) bit for bit (Eq. 4): every method only ever forms products h * v.
-/// The program itself integrates in arc length (engine/geometry/flow/flow.h); this tests its methods in another parameter.
-/// The embedded pairs choose their own sub-steps: the estimated error of each is <= tolerance * L.
+/// The advection function f_V of Eqs. 3-4 of the paper, in the field's own time: one call moves p along V for a signed dt.
+///   f_V(p, -dt) equals f_-V(p, dt) bit for bit (Eq. 4): every method only forms products h * v.
+/// The program integrates in arc length (engine/geometry/flow/flow.h); this code tests its methods in another parameter.
+/// The embedded pairs choose their sub-steps such that the estimated error of each is <= tolerance * L.
 #pragma once
 #include "engine/geometry/flow/runge_kutta.h"
 
@@ -15,7 +15,7 @@ struct Advected {
   bool complete = true;  ///< false: the evaluation cap was reached first
 };
 
-/// The velocity itself (not its direction): the rate of Eq. 3 in the field's own time.
+/// The velocity (not its direction): the rate of Eq. 3 in the field's own time.
 struct AdvectedVelocity {
   const Flow& flow;
   field::Cursor& cursor;
@@ -36,14 +36,14 @@ struct AdvectedVelocity {
   }
 };
 
-/// f_V(p, dt) in the field's own time. `linear` and `euler` take one step; fixed methods one step; pairs as many as needed.
+/// f_V(p, dt) in the field's own time. `linear`, `euler` and other fixed methods take one step, pairs as many as needed.
 inline Advected advect(const Flow& flow, const Vec3& p, double dt, Method method, double tolerance_length, field::Cursor& cursor,
                        int cap = 100000) {
   Advected out;
   const Tableau& tableau = tableau_of(method);
   const double length = flow.field->domain_length();
 
-  // the first stage
+  // The first stage.
   AdvectedVelocity velocity{flow, cursor};
   if (flow.is_line_field) {
     const StopReason stop = seed_direction(flow, p, cursor, velocity.reference);
@@ -59,7 +59,7 @@ inline Advected advect(const Flow& flow, const Vec3& p, double dt, Method method
     return out;
   }
 
-  // fixed methods: one step
+  // Fixed methods: one step.
   if (!tableau.embedded) {
     if (out.evaluations + tableau.stages - 1 > cap) {
       out.complete = false;
@@ -74,7 +74,7 @@ inline Advected advect(const Flow& flow, const Vec3& p, double dt, Method method
     return out;
   }
 
-  // embedded pairs: as many sub-steps as the tolerance asks for, none longer than a tenth of the domain
+  // Embedded pairs: as many sub-steps as the tolerance requires, none longer than a tenth of the domain.
   const double sign = dt < 0 ? -1.0 : 1.0;
   double left = std::fabs(dt), h = left;
   while (left > 0) {

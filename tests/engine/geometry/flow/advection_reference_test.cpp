@@ -12,7 +12,7 @@
 #include "tests/engine/geometry/flow/lambda_field.h"
 
 namespace catena::flow {
-namespace advect_test {
+namespace advection_reference_test {
 
 using test::analytic_vector;
 using test::lambda_field;
@@ -31,7 +31,7 @@ Vec3 advect_in_steps(const Flow& flow, Vec3 p, double t, int steps, Method metho
   return p;
 }
 
-TEST(Advect, WordsGoBothWays) {
+TEST(Advect, MethodNamesReadBack) {
   for (const Method m : kAll) EXPECT_EQ(parse_method(to_string(m)), m);
   EXPECT_FALSE(parse_method("rk5"));
 }
@@ -49,7 +49,7 @@ TEST(Advect, TableausAreConsistent) {
   }
 }
 
-TEST(Advect, ObservedOrdersOnAbc) {
+TEST(Advect, HasTheExpectedOrdersOnAbc) {
   const auto field = lambda_field(abc);
   const Flow flow{field.get()};
   const Vec3 start(0.3, -0.7, 0.4);
@@ -83,7 +83,7 @@ TEST(Advect, BackwardEqualsReversedFieldBitForBit) {
   }
 }
 
-TEST(Advect, ThereAndBack) {
+TEST(Advect, BackwardAdvectionReturnsToTheStart) {
   const auto field = lambda_field([](const Vec3& p) { return direction(abc(p)); });
   const Flow flow{field.get()};
   std::mt19937 random(11);
@@ -105,7 +105,7 @@ TEST(Advect, ThereAndBack) {
   EXPECT_GT(worst_rkf, 0);
 }
 
-TEST(Advect, FieldScaleDoesNotMatter) {
+TEST(Advect, IsInvariantUnderTheFieldsScale) {
   for (const double scale : {1e-300, 1e-150, 1.0, 1e150, 1e300}) {
     const auto field = lambda_field([scale](const Vec3& p) { return scale * Vec3(-p.y, p.x, 0.0); });
     for (const Method m : {Method::rk4, Method::rkf34, Method::dp54}) {
@@ -128,7 +128,7 @@ TEST(Advect, EvaluationsAreCappedAndCounted) {
   EXPECT_EQ(advect({field.get()}, Vec3(0.1), 0.1, Method::rk4, 1e-9, cursor).evaluations, 4);
 }
 
-TEST(Advect, StopsBeforeTheEdgeAndSurvivesBadValues) {
+TEST(Advect, StopsAtTheBoundaryAndHandlesNonFiniteValues) {
   const auto walled = lambda_field([](const Vec3&) { return Vec3(1.0, 0.0, 0.0); }, [](const Vec3& p) { return p.x <= 1; });
   field::Cursor cursor;
   const Advected a = advect({walled.get()}, Vec3(0.0), 5, Method::rkf34, 1e-9, cursor);
@@ -147,12 +147,12 @@ TEST(Advect, StopsBeforeTheEdgeAndSurvivesBadValues) {
   EXPECT_FALSE(advect({walled.get()}, Vec3(std::nan("")), 1, Method::rkf34, 1e-9, cursor).inside);
 }
 
-TEST(Advect, SpeedsAtOrBelowTheLeastAreZero) {
+TEST(Advect, SpeedsUpToTheMinimumAreZero) {
   const auto field = lambda_field([](const Vec3&) { return Vec3(0.5, 0.0, 0.0); });
   field::Cursor cursor;
   EXPECT_EQ(advect({field.get(), false, 0.5}, Vec3(0.0), 1, Method::rk4, 1e-9, cursor).displacement, Vec3(0.0));
   EXPECT_NEAR(advect({field.get(), false, 0.4}, Vec3(0.0), 1, Method::rk4, 1e-9, cursor).displacement.x, 0.5, 1e-15);
 }
 
-}  // namespace advect_test
+}  // namespace advection_reference_test
 }  // namespace catena::flow

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Flows about cores that are known, with noise, and how well traced lines lie on them.
+/// Flows with known vortex cores, with noise, and a score of traced cores.
 #pragma once
 #include <functional>
 #include <limits>
@@ -12,12 +12,12 @@
 
 namespace catena::test {
 
-/// In the box [-1.2, 1.2]^3.
+/// A flow with a known core in the box [-1.2, 1.2]^3.
 struct AnalyticCore {
   std::string name;
   std::function<Vec3(const Vec3&)> flow;
-  std::function<Vec3(const Vec3&)> nearest_point;  ///< the place of the core that is nearest to a place
-  std::vector<Vec3> points;                        ///< of the core within the box
+  std::function<Vec3(const Vec3&)> nearest_point;  ///< the point of the core that is nearest to a position
+  std::vector<Vec3> points;                        ///< points of the core within the box
 };
 
 inline double swirl_rate(double r2, double core) { return r2 > 0 ? -std::expm1(-r2 / (core * core)) / r2 * core * core : 1; }
@@ -25,7 +25,7 @@ inline double swirl_rate(double r2, double core) { return r2 > 0 ? -std::expm1(-
 inline std::vector<AnalyticCore> analytic_cores() {
   std::vector<AnalyticCore> all;
   const auto within = [](const Vec3& p) { return max_abs(p) < 1.1; };
-  // the same with a stream along the core that is faster on one side
+  // Vortices without and with a shear flow along the core.
   for (const double shear : {0.0, 1.5}) {
     const Vec3 axis = direction(Vec3(0.3, -0.2, 1)), through(0.11, 0.07, -0.05), side = direction(cross(axis, Vec3(0.4, 1, 0)));
     AnalyticCore burgers{shear == 0 ? "burgers" : "sheared",
@@ -41,7 +41,7 @@ inline std::vector<AnalyticCore> analytic_cores() {
     all.push_back(burgers);
   }
   {
-    // an arc in a plane that is tilted; its middle is outside the box
+    // An arc in a tilted plane, whose center is outside the box.
     const Vec3 middle(-1.35, 0.06, -1.3), u = direction(Vec3(1, 0.15, 0)), w = direction(cross(u, Vec3(0.1, 1, 0.05))), v = cross(w, u);
     const auto foot = [=](const Vec3& p) {
       const Vec3 e = p - middle;
@@ -73,7 +73,7 @@ inline std::vector<AnalyticCore> analytic_cores() {
   return all;
 }
 
-/// `noise`: standard deviation at a node by the greatest speed.
+/// Samples the flow with noise: `noise` is the standard deviation at a node, divided by the maximum speed.
 inline std::shared_ptr<const field::VectorGrid> sample_core_flow(const AnalyticCore& known, int nodes, double noise, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   const double voxel = 2.4 / (nodes - 1);
@@ -85,7 +85,7 @@ inline std::shared_ptr<const field::VectorGrid> sample_core_flow(const AnalyticC
   return sample_vector_grid(mapping, {nodes, nodes, nodes}, [&](const Vec3& p) { return known.flow(p) + Vec3(any(), any(), any()); });
 }
 
-/// In voxels, but `recall` and `strays`, which are shares of the core.
+/// Scores in voxels, except `recall` and `false_length`, which are fractions of length.
 struct CoreScore {
   double recall = 0, rms = 0, worst = 0, false_length = 0;
 };

@@ -14,7 +14,7 @@
 #include "tests/support/support.h"
 
 namespace catena::flow {
-namespace batch_test {
+namespace batch_tracer_test {
 
 using test::analytic_vector;
 using test::lambda_field;
@@ -23,7 +23,7 @@ using GridPtr = std::shared_ptr<const field::VectorGrid>;
 
 GridPtr sampled(const std::string& name, int nodes = 48) { return field::sample_on_grid(*analytic_vector(name), nodes, -2, 2); }
 
-/// Places of a fixed sequence within a box about the middle.
+/// Positions of a fixed sequence within a box about the center.
 std::vector<Vec3> places(std::size_t count, double half, const Vec3& middle = Vec3(0.0)) {
   std::vector<Vec3> seeds;
   std::uint64_t state = 7;
@@ -38,7 +38,7 @@ std::vector<Vec3> places(std::size_t count, double half, const Vec3& middle = Ve
   return seeds;
 }
 
-/// The largest distance of a line's knots from the exact line.
+/// The maximum distance of a line's knots from the exact line.
 double cross_track(const Curve& line, const CurvePtr& exact) {
   const NearestOnCurve nearest(exact);
   double worst = 0;
@@ -55,10 +55,10 @@ void expect_sound(const Curve& curve, const Vec3& seed) {
   EXPECT_TRUE(has_seed);
 }
 
-/// A thousandth of a voxel: the kinks at the faces of coarsely sampled cells; a picture shows none of it.
+/// A thousandth of a voxel: the error from kinks at the faces of coarsely sampled cells, which is invisible in an image.
 constexpr double kTrack = 1.5e-3;
 
-/// Every line agrees with trace()'s: the same ends, the length, the track.
+/// Expects that every line agrees with that of trace(): its ends, length and positions.
 void expect_agreement(const Flow& flow, const std::vector<Vec3>& seeds, double length, double length_tolerance) {
   BatchOptions options;
   options.length = length;
@@ -107,7 +107,7 @@ TEST(Batch, AgreesWithTheExactTracerOnHill) {
   expect_agreement(Flow{grid.get()}, {{0.5, 0, 0}, {0.1, 0.2, 1.5}, {1.5, 0, 0.3}, {-0.3, 0.4, -0.2}}, 3, 2e-4);
 }
 
-TEST(Batch, AgreesOnTurnedAndStretchedVoxels) {
+TEST(Batch, AgreesOnRotatedAndAnisotropicVoxels) {
   Mat3 linear(Vec3(0.05, 0.02, 0), Vec3(-0.03, 0.08, 0.01), Vec3(0, 0.01, 0.06));
   const auto mapping = field::Mapping::from_linear(linear, {-1, -2, -1});
   const auto grid =
@@ -135,13 +135,13 @@ TEST(Batch, ASeedOnAFaceStartsInward) {
   EXPECT_NEAR((*lines[1])->knots().front().p.x, 0, 1e-9);
 }
 
-TEST(Batch, NodesAndSaddlesEndCritical) {
+TEST(Batch, LinesEndCriticalAtNodesAndSaddles) {
   const auto node = sampled("node"), saddle = sampled("saddle");
   expect_agreement(Flow{node.get()}, places(6, 1.5), 0, 1e-4);
   expect_agreement(Flow{saddle.get()}, {{0.5, 0, 0}, {0, 1.0, 0}, {0.3, 0.4, 0.2}, {0.01, 1.2, 0}}, 0, 1e-3);
 }
 
-TEST(Batch, InvalidCellsAndNumbersThatAreNoneEndLines) {
+TEST(Batch, InvalidCellsAndNonFiniteValuesEndLines) {
   std::vector<std::uint8_t> valid(24 * 24 * 24, 1);
   for (int z = 0; z < 24; ++z)
     for (int y = 0; y < 24; ++y)
@@ -155,7 +155,7 @@ TEST(Batch, InvalidCellsAndNumbersThatAreNoneEndLines) {
   expect_agreement(Flow{holed.get()}, {{3, 11.9, 6.6}, {3, 5, 5}, {8.5, 12.5, 7.5}}, 0, 1e-4);
 }
 
-TEST(Batch, SlowPlacesEndAtMinSpeed) {
+TEST(Batch, LinesEndAtMinSpeed) {
   const auto grid = sample_vector_grid({}, {32, 16, 16}, [](const Vec3& p) { return Vec3(0.05 * (32 - p.x), 0, 0.01); });
   Flow flow{grid.get()};
   flow.min_speed = 0.5;
@@ -185,7 +185,7 @@ TEST(Batch, TheLengthIsMetExactly) {
   }
 }
 
-TEST(Batch, NoStepIsLongerThanAskedFor) {
+TEST(Batch, NoStepIsLongerThanTheLimit) {
   const auto grid = sampled("abc");
   BatchOptions options;
   options.length = 0.3;
@@ -197,7 +197,7 @@ TEST(Batch, NoStepIsLongerThanAskedFor) {
   }
 }
 
-TEST(Batch, FieldScalesFromTinyToHugeGiveTheSameLines) {
+TEST(Batch, IsInvariantUnderTheFieldsScale) {
   const auto made = [](double scale) {
     return sample_vector_grid({}, {24, 24, 24}, [scale](const Vec3& p) { return scale * Vec3(1 + 0.1 * p.y, 2 - 0.1 * p.x, 0.5); });
   };
@@ -221,7 +221,7 @@ bool same_bits(const Curve& a, const Curve& b) {
   });
 }
 
-TEST(Batch, ALineDoesNotDependOnItsCompany) {
+TEST(Batch, ALineDoesNotDependOnOtherLinesOfTheBatch) {
   const auto grid = sampled("abc");
   BatchOptions options;
   options.length = 2;
@@ -234,7 +234,7 @@ TEST(Batch, ALineDoesNotDependOnItsCompany) {
   }
 }
 
-TEST(Batch, WideLanesGiveTheBitsOfTheBaseline) {
+TEST(Batch, WideLanesAreBitIdenticalToTheBaseline) {
   if (!has_avx2_lanes()) GTEST_SKIP() << "this machine has only the baseline";
   const auto grid = sampled("abc");
   const VelocityBricks bricks(*grid);
@@ -265,7 +265,7 @@ TEST(Batch, WideLanesGiveTheBitsOfTheBaseline) {
   }
 }
 
-TEST(Batch, FormulasAndLineFieldsAreTracesOwn) {
+TEST(Batch, FormulasAndLineFieldsEqualTrace) {
   const auto formula = analytic_vector("helix");
   const auto grid = sampled("circle", 16);
   for (const Flow& flow : {Flow{formula.get()}, Flow{grid.get(), true}}) {
@@ -288,7 +288,7 @@ TEST(Batch, FormulasAndLineFieldsAreTracesOwn) {
   }
 }
 
-TEST(Batch, AGridOfOneLayerIsTracedToo) {
+TEST(Batch, AGridOfOneLayerIsTraced) {
   const auto grid = sample_vector_grid({}, {16, 16, 1}, [](const Vec3&) { return Vec3(1, 0.5, 0); });
   const auto lines = BatchTracer(Flow{grid.get()}).trace(std::vector<Vec3>{{4, 4, 0}});
   ASSERT_TRUE(lines[0]) << lines[0].error().message;
@@ -300,5 +300,5 @@ TEST(Batch, NoSeedsGiveNoLines) {
   EXPECT_TRUE(BatchTracer(Flow{grid.get()}).trace({}).empty());
 }
 
-}  // namespace batch_test
+}  // namespace batch_tracer_test
 }  // namespace catena::flow

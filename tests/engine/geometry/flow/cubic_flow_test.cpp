@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// StreamlineTracing through cubic cells: their own numbers, and how much nearer they are to the truth than lines through linear cells.
+// Streamlines through cubic cells: agreement with the samples, and the error compared with lines through linear cells.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ Vec3 lamb_oseen(const Vec3& p) {
   return {-p.y * w, p.x * w, 0.25};
 }
 
-/// Arnold, Beltrami and Childress's flow with a wave number an axis.
+/// The flow of Arnold, Beltrami and Childress with different wave numbers along the axes.
 Vec3 abc(const Vec3& p) {
   return {1.7 * std::sin(3 * p.z) + std::cos(2 * p.y), 1.4 * std::sin(p.x) + 1.7 * std::cos(3 * p.z),
           std::sin(2 * p.y) + 1.4 * std::cos(p.x)};
@@ -36,7 +36,7 @@ field::VectorFieldPtr cubic_of(const std::shared_ptr<const field::VectorGrid>& g
   return *made;
 }
 
-/// Of 20 lines the median of the greatest distance from the true line, up to the length or where the domain ends.
+/// The median over 20 lines of the maximum distance from the true line, up to the length or the end of the domain.
 double median_cross_track(const field::VectorField& sampled, const field::VectorField& truth, double half, double length) {
   field::test::Random random(77);
   std::vector<double> worst;
@@ -57,7 +57,7 @@ double median_cross_track(const field::VectorField& sampled, const field::Vector
   return worst[10];
 }
 
-TEST(CubicFlow, LinesAreTwentyTimesNearerToTheTruth) {
+TEST(CubicFlow, LinesHaveATwentiethOfTheLinearError) {
   struct Case {
     const char* name;
     Vec3 (*velocity)(const Vec3&);
@@ -74,8 +74,8 @@ TEST(CubicFlow, LinesAreTwentyTimesNearerToTheTruth) {
     }
 }
 
-/// The same line by small classical steps through the field's own samples, without cells.
-TEST(CubicFlow, CellsGiveTheLineOfTheFieldItself) {
+/// The line of small classical steps through the field's samples, without cells, equals the traced line.
+TEST(CubicFlow, LinesThroughCellsEqualLinesThroughSamples) {
   const auto field = cubic_of(sample_vector_grid(cube(pi, 24), {24, 24, 24}, abc));
   field::Cursor cursor;
   const Flow flow{field.get()};
@@ -98,7 +98,7 @@ TEST(CubicFlow, CellsGiveTheLineOfTheFieldItself) {
   }
 }
 
-TEST(CubicFlow, TheVelocityGradientIsThatOfTheSamples) {
+TEST(CubicFlow, TheVelocityGradientEqualsThatOfTheSamples) {
   for (const field::Mapping& mapping : field::test::mappings()) {
     const field::test::Block block = field::test::random_block({9, 8, 7}, 5);
     std::vector<float> xyz;
@@ -124,8 +124,8 @@ TEST(CubicFlow, TheVelocityGradientIsThatOfTheSamples) {
   }
 }
 
-TEST(CubicFlow, LinesEndWhereThoseOfLinearCellsDo) {
-  // uniform flow: the same line through either; a hole in its way
+TEST(CubicFlow, LinesEndAsThoseOfLinearCells) {
+  // Uniform flow with a hole in the way: the lines of linear and cubic cells are equal.
   const field::Index3 size{12, 9, 9};
   std::vector<std::uint8_t> valid(12 * 9 * 9, 1);
   valid[static_cast<std::size_t>((4 * 9 + 4) * 12 + 8)] = 0;

@@ -6,7 +6,7 @@
 namespace catena::flow {
 namespace curve_test {
 
-/// A quarter of the unit circle a knot.
+/// Knots at every quarter of the unit circle.
 std::vector<Knot> ring() {
   std::vector<Knot> knots;
   for (int i = 0; i <= 4; ++i) {
@@ -29,7 +29,7 @@ TEST(Curve, PassesThroughItsKnotsExactly) {
     EXPECT_EQ(p, curve.knots()[k + 1].p);
     EXPECT_EQ(derivative, curve.knots()[k + 1].t);
   }
-  // the cubic's own error half way, R (h/R)^4 / 384
+  // The error of the cubic between knots is R (h/R)^4 / 384.
   EXPECT_NEAR(norm(curve.position(M_PI / 4)), 1, 2e-2);
 }
 
@@ -53,7 +53,7 @@ TEST(Curve, FindsTheIntervalOfAnArcLength) {
   EXPECT_EQ(curve.find_interval(100), 3u);
 }
 
-TEST(Curve, EndsHaveTheirWords) {
+TEST(Curve, TerminationsHaveTheirNames) {
   EXPECT_STREQ(to_string(Termination::boundary), "BOUNDARY");
   EXPECT_STREQ(to_string(Termination::critical), "CRITICAL");
   EXPECT_STREQ(to_string(Termination::length), "LENGTH");

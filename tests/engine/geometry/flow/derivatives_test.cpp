@@ -19,7 +19,7 @@ void expect_near(const VelocityGradient& found, const Vec3& v, const Mat3& gradi
   for (int j = 0; j < 3; ++j) EXPECT_LE(norm(found.gradient[j] * found.scale - gradient[j]), tolerance) << j;
 }
 
-TEST(VelocityGradient, OfALinearFieldOnAnyGrid) {
+TEST(VelocityGradient, IsExactForALinearFieldOnAnyGrid) {
   const auto tilted = field::Mapping::from_linear(Mat3(0.8, 0.6, 0.0, -0.3, 0.4, 0.2, 0.1, 0.05, 0.9), Vec3(-3, 7, -11));
   for (const field::Mapping& mapping : {field::Mapping{}, tilted}) {
     const auto grid = test::sample_vector_grid(mapping, {5, 6, 7}, linear);
@@ -28,7 +28,7 @@ TEST(VelocityGradient, OfALinearFieldOnAnyGrid) {
       int evaluations = 0;
       const Vec3 p = mapping.world_from_index(index);
       const VelocityGradient found = compute_velocity_gradient(*grid, p, cursor, evaluations);
-      if (!found.is_valid) continue;  // a corner, a rounding outside
+      if (!found.is_valid) continue;  // a corner, outside by rounding
       expect_near(found, linear(p), shear(), 2e-4);
       EXPECT_EQ(evaluations, 1);
     }
@@ -36,7 +36,7 @@ TEST(VelocityGradient, OfALinearFieldOnAnyGrid) {
   }
 }
 
-TEST(VelocityGradient, OfTheTrilinearCellIsItsSlope) {
+TEST(VelocityGradient, EqualsTheDerivativeOfTheTrilinearCell) {
   const auto grid =
       test::sample_vector_grid({}, {4, 4, 4}, [](const Vec3& p) { return Vec3(p.x * p.y * p.z, p.x * p.x, p.y - p.z * p.x); });
   field::Cursor cursor;
@@ -52,7 +52,7 @@ TEST(VelocityGradient, OfTheTrilinearCellIsItsSlope) {
   expect_near(found, grid->sample(p, cursor).value, gradient, 1e-12);
 }
 
-TEST(VelocityGradient, OfFormulasAndAtAnyScale) {
+TEST(VelocityGradient, IsAccurateForFormulasAtAnyScale) {
   const auto exact = [](const Vec3& p) {
     const double a = std::sqrt(3.0), b = std::sqrt(2.0);
     return Mat3(Vec3(0, b * std::cos(p.x), -b * std::sin(p.x)), Vec3(-std::sin(p.y), 0, std::cos(p.y)),
@@ -69,14 +69,14 @@ TEST(VelocityGradient, OfFormulasAndAtAnyScale) {
     EXPECT_EQ(evaluations, 7);
     EXPECT_EQ(velocity_gradient_fetches(*abc), 7);
   }
-  // Curl ABC = ABC
+  // The curl of the ABC flow equals the ABC flow.
   field::Cursor cursor;
   int evaluations = 0;
   const VelocityGradient found = compute_velocity_gradient(*test::analytic_vector("abc"), {0.5, 0.2, -0.7}, cursor, evaluations);
   EXPECT_LE(norm(curl(found.gradient) - found.v), 2e-10);
 }
 
-TEST(VelocityGradient, IsUnknownOutsideAndWhereNotFinite) {
+TEST(VelocityGradient, IsInvalidOutsideAndForNonFiniteValues) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto grid = test::sample_vector_grid({}, {4, 4, 4}, [&](const Vec3& p) { return p == Vec3(1, 1, 1) ? Vec3(0, nan, 0) : p; });
   field::Cursor cursor;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A vector field from a lambda, for tests of the flow: v(p), inside everywhere unless the second lambda says otherwise.
+/// A vector field from a lambda, for tests of the flow: v(p), inside everywhere unless a second lambda is given.
 #pragma once
 #include <functional>
 
@@ -41,7 +41,7 @@ inline field::VectorFieldPtr analytic_vector(const std::string& name, double sca
   return made->vector;
 }
 
-/// A grid of a formula: `nodes` an axis, node i at lo + i * spacing (per axis).
+/// A grid of a formula with `size` nodes, under a mapping.
 inline std::shared_ptr<const field::VectorGrid> sample_vector_grid(const field::Mapping& mapping, const field::Index3& size,
                                                                    const std::function<Vec3(const Vec3&)>& value,
                                                                    const std::vector<std::uint8_t>& valid = {}) {

@@ -26,7 +26,7 @@ Vec3 somewhere(std::mt19937_64& random, double half) {
   return {x, y, z};
 }
 
-TEST(NearestOnCurve, OfACircleIsTheProjection) {
+TEST(NearestOnCurve, EqualsTheProjectionOntoACircle) {
   const CurvePtr curve = traced(test::analytic_vector("circle"), {0.5, 0, 0});
   const NearestOnCurve nearest(curve);
   std::mt19937_64 random(3);
@@ -42,7 +42,7 @@ TEST(NearestOnCurve, OfACircleIsTheProjection) {
 }
 
 TEST(NearestOnCurve, AgreesWithAScanOfAllKnots) {
-  // ABC's lines wind through the whole box: many local minima
+  // Lines of the ABC flow wind through the whole box: many local minima.
   const CurvePtr curve = traced(test::analytic_vector("abc"), {0.1, 0.2, 0.3}, 40);
   const NearestOnCurve nearest(curve);
   ASSERT_GT(curve->knots().size(), 1500u);
@@ -66,7 +66,7 @@ TEST(NearestOnCurve, AgreesWithAScanOfAllKnots) {
   EXPECT_LT(most, kMaxNearestWork);
 }
 
-/// A line that winds 4,000 times around a torus: everywhere hundreds of its passes are near.
+/// A line that winds 4,000 times around a torus: hundreds of its passes are near any position.
 TEST(NearestOnCurve, ExactFindsTheNearestOfHundredsOfPasses) {
   const field::VectorFieldPtr winding =
       field::make_callable_field("winding", {Vec3(-2.0), Vec3(2.0)}, field::VectorFunction([](const Vec3& p) {
@@ -83,11 +83,11 @@ TEST(NearestOnCurve, ExactFindsTheNearestOfHundredsOfPasses) {
     most = std::max(most, found.work);
     bounded = std::max(bounded, nearest.find(curve->knots()[k].p).distance2);
   }
-  EXPECT_GT(bounded, 0);  // or it would prove nothing
+  EXPECT_GT(bounded, 0);  // ensures that the case is tested
   EXPECT_GT(most, kMaxNearestWork);
 }
 
-TEST(NearestOnCurve, IsBoundedWhereAllPlacesAreEquallyNear) {
+TEST(NearestOnCurve, WorkIsBoundedIfAllPointsAreEquallyNear) {
   const NearestOnCurve nearest(traced(test::analytic_vector("circle"), {0.5, 0, 0}));
   for (const Vec3& x : {Vec3(0.0), Vec3(0, 0, 1), Vec3(0, 0, 1e100), Vec3(1e100, 0, 0)}) {
     const NearestPoint found = nearest.find(x);

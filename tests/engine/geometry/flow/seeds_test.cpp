@@ -12,7 +12,7 @@ namespace seeds_test {
 
 using test::sample_vector_grid;
 
-TEST(Seeds, ALineHasBothEnds) {
+TEST(Seeds, ALineIncludesBothEnds) {
   const auto seeds = seeds_on_line({0, 0, 0}, {3, 0, -6}, 4);
   ASSERT_EQ(seeds.size(), 4u);
   EXPECT_EQ(seeds[0], Vec3(0.0));
@@ -21,7 +21,7 @@ TEST(Seeds, ALineHasBothEnds) {
   EXPECT_EQ(seeds_on_line({0, 0, 0}, {3, 0, -6}, 1).front(), Vec3(1.5, 0, -3));
 }
 
-TEST(Seeds, APlaneHasItsFourCorners) {
+TEST(Seeds, APlaneIncludesItsFourCorners) {
   const auto seeds = seeds_on_plane({1, 1, 1}, {2, 0, 0}, {0, 0, 4}, 3, 2);
   ASSERT_EQ(seeds.size(), 6u);
   EXPECT_EQ(seeds[0], Vec3(1, 1, 1));
@@ -56,7 +56,7 @@ TEST(Seeds, ABallIsFilledEvenlyByVolume) {
   EXPECT_NEAR(upper_inner, 250, 25);
 }
 
-TEST(Seeds, AnIsosurfaceIsMetEvenlyByArea) {
+TEST(Seeds, AnIsosurfaceIsCoveredEvenlyByArea) {
   const auto made = field::make_analytic("sphere");
   const auto grid = field::sample_on_grid(*made->scalar, 48, -2, 2);
   for (const field::ScalarField* field : {made->scalar.get(), static_cast<const field::ScalarField*>(grid.get())}) {
@@ -73,25 +73,25 @@ TEST(Seeds, AnIsosurfaceIsMetEvenlyByArea) {
   }
 }
 
-TEST(Seeds, ALevelThatIsNowhereGivesNone) {
+TEST(Seeds, ALevelWithoutASurfaceHasNoSeeds) {
   const auto made = field::make_analytic("sphere");
   EXPECT_TRUE(seeds_on_isosurface(*made->scalar, 100, 5).empty());
 }
 
 double distance_between(const Curve& a, const Curve& b) {
-  double least = 1e9;
+  double minimum = 1e9;
   for (const Knot& p : a.knots())
-    for (const Knot& q : b.knots()) least = std::min(least, norm(p.p - q.p));
-  return least;
+    for (const Knot& q : b.knots()) minimum = std::min(minimum, norm(p.p - q.p));
+  return minimum;
 }
 
-TEST(EvenlySpaced, ParallelFlowIsFilledAtTheDistance) {
+TEST(EvenlySpaced, LinesOfAParallelFlowAreAtTheDistance) {
   const auto grid = sample_vector_grid({}, {24, 24, 24}, [](const Vec3&) { return Vec3(1, 0, 0); });
   EvenSpacingOptions spacing;
   spacing.distance = 4;
   spacing.start_points = {{11, 11, 11}};
   const auto lines = trace_evenly_spaced(Flow{grid.get()}, spacing);
-  // a square lattice of lines, four voxels apart: 3, 7, 11, 15, 19 and -1, 23 which the box cuts off or has as its face
+  // A square lattice of lines, four voxels apart: 3, 7, 11, 15, 19, and possibly -1 and 23 at the faces of the box.
   EXPECT_GE(lines.size(), 25u);
   EXPECT_LE(lines.size(), 36u);
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -100,7 +100,7 @@ TEST(EvenlySpaced, ParallelFlowIsFilledAtTheDistance) {
   }
 }
 
-TEST(EvenlySpaced, LinesKeepTheTestDistanceAndTheSetRepeats) {
+TEST(EvenlySpaced, LinesKeepTheTestDistanceAndAreRepeatable) {
   const auto made = field::make_analytic("abc");
   const auto grid = field::sample_on_grid(*made->vector, 32, -2, 2);
   EvenSpacingOptions spacing;
@@ -114,12 +114,12 @@ TEST(EvenlySpaced, LinesKeepTheTestDistanceAndTheSetRepeats) {
     EXPECT_GE(lines[i]->knots().back().s - lines[i]->knots().front().s, spacing.distance);
     for (std::size_t j = 0; j < i; ++j) EXPECT_GE(distance_between(*lines[i], *lines[j]), 0.95 * 0.5 * spacing.distance) << i << " " << j;
   }
-  // nowhere is there room for another line: every place of the inner domain has one within two distances
+  // There is no room for another line: every position of the inner domain has a line within two distances.
   for (double x = -1.5; x <= 1.5; x += 0.5) {
-    double least = 1e9;
+    double minimum = 1e9;
     for (const auto& line : lines)
-      for (const Knot& knot : line->knots()) least = std::min(least, norm(knot.p - Vec3(x, 0.3 * x, -x)));
-    EXPECT_LT(least, 2 * spacing.distance) << x;
+      for (const Knot& knot : line->knots()) minimum = std::min(minimum, norm(knot.p - Vec3(x, 0.3 * x, -x)));
+    EXPECT_LT(minimum, 2 * spacing.distance) << x;
   }
 }
 
@@ -135,7 +135,7 @@ TEST(EvenlySpaced, CirclesStayClosed) {
   EXPECT_EQ(lines[0]->last_end(), Termination::lap);
 }
 
-TEST(EvenlySpaced, StartsThatBeginNothingGiveAnEmptySet) {
+TEST(EvenlySpaced, InvalidStartPointsGiveNoLines) {
   const auto grid = sample_vector_grid({}, {8, 8, 8}, [](const Vec3&) { return Vec3(1, 0, 0); });
   EvenSpacingOptions spacing;
   spacing.distance = 1;
@@ -143,7 +143,7 @@ TEST(EvenlySpaced, StartsThatBeginNothingGiveAnEmptySet) {
   EXPECT_TRUE(trace_evenly_spaced(Flow{grid.get()}, spacing).empty());
 }
 
-TEST(LabelParts, IsTheSameCurveBetweenItsEnds) {
+TEST(Subcurve, ASubcurveEqualsTheCurveBetweenItsEnds) {
   const auto grid = sample_vector_grid({}, {16, 16, 16}, [](const Vec3& p) { return Vec3(1, 0.05 * p.x, 0); });
   const auto curve = trace(Flow{grid.get()}, {5, 5, 5});
   ASSERT_TRUE(curve);

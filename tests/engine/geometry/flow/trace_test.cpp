@@ -32,7 +32,7 @@ field::LoadRequest request_for(const std::string& path, const std::string& grid)
   return request;
 }
 
-/// The classic method with tiny steps in arc length, stages wherever they fall: the independent reference.
+/// An independent reference: the classical method with tiny steps in arc length.
 Vec3 brute_force(const Flow& flow, Vec3 p, double length, double step) {
   field::Cursor cursor;
   const int steps = static_cast<int>(std::ceil(std::fabs(length) / step));
@@ -45,7 +45,7 @@ Vec3 brute_force(const Flow& flow, Vec3 p, double length, double step) {
   return p;
 }
 
-/// Every curve: s rises, tangents are unit, the seed is a knot at s = 0.
+/// Expects that s increases, tangents have unit length, and the seed is a knot at s = 0.
 void expect_sound(const Curve& curve, const Vec3& seed) {
   bool has_seed = false;
   for (const Knot& knot : curve.knots()) {
@@ -59,7 +59,7 @@ void expect_sound(const Curve& curve, const Vec3& seed) {
   EXPECT_TRUE(has_seed);
 }
 
-TEST(Trace, CircleIsOneLapAndExact) {
+TEST(Trace, ACircleIsOneExactLap) {
   for (const double radius : {1e-5, 0.05, 0.3, 1.5, 5.0}) {
     const auto field = analytic_vector("circle");
     const Vec3 seed(radius * 0.6, -radius * 0.8, 0.25);
@@ -82,7 +82,7 @@ TEST(Trace, CircleIsOneLapAndExact) {
   }
 }
 
-TEST(Trace, HelixIsExactInBothDirections) {
+TEST(Trace, AHelixIsExactInBothDirections) {
   const auto field = lambda_field([](const Vec3& p) { return Vec3(-2 * p.y, 2 * p.x, 0.5); });
   const Vec3 seed(0.7, 0.0, 0.1);
   const auto curve = traced({field.get()}, seed, 6);
@@ -98,7 +98,7 @@ TEST(Trace, HelixIsExactInBothDirections) {
   }
 }
 
-TEST(Trace, FieldScaleGivesTheSameLine) {
+TEST(Trace, IsInvariantUnderTheFieldsScale) {
   for (const double scale : {1e-300, 1e300}) {
     const auto one = lambda_field([](const Vec3& p) { return Vec3(-p.y, p.x, 0.3); });
     const auto scaled = lambda_field([scale](const Vec3& p) { return scale * Vec3(-p.y, p.x, 0.3); });
@@ -107,7 +107,7 @@ TEST(Trace, FieldScaleGivesTheSameLine) {
   }
 }
 
-TEST(Trace, NodeEndsCriticalOnIt) {
+TEST(Trace, ALineIntoANodeEndsCriticalAtTheNode) {
   const auto field = lambda_field([](const Vec3& p) { return Vec3(-p.x, -2 * p.y, -1.5 * p.z); });
   for (const Vec3& seed : {Vec3(1.0, 0.0, 0.0), Vec3(0.3, 0.9, -0.5), Vec3(0.0, 0.0, 1.0)}) {
     const auto curve = traced({field.get()}, seed, 8);
@@ -118,23 +118,23 @@ TEST(Trace, NodeEndsCriticalOnIt) {
   }
 }
 
-TEST(Trace, SaddleEndsCriticalOnStraightAndCurvedManifolds) {
+TEST(Trace, StableManifoldsOfASaddleEndCritical) {
   const auto straight = lambda_field([](const Vec3& p) { return Vec3(p.x, -p.y, 0.0); });
   const auto curve = traced({straight.get()}, Vec3(0.0, 1.0, 0.5), 3);
   EXPECT_EQ(curve->last_end(), Termination::critical);
   EXPECT_LE(norm(curve->knots().back().p - Vec3(0.0, 0.0, 0.5)), 4e-6);
-  // the stable manifold is x = y^2 / 3
+  // The stable manifold is x = y^2 / 3.
   const auto curved = lambda_field([](const Vec3& p) { return Vec3(p.x - p.y * p.y, -p.y, 0.0); });
   const auto bent = traced({curved.get()}, Vec3(1.0 / 3, 1.0, 0.0), 3);
   EXPECT_EQ(bent->last_end(), Termination::critical);
   EXPECT_LE(norm(bent->knots().back().p), 4e-6);
-  // beside it, the line turns away
+  // Next to the manifold, the line turns away.
   const auto beside = traced({straight.get()}, Vec3(1e-2, 1.0, 0.5), 3);
   EXPECT_EQ(beside->last_end(), Termination::length);
   EXPECT_NEAR(beside->knots().back().p.x * beside->knots().back().p.y, 1e-2, 1e-8);
 }
 
-TEST(Trace, FocusAndLeastSpeedEndCritical) {
+TEST(Trace, AFocusAndTheMinimumSpeedEndCritical) {
   const auto focus = lambda_field([](const Vec3& p) { return Vec3(-p.y - 0.3 * p.x, p.x - 0.3 * p.y, 0.0); });
   const auto spiral = traced({focus.get()}, Vec3(0.5, 0.0, 0.0), 20);
   EXPECT_EQ(spiral->last_end(), Termination::critical);
@@ -145,7 +145,7 @@ TEST(Trace, FocusAndLeastSpeedEndCritical) {
   EXPECT_NEAR(curve->knots().back().p.x, 1.5, 1e-8);
 }
 
-TEST(Trace, BadSeedsAreOneSentence) {
+TEST(Trace, BadSeedsAreOneErrorLine) {
   const auto circle = analytic_vector("circle");
   EXPECT_FALSE(trace({circle.get()}, Vec3(std::nan(""), 0.0, 0.0)));
   EXPECT_FALSE(trace({circle.get()}, Vec3(0.0)));
@@ -158,7 +158,7 @@ TEST(Trace, BadSeedsAreOneSentence) {
   EXPECT_EQ(outside.error().message.find('\n'), std::string::npos);
 }
 
-TEST(Trace, UniformGridEndsExactlyOnTheFaces) {
+TEST(Trace, LinesEndExactlyOnTheFacesOfTheDomain) {
   const auto mapping = field::Mapping::from_linear(Mat3(0.5, 0, 0, 0, 0.25, 0, 0, 0, 2), Vec3(-1.0, 3.0, -7.0));
   const auto grid = sample_vector_grid(mapping, {9, 7, 5}, [](const Vec3&) { return Vec3(1.0, 0.25, -0.125); });
   const Vec3 seed(0.3, 3.9, -2.0);
@@ -172,7 +172,7 @@ TEST(Trace, UniformGridEndsExactlyOnTheFaces) {
   for (const Knot& knot : curve->knots()) EXPECT_LE(norm(cross(knot.p - seed, direction(Vec3(1.0, 0.25, -0.125)))), 1e-13);
 }
 
-TEST(Trace, EveryPassageOfAFaceIsAKnotOnIt) {
+TEST(Trace, EveryCrossingOfACellFaceIsAKnot) {
   const auto mapping = field::Mapping::from_linear(Mat3(4.0 / 23), Vec3(-2.0));
   const auto grid = sample_vector_grid(mapping, {24, 24, 24}, [](const Vec3& p) { return Vec3(-p.y, p.x, 0.2 + 0.1 * p.x); });
   const auto curve = traced({grid.get()}, Vec3(0.8, 0.1, 0.0), 6);
@@ -187,7 +187,7 @@ TEST(Trace, EveryPassageOfAFaceIsAKnotOnIt) {
 }
 
 TEST(Trace, GridLinesAgreeWithTinySteps) {
-  // anisotropic, rotated, negative origin
+  // An anisotropic, rotated grid with a negative origin.
   const double c = std::cos(0.4), s = std::sin(0.4);
   const Mat3 turn(c, s, 0, -s, c, 0, 0, 0, 1);
   const auto mapping = field::Mapping::from_linear(turn * Mat3(0.1, 0, 0, 0, 0.13, 0, 0, 0, 0.17), Vec3(-1.2, -2.1, -1.9));
@@ -208,8 +208,8 @@ TEST(Trace, GridLinesAgreeWithTinySteps) {
   EXPECT_LE(worst / grid->domain_length(), 1e-9);
 }
 
-TEST(Trace, HillFloorOfTheGrid) {
-  // the grid's own error, within 20 %
+TEST(Trace, TheErrorOnASampledHillIsThatOfTheGrid) {
+  // The discretization error of the grid, within 20 %.
   const auto hill = analytic_vector("hill");
   const Vec3 seed(0.5, 0.0, 0.0);
   const auto exact = traced({hill.get()}, seed, 3.2);
@@ -222,7 +222,7 @@ TEST(Trace, HillFloorOfTheGrid) {
     const auto curve = traced({grid.get()}, seed, 3.2);
     double worst = 0;
     for (const Knot& knot : curve->knots()) {
-      // cross-track: distance to the exact curve near the same arc length
+      // The cross-track error: the distance from the exact curve near the same arc length.
       double nearest = 1;
       for (int i = -200; i <= 200; ++i) nearest = std::min(nearest, norm(knot.p - exact->position(knot.s + i * 2e-4)));
       worst = std::max(worst, nearest);
@@ -246,7 +246,7 @@ TEST(Trace, MaskedCellsAreABoundary) {
   EXPECT_TRUE(trace({grid.get()}, Vec3(6.0, 4.0, 4.5)));
 }
 
-TEST(Trace, NotANumberInTheWayIsABoundary) {
+TEST(Trace, ANanIsABoundary) {
   const auto grid = sample_vector_grid(field::Mapping{}, {8, 8, 8}, [](const Vec3& p) {
     return p.x == 5 && p.y == 4 ? Vec3(std::nan("")) : Vec3(1 + 0.01 * p.x, 0.0, 0.0);
   });
@@ -255,7 +255,7 @@ TEST(Trace, NotANumberInTheWayIsABoundary) {
   EXPECT_EQ(curve->knots().back().p.x, 4.0);
 }
 
-TEST(Trace, LapsCloseAlsoOnFacesAndNodes) {
+TEST(Trace, LapsCloseOnFacesAndNodes) {
   const auto grid = field::sample_on_grid(*analytic_vector("circle"), 41, -2, 2);
   for (const Vec3& seed : {Vec3(0.0, -1.2, 0.0), Vec3(0.0, 0.9, 0.0), Vec3(0.5, 0.0, 1.0), Vec3(-0.9, 0.0, 0.4),
                            Vec3(0.0, 1.6384480463519915, 0.0), Vec3(0.3, 0.4, 0.1), Vec3(1.0, 0.0, -0.05)}) {
@@ -266,7 +266,7 @@ TEST(Trace, LapsCloseAlsoOnFacesAndNodes) {
   }
 }
 
-TEST(Trace, FlatFieldsAlongFacesAndEdges) {
+TEST(Trace, FollowsFlatFieldsAlongFacesAndEdges) {
   const auto grid = sample_vector_grid(field::Mapping{}, {12, 12, 4}, [](const Vec3& p) { return Vec3(-(p.y - 5.5), p.x - 5.5, 0.0); });
   for (const Vec3& seed : {Vec3(8.0, 5.5, 0.0), Vec3(8.0, 5.0, 1.0), Vec3(7.0, 7.0, 3.0), Vec3(5.5, 2.0, 2.5)}) {
     const auto curve = traced({grid.get()}, seed);
@@ -275,7 +275,7 @@ TEST(Trace, FlatFieldsAlongFacesAndEdges) {
     EXPECT_NEAR(curve->period(), 2 * M_PI * norm(seed - Vec3(5.5, 5.5, seed.z)), 1e-5);
     for (const Knot& knot : curve->knots()) EXPECT_EQ(knot.p.z, seed.z);
   }
-  // one layer, and lines along edges
+  // A single layer, with a line along grid edges.
   const auto layer = sample_vector_grid(field::Mapping{}, {12, 12, 1}, [](const Vec3&) { return Vec3(0.0, -1.0, 0.0); });
   const auto line = traced({layer.get()}, Vec3(4.0, 5.0, 0.0));
   ASSERT_TRUE(line);
@@ -293,7 +293,7 @@ TEST(Trace, ZeroInACellEndsTheLine) {
   }
 }
 
-TEST(Trace, LineFieldsKeepTheirWayThroughSignFlips) {
+TEST(Trace, LineFieldsKeepTheirDirectionThroughSignFlips) {
   const auto helix = [](const Vec3& p) { return direction(Vec3(-2 * p.y, 2 * p.x, 0.5)); };
   const auto mapping = field::Mapping::from_linear(Mat3(4.0 / 31), Vec3(-2.0));
   const auto steady = sample_vector_grid(mapping, {32, 32, 32}, helix);
@@ -307,13 +307,13 @@ TEST(Trace, LineFieldsKeepTheirWayThroughSignFlips) {
   const auto sense = [&](const Curve& other) { return dot(vector->position(0.01) - seed, other.position(0.01) - seed) > 0 ? 1 : -1; };
   for (const double s : {-2.0, -0.5, 1.0, 2.0}) {
     EXPECT_LE(norm(line->position(sense(*line) * s) - flipped->position(sense(*flipped) * s)), 1e-12) << s;
-    // dyads are another interpolation than vectors: they agree to the grid's own error
+    // Dyads are interpolated differently from vectors: they agree within the error of the grid.
     EXPECT_LE(norm(line->position(sense(*line) * s) - vector->position(s)), 2e-5) << s;
   }
 }
 
-TEST(Trace, NoiseAlwaysEnds) {
-  // the worst of fields: no cell agrees with the next in direction, seeds on nodes, edges and faces; vectors and lines
+TEST(Trace, LinesInNoiseAlwaysEnd) {
+  // Noise: adjacent cells have unrelated directions, and seeds are on nodes, edges and faces; as vectors and as a line field.
   std::mt19937 random(8);
   std::uniform_real_distribution<double> value(-1, 1);
   for (const bool line : {false, true}) {
@@ -367,8 +367,8 @@ TEST(Trace, HeartFibresAreSmooth) {
   EXPECT_EQ(lines, 20);
 }
 
-// before, a place whose own rounding is coarser than the tolerance made steps of 1e-13 L without end
-TEST(Trace, FarFromTheOriginTheRoundingIsTheTolerance) {
+// Where the rounding of a position is coarser than the tolerance, steps must not shrink to 1e-13 L.
+TEST(Trace, FarFromTheOriginTheToleranceIsTheRounding) {
   const auto made = field::make_analytic("helix");
   ASSERT_TRUE(made);
   for (const double far : {1e6, 1e9, 1e15, 1e30}) {

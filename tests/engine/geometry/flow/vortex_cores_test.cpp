@@ -14,7 +14,7 @@ VortexCoresPtr cores_of(const field::VectorFieldPtr& field, CoreCriterion criter
   return made ? *made : std::make_shared<const VortexCores>();
 }
 
-TEST(VortexCores, OfKnownFlowsLieOnThem) {
+TEST(VortexCores, AreAccurateForKnownFlows) {
   constexpr int kNodes = 33;
   for (const test::AnalyticCore& known : test::analytic_cores())
     for (const bool cubic : {false, true}) {
@@ -29,7 +29,7 @@ TEST(VortexCores, OfKnownFlowsLieOnThem) {
     }
 }
 
-TEST(VortexCores, InNoiseKeepsTheWholeCore) {
+TEST(VortexCores, NoiseDoesNotInterruptTheCore) {
   for (const test::AnalyticCore& known : test::analytic_cores()) {
     const auto cores = cores_of(test::sample_core_flow(known, 33, 0.02, 7));
     const test::CoreScore score = test::score_cores(*cores, known, 2.4 / 32);
@@ -38,7 +38,7 @@ TEST(VortexCores, InNoiseKeepsTheWholeCore) {
   }
 }
 
-TEST(VortexCores, SecondOrderIsNearerWhereTheCoreBends) {
+TEST(VortexCores, SecondOrderIsMoreAccurateForBentCores) {
   for (const test::AnalyticCore& known : test::analytic_cores()) {
     if (known.name != "bent") continue;
     const auto grid = test::sample_core_flow(known, 49, 0, 1);
@@ -47,7 +47,7 @@ TEST(VortexCores, SecondOrderIsNearerWhereTheCoreBends) {
   }
 }
 
-TEST(VortexCores, OfAFormulaFollowItToItsRounding) {
+TEST(VortexCores, AreExactForFormulas) {
   const auto ring = cores_of(test::analytic_vector("hill"));
   ASSERT_EQ(ring->lines.size(), 1u);
   const Curve& line = *ring->lines.front();
@@ -58,7 +58,7 @@ TEST(VortexCores, OfAFormulaFollowItToItsRounding) {
   }
 }
 
-TEST(VortexCores, ABeltramiFlowHasNoneByItsVorticity) {
+TEST(VortexCores, ABeltramiFlowHasNoCoreByVorticity) {
   const auto abc = test::analytic_vector("abc");
   for (const field::VectorFieldPtr& field : {abc, field::VectorFieldPtr(field::sample_on_grid(*abc, 33, -2, 2))}) {
     EXPECT_TRUE(cores_of(field, CoreCriterion::vorticity)->holds_everywhere);
@@ -66,12 +66,12 @@ TEST(VortexCores, ABeltramiFlowHasNoneByItsVorticity) {
     EXPECT_FALSE(cores_of(field)->holds_everywhere);
     EXPECT_FALSE(cores_of(field)->lines.empty());
   }
-  // a plane vortex has the same acceleration of second order all around
+  // A plane vortex satisfies the second-order criterion everywhere.
   EXPECT_TRUE(cores_of(test::analytic_vector("lamb-oseen"), CoreCriterion::parallel_vectors)->holds_everywhere);
 }
 
-TEST(VortexCores, EndWhereTheMaskDoes) {
-  // a straight vortex along z on a grid whose upper half is masked
+TEST(VortexCores, EndAtTheMask) {
+  // A straight vortex along z on a grid whose upper half is masked.
   constexpr int n = 17;
   std::vector<std::uint8_t> valid;
   for (int k = 0; k < n; ++k)
@@ -89,7 +89,7 @@ TEST(VortexCores, EndWhereTheMaskDoes) {
   EXPECT_EQ((up ? line.first_end() : line.last_end()).status, SampleStatus::outside_box);
 }
 
-TEST(VortexCores, AreTracedOnceWhileTheyAreHeld) {
+TEST(VortexCores, AreCachedWhileInUse) {
   const auto field = test::analytic_vector("helix");
   const auto first = cores_of(field);
   EXPECT_EQ(first, cores_of(field));

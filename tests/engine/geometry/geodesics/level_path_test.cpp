@@ -20,8 +20,8 @@ constexpr double kPi = std::numbers::pi;
 field::ScalarFieldPtr formula(const char* name) { return field::make_analytic(name, {})->scalar; }
 field::ScalarFieldPtr sampled(const char* name, int resolution) { return field::sample_on_grid(*formula(name), resolution, -2, 2); }
 
-/// Shortest ways on a torus, independently of any surface: Dijkstra over its two angles, with steps in so many directions that
-/// the way is at most 0.1 % too long (a tube of 0.4).
+/// Shortest paths on a torus, independent of any surface mesh: Dijkstra's algorithm over the two angles, with steps in so many directions
+/// that a path is at most 0.1 % too long (for a tube of 0.4).
 class Torus {
  public:
   explicit Torus(double tube) : tube_(tube) {}
@@ -62,10 +62,10 @@ class Torus {
   double tube_;
 };
 
-TEST(LevelPath, OnATorusAsTheReferenceHasIt) {
+TEST(LevelPath, EqualsTheReferenceOnATorus) {
   const Torus torus(0.4);
   const field::ScalarFieldPtr by_formula = formula("torus"), by_grid = sampled("torus", 129);
-  // across the tube, round the hole inside and outside, mixed
+  // Pairs across the tube, around the hole on the inside and the outside, and mixed.
   const std::array<std::array<std::array<int, 2>, 2>, 6> pairs{{{{{0, 0}, {0, 40}}},
                                                                 {{{0, 48}, {90, 48}}},
                                                                 {{{0, 0}, {50, 0}}},
@@ -83,7 +83,7 @@ TEST(LevelPath, OnATorusAsTheReferenceHasIt) {
   }
 }
 
-TEST(LevelPath, OnASampledSphereTheGreatCircle) {
+TEST(LevelPath, IsTheGreatCircleOnASampledSphere) {
   const field::ScalarFieldPtr ball = sampled("sphere", 129);
   for (const double degrees : {5.0, 60.0, 150.0, 180.0}) {
     const double angle = degrees * kPi / 180;
@@ -93,19 +93,19 @@ TEST(LevelPath, OnASampledSphereTheGreatCircle) {
   }
 }
 
-TEST(LevelPath, SurfacesThatDoNotHangTogether) {
-  // two sheets: |z| = 0.5 of a tube without end; an end of its own on each
+TEST(LevelPath, DisconnectedSurfacesHaveNoPath) {
+  // Ends on different sheets, levels without a surface, and ends outside the domain.
   const field::ScalarFieldPtr ball = sampled("sphere", 33);
   EXPECT_TRUE(path_on_level(*ball, 50, {1, 0, 0}, {0, 1, 0}).empty()) << "no such level";
   EXPECT_TRUE(path_on_level(*ball, 1, {9, 0, 0}, {0, 1, 0}).empty()) << "an end outside the domain";
   EXPECT_TRUE(path_on_level(*ball, 1, {std::nan(""), 0, 0}, {0, 1, 0}).empty());
   EXPECT_TRUE(path_on_level(*formula("constant"), 1, {0, 0, 0}, {0, 1, 0}).empty()) << "no surface at all";
-  // the level leaves the domain: eight corners of a sphere of radius 2.8 in the box -2..2
+  // The surface leaves the domain: eight corners of a sphere of radius 2.8 in the box -2..2.
   EXPECT_TRUE(path_on_level(*ball, 3, {1.8, 1.8, 1.8}, {-1.8, -1.8, -1.8}).empty());
   EXPECT_FALSE(path_on_level(*ball, 3, {1.8, 1.8, 1.8}, {1.8, 1.9, 1.7}).empty());
 }
 
-TEST(LevelPath, OnAPlaneStraight) {
+TEST(LevelPath, IsStraightOnAPlane) {
   const auto path = path_on_level(*formula("plane"), 0.25, {-1, -1, 0.3}, {1.5, 1, 0.2});
   ASSERT_FALSE(path.empty());
   EXPECT_NEAR(path_length(path), norm(Vec3(2.5, 2, 0)), 1e-6);

@@ -16,8 +16,8 @@ TEST(ShortenPath, ADetourInThePlaneBecomesStraight) {
   for (std::size_t i = 0; i < path.size(); ++i) EXPECT_NEAR(path[i].x, 5.0 * static_cast<double>(i) / 128, 0.02) << "evenly spaced";
 }
 
-TEST(ShortenPath, RoundACylinderItStaysOnItsSide) {
-  // three quarters of a turn: the helix, not the short cut the other way
+TEST(ShortenPath, APathAroundACylinderKeepsItsDirection) {
+  // Three quarters of a turn: the result is the helix, not the shorter path in the other direction.
   const auto put = [](Vec3& p) {
     const double r = std::hypot(p.x, p.y);
     if (!(r > 0)) return false;
@@ -33,7 +33,7 @@ TEST(ShortenPath, RoundACylinderItStaysOnItsSide) {
   EXPECT_NEAR(path_length(shorten_path(path, put)), std::hypot(1.5 * 3.14159265358979323846, 1.0), 1e-3);
 }
 
-TEST(ShortenPath, WhereNothingCanBePutNothingMoves) {
+TEST(ShortenPath, AFailingProjectionKeepsThePath) {
   const std::vector<Vec3> path = shorten_path({{0, 0, 0}, {1, 1, 0}, {2, 0, 0}}, [](Vec3&) { return false; });
   EXPECT_NEAR(path_length(path), 2 * std::sqrt(2.0), 1e-12);
   EXPECT_EQ(path_length(shorten_path({{1, 1, 1}, {1, 1, 1}}, [](Vec3&) { return true; })), 0);

@@ -16,7 +16,7 @@ namespace isosurface_test {
 using field::Index3;
 using field::test::Random;
 
-/// Directed edges that occur more than once, and those without their opposite.
+/// The number of directed edges that occur more than once, and of those without their opposite.
 struct EdgeCount {
   int repeated = 0, open = 0;
 };
@@ -44,7 +44,7 @@ Isosurface made(const field::ScalarGrid& grid, double level, OutwardSide outside
   return surface ? std::move(*surface) : Isosurface{};
 }
 
-/// Noise, and below the level all round.
+/// Noise that is below the level on all faces of the grid.
 std::vector<float> noise(const Index3& n, std::uint64_t seed, bool whole_numbers) {
   Random random(seed);
   std::vector<float> values;
@@ -58,7 +58,7 @@ std::vector<float> noise(const Index3& n, std::uint64_t seed, bool whole_numbers
   return values;
 }
 
-TEST(Isosurface, OfNoiseIsClosedInEveryFrameAndItsVerticesLieOnEdgesAtTheLevel) {
+TEST(Isosurface, NoiseHasAClosedSurfaceWithVerticesOnEdgesForAnyMapping) {
   const Index3 n{19, 12, 10};
   std::uint64_t seed = 1;
   for (const field::Mapping& mapping : field::test::mappings()) {
@@ -80,13 +80,13 @@ TEST(Isosurface, OfNoiseIsClosedInEveryFrameAndItsVerticesLieOnEdgesAtTheLevel) 
       EXPECT_NEAR(norm(s.normals[i]), 1, 1e-12);
     }
     EXPECT_LT(within, static_cast<int>(s.vertices.size() / 50)) << "on the edges of cells, but for a few";
-    // what is above the level is inside
+    // Values above the level are inside.
     EXPECT_GT(volume_of(s), 0);
     EXPECT_NEAR(volume_of(made(*grid, level, OutwardSide::higher)), -volume_of(s), 1e-9 * volume_of(s));
   }
 }
 
-TEST(Isosurface, OfALotOfNoiseHasNoEdgeTwice) {
+TEST(Isosurface, LargeNoiseHasNoRepeatedEdge) {
   const Index3 n{25, 25, 25};
   for (std::uint64_t seed = 100; seed < 110; ++seed) {
     const EdgeCount edges = edges_of(made(*field::make_scalar_grid("n", {}, n, noise(n, seed, false)), 0.5));
@@ -95,7 +95,7 @@ TEST(Isosurface, OfALotOfNoiseHasNoEdgeTwice) {
   }
 }
 
-TEST(Isosurface, AtVoxelsThatHaveTheLevelItIsClosedWithoutFlatTriangles) {
+TEST(Isosurface, VoxelsAtTheLevelGiveNoDegenerateTriangles) {
   const Index3 n{14, 14, 14};
   const Isosurface s = made(*field::make_scalar_grid("n", {}, n, noise(n, 7, true)), 1);
   EXPECT_EQ(edges_of(s).open, 0);
@@ -104,10 +104,10 @@ TEST(Isosurface, AtVoxelsThatHaveTheLevelItIsClosedWithoutFlatTriangles) {
   for (const Vec3& v : s.vertices) EXPECT_EQ(++places[(std::array<double, 3>{v.x, v.y, v.z})], 1) << "one vertex a corner";
 }
 
-TEST(Isosurface, OfASphereHasItsVolumeAndItsNormals) {
+TEST(Isosurface, ASphereHasItsVolumeAndNormals) {
   const auto formula = field::make_analytic("sphere");
   const auto grid = field::sample_on_grid(*formula->scalar, 65, -2, 2);
-  // values are the distance from the centre: what is higher is outside
+  // The values are distances from the center, so higher values are outside.
   const Isosurface s = made(*grid, 1, OutwardSide::higher);
   EXPECT_EQ(edges_of(s).open, 0);
   EXPECT_NEAR(volume_of(s), 4.18879, 0.01);
@@ -117,8 +117,8 @@ TEST(Isosurface, OfASphereHasItsVolumeAndItsNormals) {
   }
 }
 
-/// s = x: the plane x = 3.5, as many squares as valid cells there.
-TEST(Isosurface, LeavesOutCellsThatAreNotValid) {
+/// s = x: the plane x = 3.5 has as many squares as there are valid cells.
+TEST(Isosurface, LeavesOutInvalidCells) {
   const Index3 n{12, 11, 10};
   std::vector<float> values;
   std::vector<std::uint8_t> valid;
@@ -136,11 +136,11 @@ TEST(Isosurface, LeavesOutCellsThatAreNotValid) {
   for (const Vec3& normal : holed.normals) EXPECT_EQ(normal, Vec3(-1, 0, 0));
 }
 
-TEST(Isosurface, SaysWhatHasNoSurface) {
+TEST(Isosurface, RefusesFieldsWithoutASurface) {
   const std::vector<float> values{0, 1, 2, 3};
   const auto flat = extract_isosurface(*field::make_scalar_grid("x", {}, {2, 2, 1}, values), 1.5, OutwardSide::lower, "flat");
   ASSERT_FALSE(flat);
-  EXPECT_NE(flat.error().message.find("one layer"), std::string::npos) << flat.error().message;
+  EXPECT_NE(flat.error().message.find("single layer"), std::string::npos) << flat.error().message;
   const auto none =
       extract_isosurface(*field::make_scalar_grid("x", {}, {2, 2, 2}, std::vector<float>(8, 1.f)), 1, OutwardSide::lower, "one");
   ASSERT_FALSE(none);

@@ -35,7 +35,7 @@ TEST(TriangleMesh, BoxIsWeldedAndClosed) {
   }
 }
 
-TEST(TriangleMesh, CountsOpenCrowdedAndTurnedEdges) {
+TEST(TriangleMesh, CountsOpenNonManifoldAndMisorientedEdges) {
   EXPECT_EQ(make_mesh_from(sheet_soup(3, 1, [](double, double) { return 0.0; }))->open_edges(), 12u);
   TriangleSoup book;
   add_quad(book, {0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0});
@@ -44,7 +44,7 @@ TEST(TriangleMesh, CountsOpenCrowdedAndTurnedEdges) {
   const MeshPtr crowded = make_mesh_from(book);
   EXPECT_EQ(crowded->non_manifold_edges(), 1u);
   EXPECT_EQ(crowded->open_edges(), 9u);
-  // around the spine in a ring
+  // The faces of the ring around the spine.
   for (std::uint32_t f = 0; f < crowded->triangles().size(); ++f)
     for (int k = 0; k < 3; ++k) {
       int others = 0;
@@ -60,12 +60,12 @@ TEST(TriangleMesh, CountsOpenCrowdedAndTurnedEdges) {
   EXPECT_EQ(make_mesh_from(turned)->misoriented_edges(), 3u);
 }
 
-TEST(TriangleMesh, DropsTrianglesWithoutAnArea) {
+TEST(TriangleMesh, DropsDegenerateTriangles) {
   TriangleSoup soup = box_soup();
   soup.triangles.push_back({0, 0, 1});
   soup.triangles.push_back({0, 1, 1});
   soup.vertices.push_back({-0.5, 0, -0.5});
-  soup.triangles.push_back({0, static_cast<std::uint32_t>(soup.vertices.size() - 1), 1});  // three on a line
+  soup.triangles.push_back({0, static_cast<std::uint32_t>(soup.vertices.size() - 1), 1});  // three collinear vertices
   const MeshPtr mesh = make_mesh_from(soup);
   EXPECT_EQ(mesh->dropped_triangles(), 3u);
   EXPECT_EQ(mesh->triangles().size(), 12u);
@@ -77,7 +77,7 @@ TEST(TriangleMesh, DropsTrianglesWithoutAnArea) {
   EXPECT_FALSE(make_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 3}}}, "index"));
 }
 
-TEST(TriangleMesh, NearestPointIsThatOfAllFaces) {
+TEST(TriangleMesh, TheNearestPointIsTheNearestOfAllFaces) {
   const MeshPtr sphere = make_mesh_from(sphere_soup(9));
   Random random{1};
   const auto in = [&](double lo, double hi) { return lo + (hi - lo) * (static_cast<double>(random.next() >> 11) * 0x1p-53); };
@@ -89,7 +89,7 @@ TEST(TriangleMesh, NearestPointIsThatOfAllFaces) {
     const NearestResult nearest = nearest_point(*sphere, p, 10, budget);
     ASSERT_TRUE(nearest.found && nearest.is_complete);
     ASSERT_EQ(nearest.closest.distance2, least);
-    // the sign: inside where the sphere is
+    // The sign: inside where the sphere is inside.
     const bool inside = dot(normal_at(*sphere, nearest.closest), p - nearest.closest.point) < 0;
     if (norm(p) < 0.49) {
       ASSERT_TRUE(inside);
@@ -102,7 +102,7 @@ TEST(TriangleMesh, NearestPointIsThatOfAllFaces) {
   }
 }
 
-TEST(TriangleMesh, SegmentsMeetEveryBoxOnTheirWay) {
+TEST(TriangleMesh, SegmentQueriesFindEveryBoxOnTheirWay) {
   const MeshPtr sphere = make_mesh_from(sphere_soup(9));
   Random random{2};
   const auto in = [&](double lo, double hi) { return lo + (hi - lo) * (static_cast<double>(random.next() >> 11) * 0x1p-53); };
@@ -121,7 +121,7 @@ TEST(TriangleMesh, SegmentsMeetEveryBoxOnTheirWay) {
   }
 }
 
-TEST(TriangleMesh, ManyEqualBoxesMakeABoundedTree) {
+TEST(TriangleMesh, ManyEqualTrianglesMakeABoundedTree) {
   TriangleSoup soup;
   for (int i = 0; i < 3000; ++i) add_quad(soup, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
   for (int i = 0; i < 60; ++i) {

@@ -11,7 +11,7 @@
 #include "tests/support/support.h"
 
 namespace catena::curves {
-namespace load_test {
+namespace load_curves_test {
 
 using namespace catena::test;
 
@@ -32,7 +32,7 @@ void expect_lines(const Result<CurveSet>& set, const std::vector<std::vector<Vec
   }
 }
 
-TEST(Tck, EveryDatatype) {
+TEST(Tck, ReadsEveryDatatype) {
   for (const char* type : {"Float32LE", "Float32BE", "Float64LE", "Float64BE"}) {
     const auto set = parse_tck(tck_bytes(kLines, type), "a.tck");
     expect_lines(set, kLines);
@@ -44,7 +44,7 @@ TEST(Tck, EveryDatatype) {
   }
 }
 
-TEST(Tck, LeavesOutWhatHasNoLength) {
+TEST(Tck, LeavesOutLinesWithoutLength) {
   auto lines = kLines;
   lines.push_back({{5, 5, 5}});
   lines.push_back({{5, 5, 5}, {5, 5, 5}});
@@ -53,36 +53,36 @@ TEST(Tck, LeavesOutWhatHasNoLength) {
   expect_lines(set, kLines);
   EXPECT_EQ(set->note, "2 lines without a length left out");
   EXPECT_EQ(message_of(parse_tck(tck_bytes({{{5, 5, 5}}}, "Float32LE"), "a.tck")),
-            "a.tck: holds no line of two different points (1 without a length); one or more were expected");
+            "a.tck: contains no line with two different points (1 without a length); one or more were expected");
 }
 
-TEST(Tck, RefusesWithPlaceAndExpectation) {
+TEST(Tck, ErrorsNameThePositionAndTheExpectation) {
   const std::string good = tck_bytes(kLines, "Float32LE");
   EXPECT_EQ(message_of(parse_tck(good.substr(0, good.size() - 1), "a.tck")),
-            "a.tck: the file ends within its lines; a last triple of infinities was expected");
+            "a.tck: the file ends before the end of the lines; a triple of infinities was expected at the end");
   EXPECT_EQ(message_of(parse_tck("mrtrix image\nEND\n", "a.tck")),
-            "a.tck: line 1: \"mrtrix image\" begins the file; \"mrtrix tracks\" was expected");
+            "a.tck: line 1: the first line is \"mrtrix image\"; \"mrtrix tracks\" was expected");
   EXPECT_EQ(message_of(parse_tck(tck_bytes(kLines, "Int16LE"), "a.tck")),
             "a.tck: line 3: the datatype is \"Int16LE\"; one of Float32LE, Float32BE, Float64LE, Float64BE was expected");
   EXPECT_EQ(message_of(parse_tck("mrtrix tracks\ndatatype: Float32LE\nfile: . 99999\nEND\n", "a.tck")),
-            "a.tck: line 4: the triples begin at byte 99999; a place from 52 to 52 was expected");
+            "a.tck: line 4: the data begin at byte 99999; an offset from 52 to 52 was expected");
   EXPECT_EQ(message_of(parse_tck("mrtrix tracks\ndatatype: Float32LE\nfile: other.dat 0\nEND\n", "a.tck")),
-            "a.tck: line 3: the triples are in \"other.dat 0\"; \". OFFSET\", this very file, was expected");
+            "a.tck: line 3: the data are in \"other.dat 0\"; \". OFFSET\", an offset in this file, was expected");
   EXPECT_NE(message_of(parse_tck("mrtrix tracks\ndatatype: Float32LE\n", "a.tck")).find("a line END was expected"), std::string::npos);
   auto far = kLines;
   far[1][1].y = 1e16;
-  EXPECT_NE(message_of(parse_tck(tck_bytes(far, "Float64LE"), "a.tck")).find("of line 1 is no place"), std::string::npos);
+  EXPECT_NE(message_of(parse_tck(tck_bytes(far, "Float64LE"), "a.tck")).find("of line 1 is not finite or too far away"), std::string::npos);
 }
 
-// voxmm -> world by hand: voxels of 2 x 3 x 4 mm, 10 x 20 x 30 of them
-TEST(Trk, CoordinatesByTheHeader) {
+// Conversion from voxmm to world by hand: 10 x 20 x 30 voxels of 2 x 3 x 4 mm.
+TEST(Trk, ConvertsCoordinatesByTheHeader) {
   TrkFile file;
   file.lines = kLines;
   file.voxel = {2, 3, 4};
   file.dim = {10, 20, 30};
   file.order = "RAS";
   file.vox_to_ras = {{{2, 0, 0, -5}, {0, 3, 0, 7}, {0, 0, 4, 100}, {0, 0, 0, 1}}};
-  // the matrix is voxel size and shift: world = voxmm - half a voxel + shift
+  // The matrix has voxel size and shift: world = voxmm - half a voxel + shift.
   auto moved = kLines;
   for (auto& line : moved)
     for (Vec3& p : line) p += Vec3(-6, 5.5, 98);
@@ -90,15 +90,15 @@ TEST(Trk, CoordinatesByTheHeader) {
     file.big_endian = big;
     expect_lines(parse_trk(file.bytes(), "a.trk"), moved, 1e-5);
   }
-  // LPS: the first two axes are counted from the other end of 10 and 20 voxels: 2 * 9 - (x - 1), 3 * 19 - (y - 1.5)
+  // LPS: the first two axes are counted from the other end of 10 and 20 voxels: 2 * 9 - (x - 1), 3 * 19 - (y - 1.5).
   file.order = "LPS";
   auto turned = kLines;
   for (auto& line : turned)
     for (Vec3& p : line) p = Vec3(18 - (p.x - 1) - 5, 57 - (p.y - 1.5) + 7, p.z - 2 + 100);
   expect_lines(parse_trk(file.bytes(), "a.trk"), turned, 1e-5);
-  file.order = "";  // means the same
+  file.order = "";  // LPS is the default
   expect_lines(parse_trk(file.bytes(), "a.trk"), turned, 1e-5);
-  // axes exchanged: the file's first voxel axis is the matrix's second one
+  // Exchanged axes: the file's first voxel axis is the matrix's second axis.
   file.order = "ARS";
   auto swapped = kLines;
   for (auto& line : swapped)
@@ -109,9 +109,9 @@ TEST(Trk, CoordinatesByTheHeader) {
   expect_lines(parse_trk(file.bytes(), "a.trk"), swapped, 1e-5);
 }
 
-// nibabel 5.0.0 of the same bytes: an oblique matrix whose axes run P, L, S, in a file of order RAS. (Where
-// axes are exchanged and differ in length, NiBabel counts from the other axis' end.)
-TEST(Trk, AsNibabelReadsAnObliqueMatrix) {
+// The expected values are those of NiBabel 5.0.0 for the same bytes: an oblique matrix whose axes run P, L, S, in a file of order RAS.
+// (Where axes are exchanged and differ in length, NiBabel counts from the other axis' end.)
+TEST(Trk, ReadsAnObliqueMatrixAsNibabelDoes) {
   TrkFile file;
   file.lines = {{{1, 2, 3}, {10, 20, 30}}};
   file.voxel = {2, 2, 3};
@@ -141,7 +141,7 @@ TEST(Trk, ScalarsAreValuesAndPropertiesAreSkipped) {
   file.order = "RAS";
   file.scalars = {"FA", ""};
   file.properties = 2;
-  for (const int count : {0, 2}) {  // 0: to the end
+  for (const int count : {0, 2}) {  // 0: up to the end of the file
     file.count = count;
     const auto set = parse_trk(file.bytes(), "a.trk");
     ASSERT_TRUE(set) << message_of(set);
@@ -149,21 +149,21 @@ TEST(Trk, ScalarsAreValuesAndPropertiesAreSkipped) {
     ASSERT_NE(set->find_values("FA"), nullptr);
     EXPECT_EQ(set->find_values("FA")->values, (std::vector<float>{0, 1, 2, 100, 101}));
     EXPECT_EQ(set->find_values("scalar_1")->values, (std::vector<float>{0.5, 1.5, 2.5, 100.5, 101.5}));
-    EXPECT_EQ(set->note, "2 properties of each line skipped");
+    EXPECT_EQ(set->note, "the 2 properties of each line skipped");
   }
 }
 
-TEST(Trk, RefusesWithPlaceAndExpectation) {
+TEST(Trk, ErrorsNameThePositionAndTheExpectation) {
   TrkFile file;
   file.lines = kLines;
   const std::string good = file.bytes();
   EXPECT_EQ(message_of(parse_trk(good.substr(0, 999), "a.trk")),
-            "a.trk: is no TrackVis file; a header of 1000 bytes that begins with \"TRACK\" was expected");
-  EXPECT_NE(message_of(parse_trk(good.substr(0, good.size() - 1), "a.trk")).find("a.trk: line 1, byte 1040: the line says"),
+            "a.trk: is not a TrackVis file; a header of 1000 bytes that begins with \"TRACK\" was expected");
+  EXPECT_NE(message_of(parse_trk(good.substr(0, good.size() - 1), "a.trk")).find("a.trk: line 1, byte 1040: the line has"),
             std::string::npos);
   file.count = 3;
   EXPECT_EQ(message_of(parse_trk(file.bytes(), "a.trk")),
-            "a.trk: line 2, byte 1068: the file ends before the line; its number of points was expected");
+            "a.trk: line 2, byte 1068: the file ends before this line; a number of points was expected");
   file.count = 2;
   file.order = "RLS";
   EXPECT_EQ(message_of(parse_trk(file.bytes(), "a.trk")), "a.trk: the voxel order is \"RLS\"; three letters such as \"LPS\" were expected");
@@ -172,13 +172,13 @@ TEST(Trk, RefusesWithPlaceAndExpectation) {
   EXPECT_EQ(message_of(parse_trk(file.bytes(), "a.trk")), "a.trk: the voxel size is (1, 0, 1); three numbers > 0 were expected");
   file.voxel.y = 1;
   file.version = 7;
-  EXPECT_EQ(message_of(parse_trk(file.bytes(), "a.trk")), "a.trk: is of version 7; 1, 2 or 3 was expected");
+  EXPECT_EQ(message_of(parse_trk(file.bytes(), "a.trk")), "a.trk: has version 7; 1, 2 or 3 was expected");
   file.version = 2;
   file.vox_to_ras[0] = {0, 0, 0, 0};
-  EXPECT_NE(message_of(parse_trk(file.bytes(), "a.trk")).find("has no inverse"), std::string::npos);
+  EXPECT_NE(message_of(parse_trk(file.bytes(), "a.trk")).find("cannot be inverted"), std::string::npos);
 }
 
-TEST(CurveFiles, MemoryIsAskedForFirst) {
+TEST(CurveFiles, MemoryIsCheckedBeforeReading) {
   const std::vector<Vec3> line(200000, Vec3(1, 2, 3));
   set_memory_limit(std::uint64_t{1} << 20);
   const auto set = parse_tck(tck_bytes({line}, "Float32LE"), "a.tck");
@@ -186,7 +186,7 @@ TEST(CurveFiles, MemoryIsAskedForFirst) {
   EXPECT_NE(message_of(set).find("a.tck: 200002 points needs"), std::string::npos) << message_of(set);
 }
 
-TEST(CurveFiles, ByTheirEnding) {
+TEST(CurveFiles, TheFormatFollowsFromTheExtension) {
   TemporaryFolder folder;
   write_file(folder / "a.TCK", tck_bytes(kLines, "Float32LE"));
   const auto set = load_curves(folder / "a.TCK");
@@ -200,5 +200,5 @@ TEST(CurveFiles, ByTheirEnding) {
       << none.error().message;
 }
 
-}  // namespace load_test
+}  // namespace load_curves_test
 }  // namespace catena::curves

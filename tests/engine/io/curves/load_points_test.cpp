@@ -8,11 +8,11 @@
 #include "engine/base/memory_limit.h"
 
 namespace catena::curves {
-namespace points_test {
+namespace load_points_test {
 
 std::string message_of(const Result<PointSet>& set) { return set ? "" : set.error().message; }
 
-TEST(PointTable, EverySeparatorAndAnyOrder) {
+TEST(PointTable, ReadsEverySeparatorAndColumnOrder) {
   const std::string tables[] = {"x,y,z,t\n1,2,3,4\n-1.5,0,1e2,5\n", "t;z;Y;X\r\n4;3;2;1\r\n\"5\";1e2; 0 ;-1.5\r\n",
                                 "\n\"x\"\t\"y\"\t\"z\"\t\"t\"\n1\t2\t3\t4\n-1.5\t0\t100\t5",
                                 "# x   y z  t\n1 2  3\t4\n  -1.5 0 100 5  \n\n"};
@@ -30,32 +30,34 @@ TEST(PointTable, EverySeparatorAndAnyOrder) {
   }
 }
 
-TEST(PointTable, MissingValuesAndColumnsOfWords) {
+TEST(PointTable, ReadsMissingValuesAndSkipsTextColumns) {
   const auto set = parse_points("name,x,y,z,v\nfirst,1,2,3,\nsecond,4,5,6,7\nthird,4,5,6,nan\n", "a.csv");
   ASSERT_TRUE(set) << message_of(set);
-  EXPECT_EQ(set->note, "columns without numbers left out: \"name\"");
+  EXPECT_EQ(set->note, "columns without numbers were left out: \"name\"");
   ASSERT_EQ(set->values.size(), 1u);
   EXPECT_TRUE(std::isnan(set->values[0].values[0]));
   EXPECT_EQ(set->values[0].values[1], 7);
   EXPECT_TRUE(std::isnan(set->values[0].values[2]));
 }
 
-TEST(PointTable, RefusesWithPlaceAndExpectation) {
+TEST(PointTable, ErrorsNameThePositionAndTheExpectation) {
   EXPECT_EQ(message_of(parse_points("t,x,y\n1,2,3\n", "a.csv")),
-            "a.csv:1: no column is called z, the first line is \"t,x,y\"; a table of points with columns x, y, z was expected");
-  EXPECT_EQ(message_of(parse_points("x,y,z,X\n1,2,3,4\n", "a.csv")), "a.csv:1: two columns are called x; one was expected");
+            "a.csv:1: there is no column z: the first line is \"t,x,y\"; a table of points with columns x, y, z was expected");
+  EXPECT_EQ(message_of(parse_points("x,y,z,X\n1,2,3,4\n", "a.csv")), "a.csv:1: there are two columns x; one was expected");
   EXPECT_EQ(message_of(parse_points("x,y,z\n1,2,3\n1,2\n", "a.csv")),
-            "a.csv:3: the row has 2 cells; 3 were expected, as in the first line");
+            "a.csv:3: the row has 2 cells; 3 were expected, one for each column name");
   EXPECT_EQ(message_of(parse_points("x,y,z\n1,nan,3\n", "a.csv")), "a.csv:2: y is \"nan\"; a number up to 1e15 in size was expected");
   EXPECT_EQ(message_of(parse_points("x,y,z\n1,1e16,3\n", "a.csv")), "a.csv:2: y is \"1e16\"; a number up to 1e15 in size was expected");
   EXPECT_EQ(message_of(parse_points("x,y,z,v\n1,2,3,4\n1,2,3,q\n", "a.csv")),
-            "a.csv:3: \"v\" is \"q\"; a number, or nothing, was expected");
-  EXPECT_EQ(message_of(parse_points("x,y,z\n\n", "a.csv")), "a.csv:2: the table ends after its names; rows of numbers were expected");
-  EXPECT_EQ(message_of(parse_points("x,y,z", "a.csv")), "a.csv:1: the table ends after its names; rows of numbers were expected");
-  EXPECT_NE(message_of(parse_points("", "a.csv")).find("no column is called x"), std::string::npos);
+            "a.csv:3: \"v\" is \"q\"; a number or an empty cell was expected");
+  EXPECT_EQ(message_of(parse_points("x,y,z\n\n", "a.csv")),
+            "a.csv:2: the table has no rows after the column names; rows of numbers were expected");
+  EXPECT_EQ(message_of(parse_points("x,y,z", "a.csv")),
+            "a.csv:1: the table has no rows after the column names; rows of numbers were expected");
+  EXPECT_NE(message_of(parse_points("", "a.csv")).find("there is no column x"), std::string::npos);
 }
 
-TEST(PointTable, MemoryIsAskedForFirst) {
+TEST(PointTable, MemoryIsCheckedBeforeReading) {
   std::string table = "x,y,z\n";
   for (int i = 0; i < 200000; ++i) table += "1,2,3\n";
   set_memory_limit(std::uint64_t{1} << 20);
@@ -64,5 +66,5 @@ TEST(PointTable, MemoryIsAskedForFirst) {
   EXPECT_NE(message_of(set).find("a.csv: 200001 points needs"), std::string::npos) << message_of(set);
 }
 
-}  // namespace points_test
+}  // namespace load_points_test
 }  // namespace catena::curves

@@ -8,7 +8,7 @@
 #include "tests/support/support.h"
 
 namespace catena::mesh {
-namespace load_test {
+namespace load_mesh_test {
 
 using namespace catena::test;
 
@@ -25,13 +25,13 @@ void expect_box(const TriangleSoup& soup) {
 
 const TriangleSoup kBox = box_soup({-1, -2, -3}, {1, 2, 3});
 
-TEST(Stl, BinaryAndText) {
+TEST(Stl, ReadsBinaryAndText) {
   const auto binary = parse_stl(binary_stl(kBox), "a.stl"), text = parse_stl(text_stl(kBox), "a.stl");
   ASSERT_TRUE(binary) << message_of(binary);
   ASSERT_TRUE(text) << message_of(text);
   expect_box(*binary);
   expect_box(*text);
-  // binary, whatever its header says; text in capitals, two solids, Windows line ends
+  // A binary file is read as such with any header. Text may have capitals, two solids and Windows line ends.
   std::string named = binary_stl(kBox);
   named.replace(0, 5, "solid");
   ASSERT_TRUE(parse_stl(named, "a.stl"));
@@ -43,10 +43,10 @@ TEST(Stl, BinaryAndText) {
   EXPECT_EQ(twice->triangles.size(), 24u);
 }
 
-TEST(Stl, RefusesWithPlaceAndExpectation) {
+TEST(Stl, ErrorsNameThePositionAndTheExpectation) {
   const std::string binary = binary_stl(kBox);
   EXPECT_EQ(message_of(parse_stl(binary.substr(0, 300), "a.stl")),
-            "a.stl: byte 80: says 12 triangles, which take 684 bytes, but the file has 300; a whole STL file was expected");
+            "a.stl: byte 80: the number of triangles is 12, which takes 684 bytes, but the file has 300; a complete STL file was expected");
   EXPECT_NE(message_of(parse_stl(binary + "x", "a.stl")).find("684 bytes, but the file has 685"), std::string::npos);
   EXPECT_NE(message_of(parse_stl("", "a.stl")).find("at least 84 bytes"), std::string::npos);
   std::string nan = binary;
@@ -56,12 +56,12 @@ TEST(Stl, RefusesWithPlaceAndExpectation) {
   std::string lie = binary;
   const std::uint32_t count = 0xffffffff;
   std::memcpy(lie.data() + 80, &count, 4);
-  EXPECT_NE(message_of(parse_stl(lie, "a.stl")).find("says 4294967295 triangles"), std::string::npos);
+  EXPECT_NE(message_of(parse_stl(lie, "a.stl")).find("the number of triangles is 4294967295,"), std::string::npos);
 
   EXPECT_EQ(message_of(parse_stl("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 x\n", "a.stl")),
-            "a.stl:4: \"x\" stands here; a finite number was expected");
+            "a.stl:4: found \"x\"; a finite number was expected");
   EXPECT_EQ(message_of(parse_stl("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 inf\n", "a.stl")),
-            "a.stl:4: \"inf\" stands here; a finite number was expected");
+            "a.stl:4: found \"inf\"; a finite number was expected");
   EXPECT_NE(message_of(parse_stl("solid a\nfacet normal 0 0 1\nouter loop\n", "a.stl")).find("ends too early; \"vertex\""),
             std::string::npos);
 }
@@ -90,22 +90,24 @@ f 1 5 8 4
 f 2 3 7 6
 )";
 
-TEST(Obj, PolygonsNegativeIndicesAndComments) {
+TEST(Obj, ReadsPolygonsNegativeIndicesAndComments) {
   const auto soup = parse_obj(kObj, "a.obj");
   ASSERT_TRUE(soup) << message_of(soup);
   expect_box(*soup);
 }
 
-TEST(Obj, RefusesWithPlaceAndExpectation) {
-  EXPECT_EQ(message_of(parse_obj("v 0 0 0\nf 1 2 3\n", "a.obj")), "a.obj:2: \"2\" names a vertex that is not there; 1 to 1 was expected");
-  EXPECT_EQ(message_of(parse_obj("v 0 0 nan\n", "a.obj")), "a.obj:1: \"nan\" is no coordinate; three finite numbers were expected");
-  EXPECT_EQ(message_of(parse_obj("v 0 0\n", "a.obj")), "a.obj:1: a vertex ends too early; three finite numbers were expected");
+TEST(Obj, ErrorsNameThePositionAndTheExpectation) {
+  EXPECT_EQ(message_of(parse_obj("v 0 0 0\nf 1 2 3\n", "a.obj")),
+            "a.obj:2: \"2\" refers to a vertex that does not exist; 1 to 1 was expected");
+  EXPECT_EQ(message_of(parse_obj("v 0 0 nan\n", "a.obj")),
+            "a.obj:1: \"nan\" is not a valid coordinate; three finite numbers were expected");
+  EXPECT_EQ(message_of(parse_obj("v 0 0\n", "a.obj")), "a.obj:1: a vertex has too few coordinates; three finite numbers were expected");
   EXPECT_EQ(message_of(parse_obj("v 0 0 0\nv 1 0 0\nf 1 2\n", "a.obj")), "a.obj:3: a face has 2 corners; at least 3 were expected");
-  EXPECT_NE(message_of(parse_obj("v 0 0 0\nf 0 1 1\n", "a.obj")).find("\"0\" is no corner"), std::string::npos);
-  EXPECT_NE(message_of(parse_obj("hello\n", "a.obj")).find("a.obj:1: \"hello\" is no statement"), std::string::npos);
+  EXPECT_NE(message_of(parse_obj("v 0 0 0\nf 0 1 1\n", "a.obj")).find("\"0\" is not a valid corner"), std::string::npos);
+  EXPECT_NE(message_of(parse_obj("hello\n", "a.obj")).find("a.obj:1: \"hello\" is not a statement"), std::string::npos);
 }
 
-TEST(LoadMesh, FilesPlacementAndFaults) {
+TEST(LoadMesh, LoadsAndPlacesFilesAndRefusesBadOnes) {
   TemporaryFolder folder;
   write_file(folder / "box.STL", binary_stl(kBox));
   write_file(folder / "box.obj", kObj);
@@ -121,11 +123,11 @@ TEST(LoadMesh, FilesPlacementAndFaults) {
   write_file(folder / "box.ply", kObj);
   EXPECT_FALSE(load_mesh(folder / "box.ply"));
   write_file(folder / "empty.obj", "# nothing\n");
-  EXPECT_EQ(load_mesh(folder / "empty.obj").error().message, (folder / "empty.obj") + ": holds no triangle; at least one was expected");
+  EXPECT_EQ(load_mesh(folder / "empty.obj").error().message, (folder / "empty.obj") + ": contains no triangles; at least one was expected");
 }
 
-// before: 1.45 GB for 3 million triangles, whatever was allowed
-TEST(Mesh, AsksForItsMemoryAndHoldsIt) {
+// Memory for 3 million triangles is counted and limited.
+TEST(Mesh, ReservesItsMemoryWhileItExists) {
   const TriangleSoup ball = sphere_soup(64);
   const std::string stl = binary_stl(ball), text = text_stl(ball);
   std::string obj;
@@ -148,5 +150,5 @@ TEST(Mesh, AsksForItsMemoryAndHoldsIt) {
   set_memory_limit(std::nullopt);
 }
 
-}  // namespace load_test
+}  // namespace load_mesh_test
 }  // namespace catena::mesh

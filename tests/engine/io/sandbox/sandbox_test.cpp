@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the readers of foreign files can no longer do once they have shut themselves in: each is tried, in a process made for it.
+/// The sandbox of file readers: each forbidden action is tried in a process of its own, with and without the sandbox.
 #include "engine/io/sandbox/sandbox.h"
 
 #include <fcntl.h>
@@ -19,9 +19,9 @@
 #include "tests/support/support.h"
 
 namespace catena::sandbox {
-namespace confine_test {
+namespace sandbox_test {
 
-/// Whether the attempt succeeds in a process, shut in or not. 2: it could not be shut in.
+/// Tries an action in a child process, in the sandbox or not: 1 if the action succeeds, 0 if not, and 2 if the sandbox cannot be entered.
 int attempt(bool confined, const std::function<bool()>& act, const ProcessLimits& limits = {}) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -39,7 +39,7 @@ void expect_only_outside(const char* what, const std::function<bool()>& act) {
   EXPECT_EQ(attempt(true, act), 0) << what;
 }
 
-TEST(Sandbox, NoFiles) {
+TEST(Sandbox, FilesCannotBeOpened) {
   catena::test::TemporaryFolder folder;
   const std::string path = folder / "file";
   catena::test::write_file(path, "text");
@@ -51,7 +51,7 @@ TEST(Sandbox, NoFiles) {
   expect_only_outside("memory files", [] { return ::memfd_create("x", 0) >= 0; });
 }
 
-TEST(Sandbox, OneFolderToReadAndNothingElse) {
+TEST(Sandbox, OnlyTheGivenFolderCanBeRead) {
   catena::test::TemporaryFolder folder;
   std::filesystem::create_directories(folder / "in/deep");
   catena::test::write_file(folder / "outside", "text");
@@ -85,7 +85,7 @@ TEST(Sandbox, OneFolderToReadAndNothingElse) {
   }
 }
 
-TEST(Sandbox, NoSocketsProgramsOrProcesses) {
+TEST(Sandbox, SocketsProgramsAndProcessesAreForbidden) {
   expect_only_outside("socket", [] { return ::socket(AF_UNIX, SOCK_STREAM, 0) >= 0; });
   expect_only_outside("network", [] { return ::socket(AF_INET, SOCK_STREAM, 0) >= 0; });
   expect_only_outside("program", [] {
@@ -100,7 +100,7 @@ TEST(Sandbox, NoSocketsProgramsOrProcesses) {
   expect_only_outside("other processes", [] { return ::kill(::getppid(), 0) == 0; });
 }
 
-TEST(Sandbox, NoCodeAndNoMoreRights) {
+TEST(Sandbox, ExecutableMemoryAndProcessGroupsAreForbidden) {
   expect_only_outside("code",
                       [] { return ::mmap(nullptr, 4096, PROT_READ | PROT_EXEC, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) != MAP_FAILED; });
   expect_only_outside("made code", [] {
@@ -110,7 +110,7 @@ TEST(Sandbox, NoCodeAndNoMoreRights) {
   expect_only_outside("groups", [] { return ::setpgid(0, 0) == 0; });
 }
 
-TEST(Sandbox, NoRightOfRootStays) {
+TEST(Sandbox, AllCapabilitiesAreDropped) {
   if (::geteuid() != 0) GTEST_SKIP() << "only root has rights to drop";
   int ready[2], end[2];
   ASSERT_TRUE(::pipe(ready) == 0 && ::pipe(end) == 0);
@@ -133,7 +133,7 @@ TEST(Sandbox, NoRightOfRootStays) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-TEST(Sandbox, TimeAndMemoryHaveLimits) {
+TEST(Sandbox, TimeAndMemoryAreLimited) {
   ProcessLimits limits;
   limits.memory_bytes = 16 << 20;
   limits.cpu_s = 1;
@@ -149,5 +149,5 @@ TEST(Sandbox, TimeAndMemoryHaveLimits) {
 }
 #endif
 
-}  // namespace confine_test
+}  // namespace sandbox_test
 }  // namespace catena::sandbox

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Impl of grids: the values of the whole, nothing beyond, and of a .vdb nothing else read.
+/// Crops of grids: values equal those of the whole grid, and only the needed leaves of a .vdb are read.
 #include "engine/io/volume/crop.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,8 @@ namespace crop_test {
 double off(double a, double b) { return std::fabs(a - b) / (1 + std::fabs(b)); }
 double off(const Vec3& a, const Vec3& b) { return norm(a - b) / (1 + norm(b)); }
 
-/// Wherever the part has a value it is the whole's; `everywhere`: where box and whole have one the part has it, too.
+/// Expects that each value of the part equals that of the whole; with `everywhere`, that the part has a value wherever box and whole have
+/// one.
 template <class Field>
 void expect_part(const Field& whole, const Field& part, const Box& box, bool everywhere = true) {
   test::Random random(11);
@@ -41,7 +42,7 @@ void expect_part(const Field& whole, const Field& part, const Box& box, bool eve
   EXPECT_GT(inside, 20);
 }
 
-TEST(Crop, IsTheWholeWithinTheBoxWhateverTheMappingAndTheFile) {
+TEST(Crop, EqualsTheWholeWithinTheBoxForAnyMappingAndFormat) {
   const catena::test::TemporaryFolder folder;
   const test::Block block = test::random_block({20, 17, 23}, 4);
   std::vector<std::uint8_t> valid(block.values.size(), 1);
@@ -76,7 +77,7 @@ TEST(Crop, VectorsKeepTheirComponents) {
   EXPECT_EQ(part->get()->index_box().hi - part->get()->index_box().lo, Vec3(8, 6, 4));
 }
 
-TEST(Crop, OfASparseFileOnlyTheLeavesWithinAreRead) {
+TEST(Crop, OnlyTheLeavesInTheBoxOfASparseFileAreRead) {
   const catena::test::TemporaryFolder folder;
   openvdb::initialize();
   auto grid = openvdb::FloatGrid::create(0.f);
@@ -94,7 +95,7 @@ TEST(Crop, OfASparseFileOnlyTheLeavesWithinAreRead) {
   openvdb::io::File file(folder / "s.vdb");
   file.write(openvdb::GridPtrVec{grid, instance});
   file.close();
-  std::ofstream stream(folder / "t.vdb", std::ios::binary);  // without offsets
+  std::ofstream stream(folder / "t.vdb", std::ios::binary);  // a stream, which has no offsets of grids
   openvdb::io::Stream(stream).write(openvdb::GridPtrVec{grid});
   stream.close();
   LoadRequest all;
@@ -117,12 +118,13 @@ TEST(Crop, OfASparseFileOnlyTheLeavesWithinAreRead) {
   }
 }
 
-TEST(Crop, WhatMeetsNothingIsOneLine) {
+TEST(Crop, ABoxWithoutVoxelsIsOneErrorLine) {
   const test::Block block = test::random_block({8, 8, 8}, 4);
   const AnyField whole{make_scalar_grid("g", {}, block.size, block.values), nullptr};
   const auto beside = crop_field("f.nrrd", whole, {{20, 0, 0}, {30, 7, 7}});
   ASSERT_FALSE(beside);
-  EXPECT_EQ(beside.error().message, "f.nrrd: \"crop\" has no voxels of the grid \"g\" along x; a box that meets the data was expected");
+  EXPECT_EQ(beside.error().message,
+            "f.nrrd: \"crop\" contains no voxels of the grid \"g\" along x; a box that overlaps the data was expected");
   EXPECT_FALSE(crop_field("f.nrrd", whole, {{-1e300, -5, -5}, {-1e299, -1, -1}}));
   EXPECT_TRUE(crop_field("f.nrrd", whole, {{-1e300, -1e300, -1e300}, {1e300, 1e300, 1e300}}));
 }

@@ -9,7 +9,7 @@
 #include "tests/engine/field/field_helpers.h"
 
 namespace catena::field {
-namespace level_test {
+namespace downsample_test {
 
 AnyField at(const AnyField& field, int level) {
   auto made = downsample_to_level("f.vdb", field, level);
@@ -26,7 +26,7 @@ AnyField scalar_of(const Index3& n, const Mapping& mapping, const std::function<
   return {make_scalar_grid("g", mapping, n, values, valid), nullptr};
 }
 
-TEST(Downsample, ALinearFieldStaysWhatItIs) {
+TEST(Downsample, ALinearFieldIsUnchanged) {
   for (const Mapping& mapping : test::mappings())
     for (int level = 1; level <= kMaxLevels; ++level) {
       const AnyField fine = scalar_of({26, 17, 9}, mapping, [](const Vec3& p) { return 0.5 * p.x - 0.25 * p.y + p.z; });
@@ -46,7 +46,7 @@ TEST(Downsample, ALinearFieldStaysWhatItIs) {
     }
 }
 
-TEST(Downsample, ANodeIsTheTentOverPairsThatHaveValues) {
+TEST(Downsample, ANodeIsTheTentFilterOverPairsWithValues) {
   const test::Block block = test::random_block({9, 9, 9}, 5);
   std::vector<std::uint8_t> valid(block.values.size(), 1);
   valid[(4 * 9 + 4) * 9 + 5] = 0;
@@ -54,7 +54,7 @@ TEST(Downsample, ANodeIsTheTentOverPairsThatHaveValues) {
   std::vector<float> got(125);
   coarse.scalar->grid()->read_block({0, 0, 0}, {5, 5, 5}, got);
   const auto node = [&](int x, int y, int z) { return got[static_cast<std::size_t>((z * 5 + y) * 5 + x)]; };
-  const auto tent = [&](int x, int y, int z) {  // from the definition: 1 2 1 an axis, over 64
+  const auto tent = [&](int x, int y, int z) {  // by definition: weights 1 2 1 along each axis, divided by 64
     double sum = 0;
     for (int k = -1; k < 2; ++k)
       for (int j = -1; j < 2; ++j)
@@ -63,10 +63,10 @@ TEST(Downsample, ANodeIsTheTentOverPairsThatHaveValues) {
   };
   EXPECT_NEAR(node(1, 1, 1), tent(1, 1, 1), 1e-6);
   EXPECT_NEAR(node(1, 3, 2), tent(1, 3, 2), 1e-6);
-  // beside the hole, without it and the place opposite
+  // Next to the hole: without the hole and its opposite node.
   const double pair = 2 * 2 * (block.at(5, 4, 4) + block.at(3, 4, 4));
   EXPECT_NEAR(node(2, 2, 2), (64 * tent(2, 2, 2) - pair) / (64 - 8), 1e-6);
-  EXPECT_FLOAT_EQ(node(0, 0, 4), static_cast<float>(block.at(0, 0, 8)));  // corners
+  EXPECT_FLOAT_EQ(node(0, 0, 4), static_cast<float>(block.at(0, 0, 8)));  // a corner keeps its value
 }
 
 TEST(Downsample, HolesStayHoles) {
@@ -82,12 +82,12 @@ TEST(Downsample, HolesStayHoles) {
   for (double x = 0; x < 10; x += 0.5) {
     const ScalarSample s = coarse.scalar->sample({x, 8, 8}, cursor);
     ASSERT_TRUE(s.inside) << x;
-    ASSERT_NEAR(s.value, x, 1e-5) << x;  // nothing of the hole's values
+    ASSERT_NEAR(s.value, x, 1e-5) << x;  // no influence of the hole's values
   }
   EXPECT_FALSE(coarse.scalar->sample({13, 8, 8}, cursor).inside);
 }
 
-TEST(Downsample, VectorsAndLabelsAreThoseOfTheNodes) {
+TEST(Downsample, VectorsAndLabelsAreSubsampled) {
   const test::Block block = test::random_block({12, 9, 27}, 9);  // 9 x 9 x 12 vectors
   std::vector<float> xyz = block.values;
   const AnyField vectors = at({nullptr, make_vector_grid("v", {}, {12, 9, 9}, xyz)}, 2);
@@ -105,7 +105,7 @@ TEST(Downsample, VectorsAndLabelsAreThoseOfTheNodes) {
   EXPECT_EQ(labels.scalar->sample({2, 4, 6}, cursor).value, std::fmod(7 * 2 + 3 * 4 + 6, 5.0));
 }
 
-TEST(Downsample, ImagesOfOneLayerKeepIt) {
+TEST(Downsample, SingleLayersAreKept) {
   for (const int layers : {1, 2}) {
     const AnyField coarse = at(scalar_of({9, 9, layers}, {}, [](const Vec3& p) { return p.x + p.y; }), 1);
     EXPECT_EQ(coarse.scalar->index_box().hi.z - coarse.scalar->index_box().lo.z, layers - 1);
@@ -113,7 +113,7 @@ TEST(Downsample, ImagesOfOneLayerKeepIt) {
   }
 }
 
-TEST(Downsample, ALinearFieldWithHolesStaysWhatItIs) {
+TEST(Downsample, ALinearFieldWithHolesIsUnchanged) {
   test::Random random(3);
   std::vector<std::uint8_t> valid;
   for (int k = 0; k < 17 * 17 * 17; ++k) valid.push_back(random.uniform(0, 1) > 0.1);
@@ -130,13 +130,13 @@ TEST(Downsample, ALinearFieldWithHolesStaysWhatItIs) {
         }
 }
 
-TEST(Downsample, SaysWhatItDiffersBy) {
-  // at spacing 2 h the linear interpolant of sin(w x) is off by (2 h w)^2 / 8 at most
+TEST(Downsample, ReportsTheDifference) {
+  // At spacing 2 h the linear interpolant of sin(w x) differs by at most (2 h w)^2 / 8.
   const double w = 0.2;
   const AnyField fine = scalar_of({65, 5, 5}, {}, [&](const Vec3& p) { return std::sin(w * p.x); });
   const AnyField coarse = at(fine, 1);
   const GridDifference d = compute_difference(*fine.scalar->grid(), *coarse.scalar->grid());
-  EXPECT_LT(d.max, 4 * w * w / 8 + w * w / 4 + 1e-4);  // the tent's own part besides
+  EXPECT_LT(d.max, 4 * w * w / 8 + w * w / 4 + 1e-4);  // plus the error of the tent filter
   EXPECT_GT(d.max, 0.5 * (4 * w * w / 8));
   ASSERT_EQ(coarse.notes.size(), 1u);
   EXPECT_NE(coarse.notes[0].find("33 x 3 x 3 of 65 x 5 x 5 voxels"), std::string::npos) << coarse.notes[0];
@@ -148,5 +148,5 @@ TEST(Downsample, ShortAxesAreRefused) {
   EXPECT_EQ(refused.error().message, "f.vdb: 8 voxels along y are too few for level of detail 3; more than 8 were expected");
 }
 
-}  // namespace level_test
+}  // namespace downsample_test
 }  // namespace catena::field

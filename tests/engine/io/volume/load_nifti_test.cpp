@@ -13,7 +13,7 @@ namespace load_nifti_test {
 
 using catena::test::TemporaryFolder;
 
-/// A NIfTI-1 file written by hand: 348 bytes of header, 4 of padding, the voxels.
+/// A hand-written NIfTI-1 file: 348 bytes of header, 4 bytes of padding, and the voxels.
 struct Nifti {
   std::string header = std::string(352, '\0');
   std::string voxels;
@@ -89,10 +89,10 @@ TEST(LoadNifti, ReadsEveryNumberTypeWithItsScaling) {
   expect_numbers<std::uint32_t>(folder, 768, "uint32");
 }
 
-TEST(LoadNifti, TheSformWinsOverTheQform) {
+TEST(LoadNifti, TheSformOverridesTheQform) {
   TemporaryFolder folder;
   Nifti n = numbers<float>(16);
-  n.put<std::int16_t>(252, 1);  // a qform, too: a half turn about x
+  n.put<std::int16_t>(252, 1);  // The file also has a qform: half a turn about x.
   n.put(76, 1.f);
   n.put(256, 1.f);
   n.sform({-2, 0, 0, 90, 0, 0, 3, -126, 0, 1, 0, -72});
@@ -101,7 +101,7 @@ TEST(LoadNifti, TheSformWinsOverTheQform) {
   EXPECT_EQ(m.world_from_index(Vec3(1, 10, 100)), Vec3(88, 174, -62));
 }
 
-TEST(LoadNifti, ASingularSformLeavesTheQformAndADifferenceIsSaid) {
+TEST(LoadNifti, ASingularSformIsIgnoredAndDifferencesHaveANote) {
   TemporaryFolder folder;
   Nifti n = numbers<float>(16);
   n.put<std::int16_t>(252, 1);
@@ -113,7 +113,7 @@ TEST(LoadNifti, ASingularSformLeavesTheQformAndADifferenceIsSaid) {
     return field ? std::pair(field->scalar->mapping().world_from_index(Vec3(1.0)), field->notes.empty() ? "" : field->notes[0])
                  : std::pair(Vec3(0.0), field.error().message);
   };
-  // singular, not finite, and all zero: the qform
+  // A singular or non-finite sform is ignored in favor of the qform.
   for (const float x : {0.f, std::numeric_limits<float>::quiet_NaN()}) {
     n.sform({x, 0, 0, 1, 0, 3, 0, 1, 0, 0, 4, 1});
     EXPECT_EQ(at_one(n), std::pair(Vec3(7, 9, 11), std::string("the sform cannot be inverted: the qform is used")));
@@ -122,11 +122,16 @@ TEST(LoadNifti, ASingularSformLeavesTheQformAndADifferenceIsSaid) {
   EXPECT_EQ(at_one(n), std::pair(Vec3(7, 9, 11), std::string()));
   n.sform({2, 0, 0, 5, 0, 3, 0, 6, 0, 0, 4, 19});
   EXPECT_EQ(at_one(n).first, Vec3(7, 9, 23));
-  EXPECT_NE(at_one(n).second.find("differ, by up to 12 at the corners: the sform is used"), std::string::npos) << at_one(n).second;
-  // the library makes 1 of a size of 0
+  EXPECT_NE(at_one(n).second.find("differ by up to 12 at the corners: the sform is used"), std::string::npos) << at_one(n).second;
+  // The library replaces a voxel size of 0 by 1.
   n.put<std::int16_t>(254, 0), n.put(84, 0.f);
-  EXPECT_EQ(at_one(n), std::pair(Vec3(7, 7, 11), std::string("pixdim[2], the size of a voxel, is 0: 1 is taken for it")));
-  // without a qform there is nothing left
+  EXPECT_EQ(
+      at_one(n),
+      std::pair(
+          Vec3(7, 7, 11),
+          std::string(
+              "the voxel size pixdim[2] is 0, expected a finite number other than 0: 1 of the file's unit of length is used instead")));
+  // Without a qform, the file is refused.
   n.put<std::int16_t>(252, 0);
   n.sform({0, 0, 0, 1, 0, 3, 0, 1, 0, 0, 4, 1});
   const auto refused = load_path(n.save(folder / "a.nii"));
@@ -134,12 +139,12 @@ TEST(LoadNifti, ASingularSformLeavesTheQformAndADifferenceIsSaid) {
   EXPECT_NE(refused.error().message.find("(sform) cannot be inverted"), std::string::npos) << refused.error().message;
 }
 
-TEST(LoadNifti, TheQformThenTheVoxelSizes) {
+TEST(LoadNifti, WithoutASformTheQformOrTheVoxelSizesApply) {
   TemporaryFolder folder;
   Nifti n = numbers<float>(16);
   n.put<std::int16_t>(252, 1);
   n.put(80, 2.f), n.put(84, 3.f), n.put(88, 4.f);
-  n.put(256, 1.f);  // quaternion (0, 1, 0, 0): a half turn about x
+  n.put(256, 1.f);  // quaternion (0, 1, 0, 0): half a turn about x
   n.put(268, 5.f), n.put(272, 6.f), n.put(276, 7.f);
   const Mapping q = load_path(n.save(folder / "q.nii")).value().scalar->mapping();
   EXPECT_NEAR(norm(q.world_from_index(Vec3(1.0)) - Vec3(7, 3, 3)), 0, 1e-6);
@@ -148,7 +153,7 @@ TEST(LoadNifti, TheQformThenTheVoxelSizes) {
   EXPECT_EQ(p.world_from_index(Vec3(1.0)), Vec3(2, 3, 4));
 }
 
-TEST(LoadNifti, OtherByteOrder) {
+TEST(LoadNifti, ReadsTheOtherByteOrder) {
   TemporaryFolder folder;
   Nifti n = numbers<float>(16);
   const auto swap = [](std::string& s, std::size_t at, std::size_t size) {
@@ -172,7 +177,7 @@ TEST(LoadNifti, NansAreKeptAndCounted) {
   EXPECT_EQ(load_path(n.save(folder / "n.nii")).value().scalar->grid()->stats().nan_count, 1u);
 }
 
-TEST(LoadNifti, TheFirstVolumeOfATimeSeries) {
+TEST(LoadNifti, LoadsTheFirstVolumeOfATimeSeries) {
   TemporaryFolder folder;
   Nifti n(4, 3, 2, 16, 32);
   n.put<std::int16_t>(40, 4);
@@ -180,15 +185,15 @@ TEST(LoadNifti, TheFirstVolumeOfATimeSeries) {
   for (int i = 0; i < 72; ++i) n.append(static_cast<float>(i));
   const std::string path = n.save(folder / "t.nii");
   EXPECT_EQ(load_path(path).value().scalar->max_value(), 23);
-  EXPECT_EQ(describe_grids(path).value()[0].type, "float32, first of 3 volumes");
+  EXPECT_EQ(describe_grids(path).value()[0].type, "float32, one of 3 volumes");
 }
 
-TEST(LoadNifti, TheFourthAxisIsTimeOnlyWhereTheHeaderSaysSo) {
+TEST(LoadNifti, TheFourthAxisIsTimeOnlyIfTheHeaderStatesIt) {
   TemporaryFolder folder;
   Nifti n(4, 3, 2, 16, 32);
   n.put<std::int16_t>(40, 4);
   n.put<std::int16_t>(48, 3);
-  n.put(92, 500.f);  // of time
+  n.put(92, 500.f);  // a time step
   for (int i = 0; i < 72; ++i) n.append(static_cast<float>(i));
   LoadRequest request;
   request.path = n.save(folder / "directions.nii");
@@ -199,23 +204,23 @@ TEST(LoadNifti, TheFourthAxisIsTimeOnlyWhereTheHeaderSaysSo) {
   ASSERT_EQ(directions->notes.size(), 1u);
   EXPECT_NE(directions->notes[0].find("volume 1 of 3"), std::string::npos) << directions->notes[0];
   EXPECT_EQ(directions->scalar->min_value(), 24);
-  n.put<std::uint8_t>(123, 2 | 16);  // millimetres, milliseconds
+  n.put<std::uint8_t>(123, 2 | 16);  // millimeters, milliseconds
   request.path = n.save(folder / "time.nii");
   const auto series = load(request);
   ASSERT_TRUE(series) << series.error().message;
   EXPECT_EQ(series->times, (std::vector<double>{0, 0.5, 1}));
   EXPECT_EQ(series->scalar->min_value(), 24);
-  EXPECT_EQ(describe_grids(request.path).value()[0].type, "float32, first of 3 volumes, 0.5 s apart from 0 s on");
+  EXPECT_EQ(describe_grids(request.path).value()[0].type, "float32, one of 3 volumes, 0.5 s apart, the first at 0 s");
   request.step = 99;
   EXPECT_EQ(load(request).value().scalar->max_value(), 71);
   n.put(92, 0.f);
   request.path = n.save(folder / "still.nii");
   const auto still = load(request);
   EXPECT_TRUE(still.value().times.empty());
-  EXPECT_NE(still.value().notes.at(0).find("pixdim[4], the time between them, is 0"), std::string::npos) << still.value().notes[0];
+  EXPECT_NE(still.value().notes.at(0).find("the time between volumes, pixdim[4], is 0"), std::string::npos) << still.value().notes[0];
 }
 
-TEST(LoadNifti, BadFilesHaveTheirSentence) {
+TEST(LoadNifti, BadFilesAreOneErrorLine) {
   TemporaryFolder folder;
   const auto message = [&](const std::string& path) {
     const auto r = load_path(path);
@@ -246,7 +251,7 @@ TEST(LoadNifti, BadFilesHaveTheirSentence) {
   expect(nan.save(folder / "nan.nii"), "finite");
   Nifti huge = numbers<float>(16);
   for (const std::size_t at : {42u, 44u, 46u}) huge.put<std::int16_t>(at, 32767);
-  expect(huge.save(folder / "huge.nii"), "cut short");
+  expect(huge.save(folder / "huge.nii"), "truncated");
   LoadRequest named;
   named.path = numbers<float>(16).save(folder / "one.nii");
   named.grid = "density";
@@ -258,7 +263,7 @@ TEST(LoadNifti, BadFilesHaveTheirSentence) {
   }
 }
 
-TEST(LoadNifti, APlaceOfTheVoxelsThatIsNone) {
+TEST(LoadNifti, AnInvalidVoxelOffsetIsRefused) {
   TemporaryFolder folder;
   for (const float offset : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -4.f, 1e30f}) {
     Nifti n = numbers<float>(16);
@@ -269,7 +274,7 @@ TEST(LoadNifti, APlaceOfTheVoxelsThatIsNone) {
   }
 }
 
-TEST(LoadNifti, AVolumeOfNansIsOneSentence) {
+TEST(LoadNifti, AVolumeOfNansIsRefused) {
   TemporaryFolder folder;
   Nifti n(4, 3, 2, 16, 32);
   for (int i = 0; i < 24; ++i) n.append(std::numeric_limits<float>::quiet_NaN());
@@ -280,7 +285,7 @@ TEST(LoadNifti, AVolumeOfNansIsOneSentence) {
   EXPECT_FALSE(describe_grids(path));
 }
 
-TEST(LoadNifti, ACutCompressedFileIsNoticed) {
+TEST(LoadNifti, ATruncatedCompressedFileIsRefused) {
   const std::string path = "/usr/share/mricron/templates/JHU-WhiteMatter-labels-2mm.nii.gz";
   if (!catena::test::exists(path)) GTEST_SKIP() << "package mricron-data is not installed";
   ASSERT_TRUE(load_path(path));

@@ -34,7 +34,7 @@ void expect_numbers(const TemporaryFolder& folder, const std::string& type) {
   const auto field = load(request(folder / "a.raw", type));
   ASSERT_TRUE(field) << field.error().message;
   Cursor cursor;
-  // voxel (1, 2, 1): x fastest
+  // Voxel (1, 2, 1), with x as the fastest axis.
   EXPECT_NEAR(field->scalar->sample(Vec3(-9.5, 2, 7), cursor).value, 1 + 4 * (2 + 3), 1e-12) << type;
 }
 
@@ -59,8 +59,8 @@ TEST(LoadRaw, ReadsVectors) {
   EXPECT_EQ(field->vector->sample(Vec3(-9.5, 0, 5), cursor).value, Vec3(3, 4, 5));
 }
 
-// before: a field whose length was infinite (found in a damaged .vdb); each number of the transform is finite
-TEST(LoadRaw, ABoxBeyondAllNumbersIsOneSentence) {
+// Each number of the transform is finite, but the field's extent is not (found in a damaged .vdb).
+TEST(LoadRaw, AnInfiniteExtentIsRefused) {
   const TemporaryFolder folder;
   catena::test::write_file(folder / "a.raw", std::string(4 * 4 * 2 * 2, '\x3f'));
   LoadRequest r;

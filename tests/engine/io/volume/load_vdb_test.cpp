@@ -21,7 +21,7 @@ LoadRequest request(const std::string& path, const std::string& grid = {}) {
   return r;
 }
 
-/// The message of the error; fails the test when there is none, or when it is not one line about `path`.
+/// The error message of a load; fails the test without an error, or if the message is not one line about `path`.
 std::string error_of(const LoadRequest& r) {
   const auto result = load(r);
   if (result) {
@@ -38,7 +38,7 @@ testing::AssertionResult has(const std::string& text, const std::string& part) {
   return testing::AssertionFailure() << "\"" << part << "\" is not in: " << text;
 }
 
-/// A grid of the numbers x + 10 y + 100 z over 4 x 5 x 6 voxels from (-2, 3, 0).
+/// A grid with values x + 10 y + 100 z over 4 x 5 x 6 voxels from (-2, 3, 0).
 template <class Grid>
 typename Grid::Ptr numbers(const std::string& name) {
   auto grid = Grid::create();
@@ -138,7 +138,7 @@ TEST(LoadVdb, RoundTripKeepsEveryBitAndTheTransform) {
   }
 }
 
-TEST(LoadVdb, VectorsAndTheVentricleRoundTrip) {
+TEST(LoadVdb, VectorsAndTheLeftVentricleRoundTrip) {
   TemporaryFolder folder;
   std::vector<NamedGrid> items;
   for (const auto part : analytic_parts("left-ventricle")) {
@@ -180,7 +180,7 @@ TEST(LoadVdb, OnlyTheNamedGridIsRead) {
   EXPECT_EQ(after.masks - before.masks, 0u);
 }
 
-TEST(LoadVdb, MaskByValueAndOnDemand) {
+TEST(LoadVdb, MasksAreAppliedByValueOnlyIfRequested) {
   TemporaryFolder folder;
   openvdb::initialize();
   auto valid = openvdb::BoolGrid::create(false);
@@ -188,7 +188,7 @@ TEST(LoadVdb, MaskByValueAndOnDemand) {
   auto accessor = valid->getAccessor();
   for (int z = 0; z < 6; ++z)
     for (int y = 3; y < 8; ++y)
-      for (int x = -2; x < 2; ++x) accessor.setValue({x, y, z}, x < 1);  // active and false is not valid
+      for (int x = -2; x < 2; ++x) accessor.setValue({x, y, z}, x < 1);  // active voxels with the value false are invalid
   auto other = valid->deepCopy();
   other->setName("shifted");
   other->setTransform(openvdb::math::Transform::createLinearTransform(2.0));
@@ -198,7 +198,7 @@ TEST(LoadVdb, MaskByValueAndOnDemand) {
   EXPECT_TRUE(masked->sample(Vec3(-0.5, 4, 2), cursor).inside);
   EXPECT_FALSE(masked->sample(Vec3(0.5, 4, 2), cursor).inside);
   EXPECT_EQ(masked->max_value(), 570);
-  // what is described is what is loaded
+  // The description equals the loaded grid.
   for (const GridStats& stats : {masked->grid()->stats(), describe_grids(folder / "m.vdb").value().at(0).stats}) {
     EXPECT_EQ(stats.active_voxels, 90u);
     EXPECT_EQ(stats.max, 570);
@@ -237,7 +237,7 @@ TEST(LoadVdb, InactiveVoxelsHoldTheBackground) {
   EXPECT_EQ(field->grid()->background(), -7.f);
 }
 
-TEST(LoadVdb, EveryBadGridHasItsSentence) {
+TEST(LoadVdb, EveryBadGridIsOneErrorLine) {
   TemporaryFolder folder;
   openvdb::initialize();
   auto empty = openvdb::FloatGrid::create();
@@ -266,7 +266,7 @@ TEST(LoadVdb, EveryBadGridHasItsSentence) {
   for (const GridInfo& i : *info) EXPECT_EQ(i.is_usable, i.name == "good") << i.name;
 }
 
-TEST(LoadVdb, VoxelsAtTheEndsOfTheIndexRange) {
+TEST(LoadVdb, VoxelsAtTheLimitsOfTheIndexRangeAreHandled) {
   TemporaryFolder folder;
   auto far = numbers<openvdb::FloatGrid>("far");
   far->tree().setValue({2147483647, 0, 0}, 1.f);
@@ -279,7 +279,7 @@ TEST(LoadVdb, VoxelsAtTheEndsOfTheIndexRange) {
   EXPECT_FALSE(grids->at(0).is_usable);
 }
 
-TEST(LoadVdb, TilesOfAnyExtentCostNothing) {
+TEST(LoadVdb, LargeTilesAreCheap) {
   TemporaryFolder folder;
   auto wide = numbers<openvdb::FloatGrid>("wide");
   for (int n = 1; n <= 8; ++n) wide->tree().addTile(3, {4096 * n, 0, 0}, 7.f, true);
@@ -290,7 +290,7 @@ TEST(LoadVdb, TilesOfAnyExtentCostNothing) {
   Cursor cursor;
   EXPECT_EQ(field->scalar->sample(Vec3(20000.5, 2000, 2000), cursor).value, 7);
   EXPECT_EQ(field->scalar->grid()->stats().active_voxels, 120 + 8 * (std::uint64_t{1} << 36));
-  // a mask of tiles and single voxels
+  // A mask of tiles and single voxels.
   auto valid = openvdb::BoolGrid::create(false);
   valid->setName("valid");
   valid->tree().addTile(3, {4096, 0, 0}, true, true);
@@ -305,7 +305,7 @@ TEST(LoadVdb, TilesOfAnyExtentCostNothing) {
   EXPECT_EQ(info.stats.min, 7);
 }
 
-/// A grid that has the tree of another one.
+/// A grid that shares its tree with another grid.
 TEST(LoadVdb, ASharedTreeIsRead) {
   TemporaryFolder folder;
   const auto one = numbers<openvdb::FloatGrid>("one");
@@ -342,7 +342,7 @@ TEST(LoadVdb, RepeatedNamesAreNumbered) {
   EXPECT_EQ(load(request(folder / "r.vdb", "same[0]")).value().scalar->max_value(), 571);
 }
 
-TEST(LoadVdb, BadFilesNeverPassAndNeverCrash) {
+TEST(LoadVdb, BadFilesAreRefusedWithoutACrash) {
   TemporaryFolder folder;
   openvdb::initialize();
   EXPECT_TRUE(has(error_of(request(folder / "absent.vdb")), "no such file"));
@@ -353,7 +353,7 @@ TEST(LoadVdb, BadFilesNeverPassAndNeverCrash) {
   EXPECT_TRUE(has(error_of(request(folder / "text.vdb")), "not a .vdb"));
   catena::test::write_file(folder / "a.txt", "hello");
   EXPECT_TRUE(has(error_of(request(folder / "a.txt")), "expected a data file (.vdb"));
-  // cut at every length that matters
+  // Truncated at all significant lengths.
   auto noise = openvdb::FloatGrid::create();
   noise->setName("noise");
   test::Random random(3);
@@ -371,10 +371,10 @@ TEST(LoadVdb, BadFilesNeverPassAndNeverCrash) {
     EXPECT_FALSE(describe_grids(folder / "cut.vdb"));
   }
   catena::test::write_file(folder / "cut.vdb", whole.substr(0, whole.size() - 1));
-  EXPECT_TRUE(has(error_of(request(folder / "cut.vdb", "b")), "cut short"));
+  EXPECT_TRUE(has(error_of(request(folder / "cut.vdb", "b")), "truncated"));
 }
 
-TEST(WriteVdb, EveryFailureIsToldAndLeavesNothing) {
+TEST(WriteVdb, FailuresAreReportedAndLeaveNoFile) {
   TemporaryFolder folder;
   AnyField any;
   any.scalar = sample_on_grid(*make_analytic("sphere").value().scalar, 8, -2, 2);
@@ -386,7 +386,7 @@ TEST(WriteVdb, EveryFailureIsToldAndLeavesNothing) {
   ASSERT_FALSE(full);
   EXPECT_TRUE(has(full.error().message, "No space left"));
   EXPECT_TRUE(write_vdb("/dev/null", {{any, "sphere"}}));
-  // different masks cannot share a file
+  // Different masks cannot share a file.
   std::vector<float> ones(27, 1.f);
   std::vector<std::uint8_t> a(27, 1), b(27, 1);
   a[0] = 0, b[26] = 0;

@@ -12,7 +12,7 @@
 namespace catena::field {
 namespace units_test {
 
-TEST(Units, ANiftiHeaderSaysTheUnitOfLength) {
+TEST(Units, ANiftiHeaderStatesTheLengthUnit) {
   const catena::test::TemporaryFolder folder;
   std::string header(360, '\0');
   const auto put = [&](std::size_t at, auto v) { std::memcpy(header.data() + at, &v, sizeof v); };
@@ -25,7 +25,7 @@ TEST(Units, ANiftiHeaderSaysTheUnitOfLength) {
   std::memcpy(header.data() + 344, "n+1", 4);
   int i = 0;
   for (const auto& [code, unit] : {std::pair{0, ""}, {1, "m"}, {2, "mm"}, {3, "µm"}}) {
-    put(123, static_cast<char>(code | 8));  // with seconds
+    put(123, static_cast<char>(code | 8));  // and seconds
     const std::string path = folder / (std::to_string(i++) + ".nii");
     catena::test::write_file(path, header);
     EXPECT_EQ(read_units(path, "").length, unit);
@@ -36,7 +36,7 @@ TEST(Units, ANiftiHeaderSaysTheUnitOfLength) {
   EXPECT_EQ(read_units(folder / "none.nii", "").length, "");
 }
 
-TEST(Units, AVdbGridSaysItsOwn) {
+TEST(Units, AVdbGridStatesItsUnit) {
   openvdb::initialize();
   const catena::test::TemporaryFolder folder;
   auto speed = openvdb::FloatGrid::create(), other = openvdb::FloatGrid::create();
@@ -53,7 +53,7 @@ TEST(Units, AVdbGridSaysItsOwn) {
   EXPECT_EQ(read_units(folder / "a.vdb", "other").value, "") << "the file's word may belong to either field";
 }
 
-TEST(Units, WhatTheValuesStandFor) {
+TEST(Units, LevelSetsAndPatientSpaceAreRecognized) {
   openvdb::initialize();
   const catena::test::TemporaryFolder folder;
   auto distance = openvdb::FloatGrid::create(), fog = openvdb::FloatGrid::create();
@@ -75,7 +75,7 @@ TEST(Units, WhatTheValuesStandFor) {
   EXPECT_FALSE(read_units(folder / "b.vdb", "fog").is_patient_space);
 }
 
-TEST(Units, FreeTextIsTakenWhereItIsPlain) {
+TEST(Units, FreeTextIsParsedOnlyIfUnambiguous) {
   EXPECT_EQ(parse_units("HU, mm", true).value, "HU");
   EXPECT_EQ(parse_units("HU, mm", true).length, "mm");
   EXPECT_EQ(parse_units("HU, mm", false).value, "");

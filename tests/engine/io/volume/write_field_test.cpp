@@ -15,14 +15,14 @@
 #include "tests/support/support.h"
 
 namespace catena::field {
-namespace write_test {
+namespace write_field_test {
 
 using catena::test::exists;
 using catena::test::read_file;
 using catena::test::TemporaryFolder;
 using test::read;
 
-TEST(Write, NiftiKeepsNumbersFramesAndHoles) {
+TEST(Write, NiftiKeepsValuesFramesAndHoles) {
   const TemporaryFolder folder;
   const Index3 n{7, 6, 9};
   const auto block = test::random_block(n, 3);
@@ -38,7 +38,7 @@ TEST(Write, NiftiKeepsNumbersFramesAndHoles) {
       ASSERT_TRUE(written) << written.error().message;
       const AnyField back = read(folder / ("a" + ending));
       ASSERT_TRUE(back.scalar);
-      // the axes are numbers of single precision
+      // The axes are stored in single precision.
       for (int i = 0; i < 8; ++i) EXPECT_LT(norm(field.scalar->corner(i) - back.scalar->corner(i)), 1e-4);
       EXPECT_EQ(read_units(folder / ("a" + ending), "").length, "mm");
       std::vector<float> values(block.values.size());
@@ -47,7 +47,7 @@ TEST(Write, NiftiKeepsNumbersFramesAndHoles) {
     }
 }
 
-TEST(Write, NiftiVectorsAreThreeVolumesWithTheirIntent) {
+TEST(Write, NiftiVectorsAreThreeVolumesWithAnIntent) {
   const TemporaryFolder folder;
   AnyField field;
   field.vector = make_vector_grid("wind", {}, {4, 3, 2}, test::random_block({12, 3, 2}, 5).values);
@@ -65,7 +65,7 @@ TEST(Write, NiftiVectorsAreThreeVolumesWithTheirIntent) {
   nifti_image_free(image);
 }
 
-/// Three voxels far apart: the box between them, with the background, where it lies.
+/// Three distant voxels: the written box between them has the background value and the right position.
 TEST(Write, ASparseGridBecomesTheBoxOfItsVoxels) {
   const TemporaryFolder folder;
   openvdb::initialize();
@@ -89,7 +89,7 @@ TEST(Write, ASparseGridBecomesTheBoxOfItsVoxels) {
   EXPECT_EQ(values.front(), 1);
   EXPECT_EQ(values.back(), 2);
   for (std::size_t i = 1; i + 1 < values.size(); ++i) ASSERT_EQ(values[i], 0.25f);
-  // memory is asked for first
+  // Memory is checked before it is used.
   set_memory_limit(16'000'000);
   grid->getAccessor().setValue({2000, 2000, 2000}, 1);
   openvdb::io::File(folder / "far.vdb").write({grid});
@@ -101,7 +101,7 @@ TEST(Write, ASparseGridBecomesTheBoxOfItsVoxels) {
   EXPECT_FALSE(exists(folder / "far.nrrd"));
 }
 
-TEST(Write, HeadersAreWhatTheFormatsSay) {
+TEST(Write, HeadersFollowTheFormats) {
   const TemporaryFolder folder;
   AnyField field;
   field.vector = make_vector_grid("wind", Mapping::from_linear(Mat3(2), Vec3(1, 2, 3)), {2, 1, 1}, std::vector<float>{1, 2, 3, 4, 5, 6});
@@ -119,7 +119,7 @@ TEST(Write, HeadersAreWhatTheFormatsSay) {
   EXPECT_NE(read_file(folder / "a.vti").find("Name=\"a&lt;b&gt;&amp;&quot;c&quot;\""), std::string::npos);
 }
 
-TEST(Write, SaysWhichEndingsThereAreAndFollowsLinks) {
+TEST(Write, UnknownExtensionsAreRefusedAndLinksAreFollowed) {
   const TemporaryFolder folder;
   AnyField field;
   field.scalar = make_scalar_grid("a", {}, {2, 2, 2}, std::vector<float>(8, 1));
@@ -136,5 +136,5 @@ TEST(Write, SaysWhichEndingsThereAreAndFollowsLinks) {
   EXPECT_NE(missing.error().message.find("nowhere/a.nii: cannot write"), std::string::npos) << missing.error().message;
 }
 
-}  // namespace write_test
+}  // namespace write_field_test
 }  // namespace catena::field

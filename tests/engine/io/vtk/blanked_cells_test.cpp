@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What VTK's flags, masks and gaps leave of a file's data, in every form of grid.
+/// The valid data of a file with VTK's flags, masks and gaps, in every form of grid.
 #include <gtest/gtest.h>
 
 #include "engine/base/memory_limit.h"
@@ -12,7 +12,7 @@
 #include "tests/support/support.h"
 
 namespace catena::field {
-namespace holes_test {
+namespace blanked_cells_test {
 
 namespace files = test::vtk_files;
 using files::Form;
@@ -52,10 +52,10 @@ struct Allowance {
   ~Allowance() { set_memory_limit(std::nullopt); }
 };
 
-/// CellCache 4 x 4 x 4; the one from (1, 1, 1) and the point at (3, 3, 3).
+/// A grid of 4 x 4 x 4 cells: the cell from (1, 1, 1), and the point at (3, 3, 3).
 constexpr int kCell = 21, kPoint = 93;
 
-TEST_F(BlankedCells, EveryFlagMeansWhatItMeansToVtkInEveryFormOfGrid) {
+TEST_F(BlankedCells, FlagsHaveVtksMeaningInEveryFormOfGrid) {
   struct Case {
     int flag;
     bool of_cells, hole;
@@ -71,11 +71,11 @@ TEST_F(BlankedCells, EveryFlagMeansWhatItMeansToVtkInEveryFormOfGrid) {
         flags.type = type;
         (of_cells ? flags.cells : flags.points) = [&, at = of_cells ? kCell : kPoint, f = flag](int i) { return i == at ? f : 0; };
         const AnyField field = read(file(std::string("a") + files::file_extension(form), files::boxes(form, 4, sum, flags)));
-        // a hidden cell of one; the eight cells about a hidden point
+        // A hidden cell covers one cell; a hidden point hides the eight cells around it.
         const Vec3 middle = of_cells ? Vec3(1.5) : Vec3(3.0), far(of_cells ? 0.9 : 1.4);
         for (const Vec3& offset : {Vec3(0.0), Vec3(far.x / 3, 0, 0), Vec3(0, -far.x / 3, far.x / 3)})
           EXPECT_EQ(inside(field, middle + offset), !hole) << offset.x << " " << offset.y;
-        // a voxel of a resampled grid beside it there are data
+        // A voxel of a resampled grid away from the hole has data.
         for (int axis = 0; axis < 3; ++axis) {
           Vec3 p = middle;
           p[axis] -= of_cells ? 0.6 : 1.1;
@@ -87,8 +87,8 @@ TEST_F(BlankedCells, EveryFlagMeansWhatItMeansToVtkInEveryFormOfGrid) {
       }
 }
 
-/// The grid varied from run to run, and a value that is no number spread over a voxel more.
-TEST_F(BlankedCells, CellsWithAValueThatIsNotFiniteAreNoData) {
+/// A non-finite value hides its cell and no other, and the grid does not vary between runs.
+TEST_F(BlankedCells, CellsWithNonFiniteValuesAreInvalid) {
   for (const Form form : {Form::rectilinear, Form::structured, Form::unstructured})
     for (const std::string name : {"v", "c"}) {
       SCOPED_TRACE(name + files::file_extension(form));
@@ -102,12 +102,12 @@ TEST_F(BlankedCells, CellsWithAValueThatIsNotFiniteAreNoData) {
       const ScalarSample sample = field.scalar->sample(middle - Vec3(half + 0.1, 0, 0), cursor);
       EXPECT_TRUE(sample.inside);
       EXPECT_NEAR(sample.value, sum(middle - Vec3(half + 0.1, 0, 0)), name == "v" ? 1e-3 : 3);
-      EXPECT_NE(all_notes(field).find(name == "v" ? "1 values of points" : "1 values of cells"), std::string::npos);
+      EXPECT_NE(all_notes(field).find(name == "v" ? "1 values at points" : "1 values at cells"), std::string::npos);
     }
 }
 
-TEST_F(BlankedCells, WhatIsHiddenLeaksIntoNoValueAndNoRange) {
-  // a layer of hidden cells that hold -9999, and points that only they have
+TEST_F(BlankedCells, HiddenValuesDoNotInfluenceValuesOrTheRange) {
+  // A layer of hidden cells with the value -9999, and points that belong to hidden cells only.
   const auto is_hidden = [](int cell) { return cell / 16 >= 2; };
   const auto value = [](const Vec3& p) { return p.z > 2.25 ? -9999 : sum(p); };
   for (const Form form : kForms) {
@@ -132,9 +132,9 @@ TEST_F(BlankedCells, WhatIsHiddenLeaksIntoNoValueAndNoRange) {
   }
 }
 
-TEST_F(BlankedCells, EverythingThatReadsAGridAgreesOnOneLayerOfHiddenCells) {
+TEST_F(BlankedCells, AllReadersAgreeOnALayerOfHiddenCells) {
   files::Flags flags;
-  flags.cells = [](int i) { return i % 6 == 3 ? 32 : 0; };  // 3 <= x <= 4 of 6
+  flags.cells = [](int i) { return i % 6 == 3 ? 32 : 0; };  // the cells with 3 <= x <= 4 of 6
   const std::string path = file("layer.vti", files::boxes(
                                                  Form::image, 6, [](const Vec3& p) { return p.y + 0.1 * p.x; }, flags));
   const AnyField field = read(path);
@@ -172,12 +172,12 @@ TEST_F(BlankedCells, EverythingThatReadsAGridAgreesOnOneLayerOfHiddenCells) {
     EXPECT_GT(sides[0], 0);
     EXPECT_GT(sides[1], 0);
   }
-  // a format of voxels alone says what it loses
-  EXPECT_NE(lost_mask_note("a.nrrd", field).find("36 cells without a value"), std::string::npos) << lost_mask_note("a.nrrd", field);
+  // A format without a mask reports the loss.
+  EXPECT_NE(lost_mask_note("a.nrrd", field).find("36 invalid cells"), std::string::npos) << lost_mask_note("a.nrrd", field);
   EXPECT_TRUE(lost_mask_note("a.vti", field).empty());
 }
 
-TEST_F(BlankedCells, AGapBetweenBlocksHasNoValueWhicheverWayItLies) {
+TEST_F(BlankedCells, AGapBetweenBlocksHasNoValueInAnyOrientation) {
   for (const double angle : {0.0, 5.6 * std::numbers::pi / 180}) {
     std::vector<std::pair<Vec3, Vec3>> boxes;
     for (int i = 0; i < 4; ++i)
@@ -201,18 +201,19 @@ TEST_F(BlankedCells, AGapBetweenBlocksHasNoValueWhicheverWayItLies) {
     }
     EXPECT_EQ(lost, 0);
     EXPECT_EQ(filled, 0);
-    EXPECT_NE(all_notes(field).find("of random places in the whole box"), std::string::npos) << all_notes(field);
+    EXPECT_NE(all_notes(field).find("of random positions in the whole box"), std::string::npos) << all_notes(field);
   }
 }
 
-TEST_F(BlankedCells, AGapNarrowerThanVoxelsIsCounted) {
+TEST_F(BlankedCells, AGapNarrowerThanVoxelsHasANote) {
   const Allowance allowance(16'000'000);
   std::vector<std::pair<Vec3, Vec3>> boxes;
   for (int i = 0; i < 40; ++i) boxes.push_back({Vec3(i * 10, 0, 0), Vec3(i * 10 + 9.98, 400, 400)});
-  EXPECT_NE(all_notes(read(file("thin.vtu", files::hexahedra(boxes, 0, sum)))).find("in the middle of gaps too narrow"), std::string::npos);
+  EXPECT_NE(all_notes(read(file("thin.vtu", files::hexahedra(boxes, 0, sum)))).find("in the middle of gaps that are filled"),
+            std::string::npos);
 }
 
-TEST_F(BlankedCells, PolyhedraHoldALinearFieldToTheirFaces) {
+TEST_F(BlankedCells, PolyhedraReproduceALinearFieldUpToTheirFaces) {
   const AnyField field = read(file("p.vtu", files::polyhedra(4, sum)));
   test::Random random{5};
   const auto unit = [&] { return static_cast<double>(random.next() >> 11) * 0x1p-53; };
@@ -229,7 +230,7 @@ TEST_F(BlankedCells, PolyhedraHoldALinearFieldToTheirFaces) {
   EXPECT_EQ(all_notes(field).find("lost"), std::string::npos) << all_notes(field);
 }
 
-TEST_F(BlankedCells, ASmallCellKeepsItsPeakOrTheNoteTellsTheLoss) {
+TEST_F(BlankedCells, ASmallCellsPeakIsKeptOrItsLossHasANote) {
   const Allowance allowance(16'000'000);
   const auto boxes = [](double small, double aside) {
     std::vector<std::pair<Vec3, Vec3>> all;
@@ -238,14 +239,14 @@ TEST_F(BlankedCells, ASmallCellKeepsItsPeakOrTheNoteTellsTheLoss) {
     return all;
   };
   const auto peak = [](const Vec3& p) { return p.x > 5 ? 100.0 : 1.0; };
-  const AnyField kept = read(file("kept.vtu", files::hexahedra(boxes(0.05, 0), 0, peak)));
-  EXPECT_EQ(all_notes(kept).find("is lost"), std::string::npos) << all_notes(kept);
-  EXPECT_EQ(kept.scalar->max_value(), 100);
+  const AnyField preserved = read(file("kept.vtu", files::hexahedra(boxes(0.05, 0), 0, peak)));
+  EXPECT_EQ(all_notes(preserved).find("is lost"), std::string::npos) << all_notes(preserved);
+  EXPECT_EQ(preserved.scalar->max_value(), 100);
   const AnyField lost = read(file("lost.vtu", files::hexahedra(boxes(0.001, 0.4003), 0, peak)));
-  EXPECT_NE(all_notes(lost).find("the greatest value, 100, is lost"), std::string::npos) << all_notes(lost);
+  EXPECT_NE(all_notes(lost).find("the maximum, 100, is lost"), std::string::npos) << all_notes(lost);
 }
 
-TEST_F(BlankedCells, TheGridFollowsFromTheFileAndWhatIsStatedAlone) {
+TEST_F(BlankedCells, TheResampledGridDependsOnTheFileAndTheStatedLimitOnly) {
   const std::string path = file("w.vtu", files::hexahedra({{Vec3(0.0), Vec3(1.0)}, {Vec3(1, 0, 0), Vec3(2, 1, 1)}}, 0,
                                                           [](const Vec3& p) { return p.x * p.x + p.y; }));
   const auto size = [&] { return describe_grids(path).value().front().size; };
@@ -262,15 +263,15 @@ TEST_F(BlankedCells, TheGridFollowsFromTheFileAndWhatIsStatedAlone) {
   EXPECT_EQ(sizes[0], whole);
   EXPECT_EQ(sizes[1], whole);
   EXPECT_LT(sizes[2].x, whole.x);
-  // nothing is stated, and too little is free
+  // Without a stated limit, and with too little free memory.
   reader_settings().memory_bytes = 300'000;
   LoadRequest request;
   request.path = path;
   const auto refused = load(request);
   reader_settings().memory_bytes = 0;
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("--memory 1 resamples it to fewer voxels"), std::string::npos) << refused.error().message;
+  EXPECT_NE(refused.error().message.find("--memory 1 resamples to fewer voxels"), std::string::npos) << refused.error().message;
 }
 
-}  // namespace holes_test
+}  // namespace blanked_cells_test
 }  // namespace catena::field

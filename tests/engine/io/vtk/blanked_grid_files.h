@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Grids of n^3 unit cells in VTK's XML forms, with flags at points and cells, for the tests of what is data and what is not.
+/// Grids of n^3 unit cells in VTK's XML formats, with flags at points and cells, for the tests of hidden cells.
 #pragma once
 #include "tests/engine/io/vtk/files.h"
 
@@ -8,12 +8,12 @@ namespace catena::test::vtk_files {
 enum class Form { image, rectilinear, structured, unstructured };
 
 struct Flags {
-  std::function<int(int)> points, cells;  ///< by number; none: no array
+  std::function<int(int)> points, cells;  ///< flags by index; without a function there is no array
   const char* type = "UInt8";
   const char* name = "vtkGhostType";
 };
 
-/// "v" at points: f at the point's place; "c" in cells: f at the middle.
+/// A grid with "v" at points, f at the point, and "c" in cells, f at the center.
 inline std::string boxes(Form form, int n, const Scalar& f, const Flags& flags = {}) {
   std::string points, axis, values, middles, point_flags, cell_flags, ids, ends, types;
   int number = 0;
@@ -61,7 +61,7 @@ inline const char* file_extension(Form form) {
   return endings[static_cast<int>(form)];
 }
 
-/// Boxes as hexahedra, corners (i, j, k) of each in the order of VTK_VOXEL, turned by an angle about z; "v" at points.
+/// Boxes as hexahedra, with the corners (i, j, k) of each in the order of VTK_VOXEL, rotated by an angle about z; "v" at points.
 inline std::string hexahedra(const std::vector<std::pair<Vec3, Vec3>>& boxes, double angle, const Scalar& f) {
   std::string points, values, ids, ends, types;
   int n = 0;
@@ -80,8 +80,8 @@ inline std::string hexahedra(const std::vector<std::pair<Vec3, Vec3>>& boxes, do
   return make_vtu(n, points, values, ids, ends, types);
 }
 
-/// A cube cut into n^3 unit cells, each stored as a polyhedron of six quadrilaterals whose inner points are moved a little. Some faces are
-/// listed outward and some inward, and one point, with the value -500, belongs to no cell.
+/// A cube of n^3 unit cells, each stored as a polyhedron of six quadrilaterals, with slightly displaced inner points. Some faces are
+/// oriented outward and some inward, and one point, with the value -500, belongs to no cell.
 inline std::string polyhedra(int n, const Scalar& f) {
   std::string points, values, ids, ends, types, faces, face_ends;
   const auto point = [&](int i, int j, int k) { return (k * (n + 1) + j) * (n + 1) + i; };

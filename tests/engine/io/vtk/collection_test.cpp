@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Collections of files with their times, .pvd and .series: what is read at each step, and what is refused.
+/// Collections of files with times, .pvd and .series: the values of each step, and refused collections.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -17,12 +17,12 @@ namespace collection_test {
 
 namespace files = test::vtk_files;
 
-/// 4 x 4 x 3 points of one value.
+/// An image of 4 x 4 x 3 points with one value.
 std::string image(double value) {
   return files::vti("1 0 0 0 1 0 0 0 1", [value](const Vec3&) { return value; });
 }
 
-/// One hexahedron from x to x + 1, of one value.
+/// A hexahedron from x to x + 1 with one value.
 std::string hexahedron(double x, double value) {
   std::string points, values;
   for (int n = 0; n < 8; ++n) {
@@ -61,7 +61,7 @@ double value_at(const Result<AnyField>& field, const Vec3& world) {
   return field ? field->scalar->sample(world, cursor).value : 0;
 }
 
-TEST(Collection, StepsAreInTheOrderOfTheirTimesWhateverTheFileSays) {
+TEST(Collection, StepsAreSortedByTime) {
   const test::TemporaryFolder folder;
   std::filesystem::create_directory(folder / "data");
   for (const char* name : {"ten.vti", "a half.vti", "data/minus.vti"})
@@ -74,19 +74,19 @@ TEST(Collection, StepsAreInTheOrderOfTheirTimesWhateverTheFileSays) {
     EXPECT_EQ(read_times(folder / name), std::vector<double>(std::begin(wanted), std::end(wanted))) << name;
     for (int step = 0; step < 3; ++step) EXPECT_EQ(value_at(at_step(folder / name, step), {10.5, 21, 32}), wanted[step]) << name << step;
     EXPECT_EQ(at_step(folder / name, 1)->times.size(), 3u);
-    // no output may replace a file of another step
+    // An output must not replace the file of another step.
     const std::vector<FileId> parts = find_data_files(folder / name);
     for (const char* part : {"ten.vti", "a half.vti", "data/minus.vti"})
       EXPECT_NE(std::find(parts.begin(), parts.end(), *find_file_id(folder / part)), parts.end()) << name << " " << part;
   }
-  // what is shown of it
+  // The default scene of the collection.
   const auto scene = scene::scene_for_file(folder / "s.pvd");
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene::step_count(*scene), 3);
   EXPECT_EQ(scene::substitute_time("{time}, {step} of 3", *scene), "-1, 0 of 3");
 }
 
-TEST(Collection, FilesOfOneTimeInASeriesAreStepsOfTheirOwn) {
+TEST(Collection, FilesOfEqualTimeInASeriesAreSeparateSteps) {
   const test::TemporaryFolder folder;
   for (int i = 0; i < 2; ++i) test::write_file(folder / fmt::format("{}.vti", i), image(i));
   test::write_file(folder / "s.vti.series", R"({"files": [{"name": "0.vti", "time": 4}, {"name": "1.vti", "time": 4}]})");
@@ -107,7 +107,7 @@ TEST(Collection, AUniformFirstStepIsColouredByTheLast) {
   }
 }
 
-TEST(Collection, LinesAloneOpenAsCurves) {
+TEST(Collection, FilesOfLinesOpenAsCurves) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "l.vtk",
                    "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 2 double\n0 0 0 1 0 0\nLINES 1 3\n2 0 1\n");
@@ -135,7 +135,7 @@ TEST(Collection, PartsOfOneTimeAreOneStep) {
   }
 }
 
-TEST(Collection, MeshesHaveStepsToo) {
+TEST(Collection, MeshesHaveSteps) {
   const test::TemporaryFolder folder;
   for (const char* z : {"1", "2"}) test::write_file(folder / (std::string("t") + z + ".vtk"), triangle(std::stod(z)));
   test::write_file(folder / "t.vtk.series",
@@ -155,7 +155,7 @@ TEST(Collection, MeshesHaveStepsToo) {
   }
 }
 
-TEST(Collection, AFileStatesItsOwnTime) {
+TEST(Collection, TheTimeInAFileIsUsed) {
   const test::TemporaryFolder folder;
   for (int step = 0; step < 2; ++step) {
     std::string text = image(10 * step);
@@ -172,7 +172,7 @@ TEST(Collection, AFileStatesItsOwnTime) {
   EXPECT_EQ(scene::summarize_file(folder / "w_*.vti").steps.times, (std::vector<double>{0, 0.25}));
 }
 
-TEST(Collection, WhatIsWrongIsOneSentence) {
+TEST(Collection, ErrorsAreOneLine) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "good.vti", image(1));
   const struct {
@@ -180,15 +180,15 @@ TEST(Collection, WhatIsWrongIsOneSentence) {
     std::string sets;
     const char* words;
   } kCases[] = {
-      {"gone.pvd", "", set("0", "gone.vti"), "gone.vti\", which it names, is not there"},
-      {"above.pvd", "", set("0", "../x.vti"), "lies outside of its folder"},
-      {"far.pvd", "", set("0", "/etc/passwd"), "lies outside of its folder"},
+      {"gone.pvd", "", set("0", "gone.vti"), "gone.vti\", named in the collection, does not exist"},
+      {"above.pvd", "", set("0", "../x.vti"), "is outside the folder of the collection"},
+      {"far.pvd", "", set("0", "/etc/passwd"), "is outside the folder of the collection"},
       {"self.pvd", "", set("0", "self.pvd"), "is a collection, too"},
-      {"none.pvd", "", " ", "names no files"},
-      {"word.pvd", "", set("soon", "good.vti"), "was expected to be a number"},
-      {"half.pvd", "<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"0\" file=\"good.vti\"/>", "", "not a whole one"},
-      {"text.pvd", "hello", "", "it is no XML file"},
-      {"list.vtk.series", "{\"files\": 3}", "", "it has no list \"files\""},
+      {"none.pvd", "", " ", "lists no files"},
+      {"word.pvd", "", set("soon", "good.vti"), "a finite number was expected"},
+      {"half.pvd", "<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"0\" file=\"good.vti\"/>", "", "not valid XML"},
+      {"text.pvd", "hello", "", "not valid XML"},
+      {"list.vtk.series", "{\"files\": 3}", "", "there is no list \"files\""},
       {"time.vtk.series", "{\"files\": [{\"name\": \"good.vti\"}]}", "", "\"time\""},
       {"half.vtk.series", "{\"files\": [{\"name\": \"good.vti\", \"ti", "", "half.vtk.series:1"},
   };

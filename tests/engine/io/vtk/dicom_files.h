@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Small DICOM files for tests: explicit VR, little- or big-endian, elements in any order.
+/// Small DICOM files for tests: explicit VR, little-endian or big-endian, with elements in any order.
 #pragma once
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,7 +21,7 @@ class Dicom {
   Dicom& text(std::uint32_t tag, const std::string& vr, const std::string& value) {
     return put(tag, vr, value.size() % 2 == 0 ? value : value + (vr == "UI" ? '\0' : ' '), 1);
   }
-  /// Decimal strings.
+  /// Adds an element of decimal strings.
   Dicom& decimals(std::uint32_t tag, const std::vector<double>& values, const std::string& vr = "DS") {
     return text(tag, vr, fmt::format("{}", fmt::join(values, "\\")));
   }
@@ -37,7 +37,7 @@ class Dicom {
     elements_[tag] = {"SQ", {}, 1, items};
     return *this;
   }
-  /// Pixels as RLE Lossless: an empty table of offsets and one fragment.
+  /// Adds pixels as RLE Lossless: an empty offset table and one fragment.
   Dicom& rle(const std::vector<std::uint16_t>& fragment) {
     std::string bytes(reinterpret_cast<const char*>(fragment.data()), 2 * fragment.size());
     const auto item = [](std::uint16_t element, std::size_t length) {
@@ -50,7 +50,7 @@ class Dicom {
     elements_.erase(tag);
     return *this;
   }
-  /// The file with its preamble.
+  /// The bytes of the file with its preamble.
   std::string file(bool big = false) const {
     Dicom meta;
     meta.text(0x00020002, "UI", "1.2.840.10008.5.1.4.1.1.2").text(0x00020003, "UI", "1.2.3");
@@ -64,7 +64,7 @@ class Dicom {
  private:
   struct Element {
     std::string vr, value;
-    std::size_t width = 1;  ///< of the numbers in `value`
+    std::size_t width = 1;  ///< width of the numbers in `value`
     std::vector<Dicom> items{};
   };
   Dicom& put(std::uint32_t tag, const std::string& vr, const std::string& value, std::size_t width) {
@@ -89,7 +89,7 @@ class Dicom {
       }
       const bool wide = element.vr == "SQ" || element.vr[0] == 'O';
       out += number(tag >> 16, 2, big) + number(tag & 0xffff, 2, big) + element.vr;
-      const bool open = element.vr == "OB" && syntax_ == "1.2.840.10008.1.2.5";  // of unknown length
+      const bool open = element.vr == "OB" && syntax_ == "1.2.840.10008.1.2.5";  // with undefined length
       out += wide ? std::string(2, '\0') + number(open ? 0xffffffff : static_cast<std::uint32_t>(value.size()), 4, big)
                   : number(static_cast<std::uint32_t>(value.size()), 2, big);
       out += value;
@@ -103,7 +103,7 @@ class Dicom {
 inline constexpr std::uint32_t kPosition = 0x00200032, kOrientation = 0x00200037, kPixelSpacing = 0x00280030, kFrames = 0x00280008,
                                kIntercept = 0x00281052, kSlope = 0x00281053, kModality = 0x00080060, kPixels = 0x7fe00010;
 
-/// 3 x 2 pixels of 16 bits a frame, 0.25 x 0.5 mm; rows run along x, columns along y; no rescale.
+/// A frame of 3 x 2 pixels of 16 bits, 0.25 x 0.5 mm; rows run along x, columns along y; without rescaling.
 inline Dicom dicom_image(const std::vector<std::uint16_t>& pixels, const Vec3& at = Vec3(0.0), int number = 1,
                          const std::string& series = "1.2.3") {
   Dicom d;
@@ -121,7 +121,7 @@ inline Dicom dicom_image(const std::vector<std::uint16_t>& pixels, const Vec3& a
   return d.numbers(kPixels, "OW", pixels);
 }
 
-/// One slice of stored numbers: value = 2 stored - 1000.
+/// One slice of stored values: value = 2 stored - 1000.
 inline std::string dicom(int number, const Vec3& at, const std::vector<int>& stored, const std::string& series = "1.2.3") {
   return dicom_image({stored.begin(), stored.end()}, at, number, series).decimals(kIntercept, {-1000}).decimals(kSlope, {2}).file();
 }

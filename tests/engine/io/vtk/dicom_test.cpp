@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// DICOM files written here element by element, against the values and places that their headers state.
+/// DICOM files, written element by element, against the values and positions in their headers.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ class DicomFiles : public testing::Test {
     notes_ = field ? fmt::format("{}", fmt::join(field->notes, "\n")) : field.error().message;
     return field;
   }
-  /// Values at places of the patient along z, on the first pixel; NaN: outside.
+  /// Values at positions along z, at the first pixel; NaN outside.
   std::vector<double> along_z(const std::string& name, const std::vector<double>& zs, const std::string& grid = {}) {
     const auto field = open(name, grid);
     std::vector<double> values;
@@ -52,7 +52,7 @@ class DicomFiles : public testing::Test {
   std::string notes_;
 };
 
-/// Six pixels a frame, all of them `value`.
+/// The pixels of frames: six pixels of each value.
 Words frames_of(const Words& values) {
   Words pixels;
   for (const std::uint16_t v : values) pixels.insert(pixels.end(), 6, v);
@@ -77,7 +77,7 @@ Dicom dose(const std::vector<double>& offsets, double z) {
   return d.decimals(kFrames, {4}, "IS").decimals(0x3004000c, offsets).decimals(0x3004000e, {0.001});
 }
 
-TEST_F(DicomFiles, FramesLieWhereTheHeaderSays) {
+TEST_F(DicomFiles, FramesHaveThePositionsOfTheHeader) {
   const Dicom frames = dicom_image(frames_of({10, 20, 40}), {0, 0, 5}).decimals(kFrames, {3}, "IS");
   Dicom nuclear = Dicom(frames).without(kPosition).without(kOrientation).text(kModality, "CS", "NM").words(0x00540080, {3, 1, 2});
   nuclear.decimals(0x00180088, {-4})
@@ -101,7 +101,7 @@ TEST_F(DicomFiles, FramesLieWhereTheHeaderSays) {
     EXPECT_EQ(along_z(c.name, c.at), c.values) << c.name << ": " << notes_;
   }
   EXPECT_EQ(read_units(folder_ / "dose.dcm", "dose").value, "Gy");
-  // one compressed frame of a dose whose offsets tell of more: a segment of each byte, six times 400 = 0x0190
+  // A compressed frame of a dose grid whose offsets are those of several frames: a segment for each byte, six times 400 = 0x0190.
   const std::string row = std::string("\xfb\0", 2), segments = row + row + "\xfb\x01" + "\xfb\x90";
   Words rle{4, 0, 64, 0, 66, 0, 68, 0, 70, 0};
   rle.resize(32);
@@ -110,26 +110,26 @@ TEST_F(DicomFiles, FramesLieWhereTheHeaderSays) {
   const Dicom one = dose({0, 2, 4, 7}, 5).without(kFrames).words(0x00280100, {32}).words(0x00280101, {32}).words(0x00280102, {31});
   write("rle.dcm", Dicom(one).text(0x00280009, "CS", std::string("\x04\x30\x0c\0", 4)).rle(rle).file());
   EXPECT_EQ(along_z("rle.dcm", {5}), (std::vector<double>{0.4})) << notes_;
-  // no distance is made up
+  // A missing distance is not invented.
   for (const auto& [name, bytes, words] :
-       {std::tuple{"none.dcm", frames.file(), "says no distance between its 3 frames"},
-        {"time.dcm", Dicom(frames).words(0x00280009, {0x18, 0x1063}).decimals(0x00180088, {3}).file(), "follow each other in time"},
+       {std::tuple{"none.dcm", frames.file(), "has no distance between the 3 frames"},
+        {"time.dcm", Dicom(frames).words(0x00280009, {0x18, 0x1063}).decimals(0x00180088, {3}).file(), "are a time series"},
         {"offsets.dcm", dose({1, 2, 4, 7}, 5).file(), "GridFrameOffsetVector begins with 1"}}) {
     write(name, bytes);
     EXPECT_NE(error(name).find(words), std::string::npos) << notes_;
   }
 }
 
-TEST_F(DicomFiles, ValuesAreThoseOfTheHeader) {
+TEST_F(DicomFiles, ValuesAreScaledByTheHeader) {
   const Dicom lut = Dicom().words(0x00283002, {3, 0xffff, 16}).words(0x00283006, {7, 70, 700});
   const auto ct = [](const Words& pixels) { return dicom_image(pixels).decimals(kSlope, {2}).decimals(kIntercept, {-1000}); };
   struct Case {
     const char* name;
     Dicom file;
-    double first, second;  // of the first two pixels
+    double first, second;  // values of the first two pixels
     const char* note;
   };
-  const Words minus{0x0fff, 5, 0, 0, 0, 0};  // -1 of 12 bits
+  const Words minus{0x0fff, 5, 0, 0, 0, 0};  // -1 in 12 bits
   for (const Case& c : {
            Case{"inverse", ct({21, 22, 0, 0, 0, 0}).text(0x00280004, "CS", "MONOCHROME1").words(0x00280101, {12}).words(0x00280102, {11}),
                 -958, -956, "MONOCHROME1"},
@@ -137,7 +137,7 @@ TEST_F(DicomFiles, ValuesAreThoseOfTheHeader) {
            Case{"shifted", ct({0xfff0, 0x50, 0, 0, 0, 0}).words(0x00280101, {12}).words(0x00280103, {1}), -1002, -990, ""},
            Case{"overlay", ct({0xf015, 0x16, 0, 0, 0, 0}).words(0x00280101, {12}).words(0x00280102, {11}), -958, -956, ""},
            Case{"padding", ct({21, 22, 63536, 0, 0, 0}).words(0x00280103, {1}).numbers<std::int16_t>(0x00280120, "SS", {-2000}), -958, NAN,
-                "1 pixels that the header calls padding"},
+                "1 pixels with the PixelPaddingValue"},
            Case{"table", dicom_image({0xffff, 1, 0, 0, 0, 0}).words(0x00280103, {1}).sequence(0x00283000, {lut}), 7, 700, ""},
            Case{"mapped",
                 dicom_image({21, 22, 0, 0, 0, 0})
@@ -159,23 +159,23 @@ TEST_F(DicomFiles, ValuesAreThoseOfTheHeader) {
       EXPECT_EQ(second.value, c.second) << c.name;
     EXPECT_TRUE(noted(c.note)) << c.name << ": " << notes_;
   }
-  // refused, or said
+  // Refused files, and files with a note.
   const std::string plain = dicom_image({1, 2, 3, 4, 5, 6}).file();
   const std::size_t syntax = plain.find(std::string("\x02\0\x10\0UI", 6));
   write("meta.dcm", std::string(plain).replace(syntax, 4, std::string("\x02\0\x12\0", 4)));
-  EXPECT_NE(error("meta.dcm").find("damaged: meta.dcm (its header states no transfer syntax)"), std::string::npos) << notes_;
+  EXPECT_NE(error("meta.dcm").find("damaged files: meta.dcm (the header has no transfer syntax)"), std::string::npos) << notes_;
   for (const auto& [name, bytes, words] :
-       {std::tuple{"short.dcm", dicom_image({1, 2, 3}).file(), "cut short"},
+       {std::tuple{"short.dcm", dicom_image({1, 2, 3}).file(), "truncated"},
         {"colours.dcm", dicom_image({1, 2, 3, 4, 5, 6, 7, 8, 9}).words(0x00280002, {3}).text(0x00280004, "CS", "RGB").file(),
-         "colours (\"RGB\")"},
+         "colour image (\"RGB\")"},
         {"mosaic.dcm", dicom_image({1, 2, 3, 4, 5, 6}).text(0x00080008, "CS", "ORIGINAL\\MOSAIC").file(), "mosaic"},
-        {"axes.dcm", dicom_image({1, 2, 3, 4, 5, 6}).decimals(kOrientation, {1, 0, 0, 1, 0, 0}).file(), "right angles"}}) {
+        {"axes.dcm", dicom_image({1, 2, 3, 4, 5, 6}).decimals(kOrientation, {1, 0, 0, 1, 0, 0}).file(), "two orthogonal unit vectors"}}) {
     write(name, bytes);
     EXPECT_NE(error(name).find(words), std::string::npos) << name << ": " << notes_;
   }
 }
 
-TEST_F(DicomFiles, EachSliceHasItsOwnRescaleAndPlace) {
+TEST_F(DicomFiles, EachSliceHasItsOwnRescalingAndPosition) {
   for (int k = 0; k < 4; ++k) {
     Dicom d = dicom_image(frames_of({100}), {0, 0.5 * k, 2.0 * k}, 9 - k).decimals(kSlope, {1.0 + k}).text(kModality, "CS", "PT");
     write(fmt::format("pet/{}", k), d.text(0x00541001, "CS", "BQML").file());
@@ -186,20 +186,20 @@ TEST_F(DicomFiles, EachSliceHasItsOwnRescaleAndPlace) {
   const auto field = open("pet");
   ASSERT_TRUE(field) << notes_;
   Cursor cursor;
-  for (int k = 0; k < 4; ++k)  // a tilted stack: slices are shifted along y
+  for (int k = 0; k < 4; ++k)  // a sheared stack: slices are shifted along y
     EXPECT_EQ(field->scalar->sample({0, -0.5 * k, 2.0 * k}, cursor).value, 100 * (1 + k));
-  EXPECT_TRUE(noted("no images are left out: 1 RTSTRUCT") && noted("damaged files are left out: cut")) << notes_;
+  EXPECT_TRUE(noted("not images were left out: 1 RTSTRUCT") && noted("damaged files were left out: cut")) << notes_;
   EXPECT_EQ(read_units(folder_ / "pet", "").value, "Bq/mL");
 }
 
-TEST_F(DicomFiles, ASeriesOfSeveralStacksIsSeveralGrids) {
+TEST_F(DicomFiles, ASeriesWithSeveralStacksIsSeveralGrids) {
   const auto slice = [](int number, double z, std::uint16_t value) { return dicom_image(frames_of({value}), {0, 0, z}, number); };
   for (int k = 0; k < 4; ++k) write(fmt::format("two/a{}", k), slice(k + 2, 2.0 * k, static_cast<std::uint16_t>(10 + k)).file());
   write("two/localizer", slice(1, 3, 77).decimals(kOrientation, {1, 0, 0, 0, 0, -1}).file());
   EXPECT_EQ(along_z("two", {0, 2, 4, 6}), (std::vector<double>{10, 11, 12, 13}));
   EXPECT_TRUE(noted("the largest of 2 volumes is shown, 1.1 \"Chest 1.2.3\" (4 images)")) << notes_;
   for (const char* grid : {"1.2", "Chest 1.2.3, coronal"}) EXPECT_EQ(along_z("two", {3}, grid), (std::vector<double>{77})) << notes_;
-  // a second acquisition, and two echoes of each
+  // Two acquisitions with two echoes each.
   for (int n = 0; n < 16; ++n) {
     Dicom d = slice(n, 2.0 * (n % 4), static_cast<std::uint16_t>(100 + n)).decimals(0x00200012, {1.0 + n / 8}, "IS");
     write(fmt::format("four/{}", n), d.decimals(0x00180081, {n / 4 % 2 == 0 ? 20.0 : 3.5}).file());
@@ -213,8 +213,8 @@ TEST_F(DicomFiles, ASeriesOfSeveralStacksIsSeveralGrids) {
   EXPECT_EQ(along_z("four", {0, 6}, "1.4"), (std::vector<double>{108, 111})) << notes_;
   EXPECT_EQ(along_z("four", {0, 6}, "Chest 1.2.3, acquisition 1, echo time 3.5 ms"), (std::vector<double>{104, 107})) << notes_;
   EXPECT_FALSE(open("four", "5"));
-  EXPECT_TRUE(noted("there is no grid \"5\", there are: 1.1 \"Chest")) << notes_;
-  // series by their own numbers
+  EXPECT_TRUE(noted("there is no grid \"5\", expected one of: 1.1 \"Chest")) << notes_;
+  // Series with explicit numbers.
   for (int k = 0; k < 3; ++k) write(fmt::format("many/a{}", k), slice(k, k, 1).decimals(0x00200011, {7}, "IS").file());
   for (int k = 0; k < 2; ++k)
     write(fmt::format("many/b{}", k), dicom_image(frames_of({2}), {0, 0, 1.0 * k}, k, "1.2.4").decimals(0x00200011, {3}, "IS").file());
@@ -223,7 +223,7 @@ TEST_F(DicomFiles, ASeriesOfSeveralStacksIsSeveralGrids) {
   EXPECT_EQ(read_units(folder_ / "many", "3").value, "HU");
 }
 
-TEST_F(DicomFiles, AcquisitionsThatLieBetweenEachOther) {
+TEST_F(DicomFiles, InterleavedAcquisitionsAreMergedOrSeparated) {
   const auto write_two = [&](const std::string& name, double offset) {
     for (int n = 0; n < 8; ++n) {
       const double z = 2.0 * (n / 2) + (n % 2) * offset;
@@ -233,14 +233,14 @@ TEST_F(DicomFiles, AcquisitionsThatLieBetweenEachOther) {
   };
   write_two("even", 1);
   EXPECT_EQ(along_z("even", {0, 1, 2, 3}), (std::vector<double>{100, 200, 101, 201})) << notes_;
-  EXPECT_TRUE(noted("of 2 acquisitions (AcquisitionNumber) that lie between each other")) << notes_;
+  EXPECT_TRUE(noted("from 2 interleaved acquisitions (AcquisitionNumber)")) << notes_;
   write_two("uneven", 0.7);
   EXPECT_EQ(along_z("uneven", {0, 2, 4, 6}, "Chest 1.2.3, acquisition 1"), (std::vector<double>{100, 101, 102, 103})) << notes_;
   EXPECT_EQ(along_z("uneven", {0.7, 2.7, 4.7}, "Chest 1.2.3, acquisition 2"), (std::vector<double>{200, 201, 202})) << notes_;
 }
 
-TEST_F(DicomFiles, NamesGoBeforeNumbersAndASharedNumberIsRefused) {
-  // series, SeriesNumber, description; all pixels of a series are its place in this list, from 1
+TEST_F(DicomFiles, NamesOverrideNumbersAndASharedNumberIsRefused) {
+  // Series, SeriesNumber and description; the pixels of a series have its index in this list, from 1.
   struct Series {
     const char *uid, *number, *words;
     int images;
@@ -269,15 +269,15 @@ TEST_F(DicomFiles, NamesGoBeforeNumbersAndASharedNumberIsRefused) {
            Case{"shared", "3.1", 2, ""},
            Case{"shared", "3.2", 3, ""},
            Case{"shared", "Lung_2", 3, ""},
-           Case{"shared", "Lung", 2, "stands for several series: 3.1 \"Lung\" (3 images), 3.2 \"Lung_2\" (2 images)"},
-           Case{"shared", "3", 0, "\"3\" is the number of several series, expected one of: 3.1 \"Lung\" (3 images), 3.2 \"Lung_2\""},
+           Case{"shared", "Lung", 2, "matches several series: 3.1 \"Lung\" (3 images), 3.2 \"Lung_2\" (2 images)"},
+           Case{"shared", "3", 0, "several series have the number \"3\", expected one of: 3.1 \"Lung\" (3 images), 3.2 \"Lung_2\""},
            Case{"shared", "1", 0, "there is no grid \"1\""},
            Case{"shared", "2", 0, "there is no grid \"2\""},
-           Case{"names", "1", 2, "\"1\" is taken for a name, and stands for several series: 1.1 \"2\" (2 images), 2.1 \"1\""},
-           Case{"names", "2", 1, "stands for several series"},
+           Case{"names", "1", 2, "\"1\" is read as a name, and matches several series: 1.1 \"2\" (2 images), 2.1 \"1\""},
+           Case{"names", "2", 1, "matches several series"},
            Case{"names", "1.1", 1, ""},
            Case{"names", "4", 4, ""},
-           Case{"names", "3", 0, "there is no grid \"3\", there are: \"Scout\" (2 images), 1.1 \"2\""},
+           Case{"names", "3", 0, "there is no grid \"3\", expected one of: \"Scout\" (2 images), 1.1 \"2\""},
            Case{"none", "2", 2, ""},
        }) {
     const auto values = along_z(c.folder, {0}, c.grid);
@@ -287,7 +287,7 @@ TEST_F(DicomFiles, NamesGoBeforeNumbersAndASharedNumberIsRefused) {
   }
 }
 
-TEST_F(DicomFiles, AStepMeetsEverySliceAndGapsStayOpen) {
+TEST_F(DicomFiles, ResamplingMatchesEverySliceAndKeepsGaps) {
   const auto stack = [&](const std::string& name, const std::vector<double>& zs) {
     std::vector<double> wanted;
     for (std::size_t k = 0; k < zs.size(); ++k) {
@@ -311,24 +311,24 @@ TEST_F(DicomFiles, AStepMeetsEverySliceAndGapsStayOpen) {
     EXPECT_TRUE(noted(words)) << notes_;
     EXPECT_FALSE(noted("differ by") || noted("no values")) << notes_;
   }
-  // no step meets them: what is lost is said, and little
+  // Irregular slices without a common step: the small difference has a note.
   const std::vector<double> irregular{0, 1, std::sqrt(6.0), std::sqrt(14.0), 5, std::sqrt(40.0)};
   const auto wanted = stack("irregular", irregular);
   const auto found = along_z("irregular", irregular);
   ASSERT_EQ(found.size(), wanted.size()) << notes_;
   for (std::size_t k = 0; k < wanted.size(); ++k) EXPECT_NEAR(found[k], wanted[k], 0.01 * 905) << k << ": " << notes_;
-  EXPECT_TRUE(noted("at the file's own slices they differ by up to 0.")) << notes_;
-  // between two acquisitions there is nothing
+  EXPECT_TRUE(noted("at the original slices the values differ by up to 0.")) << notes_;
+  // Between two separate stacks there is no value.
   const std::vector<double> two{0, 2.5, 5, 52.5, 55, 57.5};
   const auto ends = stack("two", two);
   auto just_inside = two;
-  just_inside[2] -= 1e-9;  // on the face itself the cell of the gap begins
+  just_inside[2] -= 1e-9;  // on the face itself, the cell of the gap begins
   EXPECT_EQ(along_z("two", just_inside), ends) << notes_;
   EXPECT_TRUE(noted("a gap of 47.5 mm has no values")) << notes_;
   for (const double outside : along_z("two", {6, 30, 52})) EXPECT_TRUE(std::isnan(outside)) << outside;
 }
 
-TEST_F(DicomFiles, AStackThatIsNoneIsRefused) {
+TEST_F(DicomFiles, InconsistentStacksAreRefused) {
   const auto write_all = [&](const std::string& name, const std::function<void(int, Dicom&)>& change) {
     for (int k = 0; k < 5; ++k) {
       Dicom d = dicom_image(frames_of({static_cast<std::uint16_t>(k)}), {0, 0, 2.0 * k}, k);
@@ -349,9 +349,9 @@ TEST_F(DicomFiles, AStackThatIsNoneIsRefused) {
                 [](int k, Dicom&d) {
                   if (k == 2) d.words(0x00280010, {1}).words(0x00280011, {6});
                 }},
-           Case{"spacing", "state no PixelSpacing", [](int, Dicom&d) { d.without(kPixelSpacing); }},
+           Case{"spacing", "have no PixelSpacing", [](int, Dicom&d) { d.without(kPixelSpacing); }},
            Case{"places", "have no ImagePositionPatient", [](int, Dicom&d) { d.without(kPosition); }},
-           Case{"shifted", "shifted against each other",
+           Case{"shifted", "shifted sideways",
                 [](int k, Dicom&d) {
                   d.decimals(kPosition, {k % 2 * 3.0, 0, 2.0 * k});
                 }},
@@ -363,7 +363,7 @@ TEST_F(DicomFiles, AStackThatIsNoneIsRefused) {
     if (k > 2) d.decimals(kPosition, {0, 0, 2.0 * k + 2});
   });
   EXPECT_EQ(along_z("gap", {0, 4, 8, 10}), (std::vector<double>{0, 2, 3, 4})) << notes_;
-  EXPECT_TRUE(noted("slices lie 2 to 4 mm apart: 5 were brought to 6")) << notes_;
+  EXPECT_TRUE(noted("slices are 2 to 4 mm apart: 5 slices were resampled to 6")) << notes_;
 }
 
 }  // namespace dicom_test

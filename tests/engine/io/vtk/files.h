@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Small files of other programs' formats as text, for the tests of their readers.
+/// Small files in formats of other programs, for the tests of readers.
 #pragma once
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ inline std::string array(const std::string& name, const std::string& values, int
                      components, values);
 }
 
-/// 4 x 4 x 3 points, spacing 0.5 1 2, origin 10 20 30; values by index.
+/// An image of 4 x 4 x 3 points with spacing 0.5 1 2, origin 10 20 30, and values by position.
 inline std::string vti(const std::string& direction, const Scalar& f) {
   std::string values;
   for (int k = 0; k < 3; ++k)
@@ -39,7 +39,7 @@ inline std::string vti(const std::string& direction, const Scalar& f) {
       direction, array("v", values));
 }
 
-/// 3 x 3 x 2 cells of 1 x 2 x 3; values by number.
+/// An image of 3 x 3 x 2 cells of size 1 x 2 x 3, with values by number.
 inline std::string vti_cells() {
   std::string values;
   for (int n = 0; n < 18; ++n) values += fmt::format("{} ", n);
@@ -48,7 +48,7 @@ inline std::string vti_cells() {
          array("id", values, 1, "Int32") + "</CellData></Piece></ImageData></VTKFile>\n";
 }
 
-/// 4 x 2 x 2 points; those at x = 0 are hidden.
+/// An image of 4 x 2 x 2 points; those at x = 0 are hidden.
 inline std::string vti_hidden() {
   std::string values, ghosts;
   for (int n = 0; n < 16; ++n) values += fmt::format("{} ", n), ghosts += n % 4 == 0 ? "2 " : "0 ";
@@ -57,7 +57,7 @@ inline std::string vti_hidden() {
          array("v", values) + array("vtkGhostType", ghosts, 1, "UInt8") + "</PointData></Piece></ImageData></VTKFile>\n";
 }
 
-/// wind = (x, -y, 2), heat = x on 2 x 2 x 2 points.
+/// An image of 2 x 2 x 2 points with wind = (x, -y, 2) and heat = x.
 inline std::string legacy_vectors() {
   std::string text =
       "# vtk DataFile Version 3.0\nwind\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA "
@@ -67,7 +67,7 @@ inline std::string legacy_vectors() {
   return text;
 }
 
-/// Half a ring, radius 0.5 to 1.5, z from 0 to 1.
+/// A structured grid of half a ring: radius 0.5 to 1.5, z from 0 to 1.
 inline std::string vts_ring(int nr, int na, int nz, const Scalar& f) {
   std::string points, values;
   for (int k = 0; k < nz; ++k)
@@ -94,7 +94,7 @@ inline std::string make_vtu(int count, const std::string& points, const std::str
       array("connectivity", ids, 1, "Int64"), array("offsets", ends, 1, "Int64"), array("types", types, 1, "UInt8"));
 }
 
-/// A unit cube as a hexahedron, and a tetrahedron on its face x = 1. "v" at points, "c" in cells.
+/// A unit cube as a hexahedron, and a tetrahedron on its face x = 1; "v" at points, "c" in cells.
 inline std::string vtu_mixed(const Scalar& f) {
   const std::vector<Vec3> p{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {2, 0, 0}};
   std::string points, values;
@@ -106,7 +106,7 @@ inline std::string vtu_mixed(const Scalar& f) {
          array("types", "12 10", 1, "UInt8") + "</Cells></Piece></UnstructuredGrid></VTKFile>\n";
 }
 
-/// A unit cube as one hexahedron of second order (20 points).
+/// A unit cube as one quadratic hexahedron of 20 points.
 inline std::string vtu_quadratic(const Scalar& f) {
   const std::vector<Vec3> p{{0, 0, 0},  {1, 0, 0},  {1, 1, 0},  {0, 1, 0},  {0, 0, 1},  {1, 0, 1},  {1, 1, 1},
                             {0, 1, 1},  {.5, 0, 0}, {1, .5, 0}, {.5, 1, 0}, {0, .5, 0}, {.5, 0, 1}, {1, .5, 1},
@@ -120,7 +120,7 @@ inline std::string vtu_quadratic(const Scalar& f) {
   return make_vtu(20, points, values, ids, "20", "25");
 }
 
-/// Of `shape` [z, y, x].
+/// A NumPy array with the shape [z, y, x].
 inline std::string npy(const std::vector<int>& shape, const std::string& type, bool fortran,
                        const std::function<double(int, int, int)>& f) {
   std::string head =
@@ -163,14 +163,14 @@ inline std::string bytes_0_to(int n) {
   return bytes;
 }
 
-/// 2 x 2 x 2 bytes 0 .. 7, steps 2 3 4, origin 10 20 30.
+/// An image of 2 x 2 x 2 bytes 0 .. 7 with spacing 2 3 4 and origin 10 20 30.
 inline std::string nrrd(const std::string& space) {
   return "NRRD0004\ntype: uchar\ndimension: 3\nspace: " + space +
          "\nsizes: 2 2 2\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nkinds: domain domain domain\nencoding: raw\nspace origin: "
          "(10,20,30)\n\n" +
          bytes_0_to(8);
 }
-/// Vectors (1, 2, 3) of floats.
+/// An image of float vectors (1, 2, 3).
 inline std::string nrrd_vectors(const std::string& space, const std::string& more = {}) {
   std::string numbers;
   for (int i = 0; i < 8; ++i)
@@ -190,16 +190,16 @@ inline std::string mhd(const std::string& data) {
   return "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_FLOAT\nElementDataFile = " + data + "\n";
 }
 
-/// A tetrahedron with corners 0, x, y, z at 1, 2, 3.
+/// A tetrahedron with vertices at 0 and at 1, 2, 3 on the axes.
 inline std::string ply() {
   return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\nproperty list "
          "uchar int "
          "vertex_indices\nend_header\n0 0 0\n1 0 0\n0 2 0\n0 0 3\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
 }
-/// A box of 12 triangles with edges of 0.25 at (615850.125, 5846925.0625, 758.03), in doubles. `said`: the format in the header.
-inline std::string ply_doubles(const std::string& format, const std::string& said) {
+/// A box of 12 triangles with edges of 0.25 at (615850.125, 5846925.0625, 758.03), in doubles. `declared` is the format in the header.
+inline std::string ply_doubles(const std::string& format, const std::string& declared) {
   std::string bytes =
-      "ply\nformat " + said +
+      "ply\nformat " + declared +
       " 1.0\nelement vertex 8\nproperty double x\nproperty double y\nproperty double z\nelement face 12\nproperty list uchar int "
       "vertex_indices\nend_header\n";
   const auto put = [&](auto v, const char* end) {
@@ -241,7 +241,7 @@ inline std::string vtp() {
          array("offsets", "3 6 9 12", 1, "Int64") + "</Polys></Piece></PolyData></VTKFile>\n";
 }
 
-/// Two polylines of 3 and 2 points, "s" at each point.
+/// Two polylines of 3 and 2 points, with "s" at each point.
 inline std::string vtp_lines() {
   return "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\"><PolyData><Piece NumberOfPoints=\"5\" "
          "NumberOfLines=\"2\"><PointData Scalars=\"s\">" +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// OpenFOAM cases, written here: by folder and by name, whole and decomposed, ascii and binary, in several regions.
+/// OpenFOAM cases: opened by folder and by file name, whole and decomposed, ASCII and binary, and with several regions.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -26,7 +26,7 @@ void write(const std::string& path, const std::string& text) {
   test::write_file(path, text);
 }
 
-/// A row of cubes from x = first on.
+/// Writes a mesh: a row of cubes from x = first.
 void write_mesh(const std::string& folder, int first, int cells) {
   std::string points, faces, owner, neighbour;
   int count = 0;
@@ -54,7 +54,7 @@ void write_mesh(const std::string& folder, int first, int cells) {
             fmt::format("1\n(\nwalls\n{{\n type wall;\n nFaces {};\n startFace {};\n}}\n)\n", count - cells + 1, cells - 1));
 }
 
-/// 100 times the time, and the number of the cube.
+/// Writes the values 100 times the time plus the number of the cube.
 void write_values(const std::string& folder, const std::string& time, int first, int cells, bool binary) {
   std::string values;
   for (int i = 0; i < cells; ++i) {
@@ -98,7 +98,7 @@ double value_at(const Result<AnyField>& field, double x) {
   return sample.value;
 }
 
-TEST(OpenFoam, ACaseIsItsFolderWholeOrInPieces) {
+TEST(OpenFoam, ReadsWholeAndDecomposedCases) {
   for (const bool binary : {false, true}) {
     const test::TemporaryFolder folder;
     write_part(folder / "whole", "", 0, 8, binary);
@@ -124,7 +124,7 @@ TEST(OpenFoam, ACaseIsItsFolderWholeOrInPieces) {
   }
 }
 
-TEST(OpenFoam, TimesWithoutFieldsAreNoStepsAndFieldsMayComeLater) {
+TEST(OpenFoam, TimesWithoutFieldsAreNoSteps) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "case";
   write_part(path, "", 0, 4, false);
@@ -142,19 +142,19 @@ TEST(OpenFoam, TimesWithoutFieldsAreNoStepsAndFieldsMayComeLater) {
   const auto missing = at_step(path, 0);
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().message.find("at step 0 (time 0.5) there is no grid \"T\""), std::string::npos) << missing.error().message;
-  EXPECT_NE(missing.error().message.find("step 2 (time 10) has it"), std::string::npos) << missing.error().message;
+  EXPECT_NE(missing.error().message.find("step 2 (time 10) has this grid"), std::string::npos) << missing.error().message;
   const auto first = describe_grids(path), later = describe_grids(path, 1);
   ASSERT_TRUE(first && later);
   EXPECT_EQ(first->front().name, "p");
   EXPECT_EQ(later->front().name, "T");
-  // a scene of a step that is asked for
+  // A scene of a requested step.
   const auto scene = scene::scene_for_file(path, "T", {}, 2);
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->time.step, 2);
   EXPECT_EQ(scene::format_time(*scene), "10");
 }
 
-TEST(OpenFoam, AllRegionsAreOneField) {
+TEST(OpenFoam, AllRegionsMakeOneField) {
   const test::TemporaryFolder folder;
   write_part(folder / "case", "/fluid", 0, 3, false);
   write_part(folder / "case", "/solid", 3, 5, false);
@@ -164,7 +164,7 @@ TEST(OpenFoam, AllRegionsAreOneField) {
   EXPECT_NEAR(value_at(field, 6.5), 106, 0.05);
 }
 
-TEST(OpenFoam, WhatIsNoCaseIsSaid) {
+TEST(OpenFoam, InvalidCasesAreRefused) {
   const test::TemporaryFolder folder;
   write_control(folder / "no_mesh");
   write_mesh(folder / "no_control/constant", 0, 2);
@@ -174,7 +174,7 @@ TEST(OpenFoam, WhatIsNoCaseIsSaid) {
   const std::pair<const char*, const char*> kCases[] = {{"no_mesh", "without a mesh"},
                                                         {"no_control", "without system/controlDict"},
                                                         {"collated", "reconstructPar"},
-                                                        {"empty", "holds no DICOM images, and is no OpenFOAM case"}};
+                                                        {"empty", "contains neither DICOM images nor an OpenFOAM case"}};
   for (const auto& [name, words] : kCases) {
     const auto field = at_step(folder / name, 0);
     ASSERT_FALSE(field) << name;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Files of other programs, written here byte by byte as their formats say, against the numbers and places that went in.
+/// Files of other formats, written byte by byte, against the values and positions that were written.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ bool has_note(const AnyField& field, const std::string& words) {
   return false;
 }
 
-/// v = 1 + 2 x + 3 y + 5 z, which trilinear interpolation repeats.
+/// v = 1 + 2 x + 3 y + 5 z, which trilinear interpolation reproduces.
 double linear(const Vec3& p) { return 1 + 2 * p.x + 3 * p.y + 5 * p.z; }
 
 class ForeignFormats : public testing::Test {
@@ -70,8 +70,8 @@ class ForeignFormats : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(ForeignFormats, AnImageOfVtkLiesAsItsAxesSay) {
-  // a quarter turn about z: index x runs along world y
+TEST_F(ForeignFormats, AVtkImageFollowsItsDirectionMatrix) {
+  // A quarter turn about z: index x runs along world y.
   const AnyField field = read(file("turned.vti", files::vti("0 -1 0 1 0 0 0 0 1", linear)));
   const Mapping& m = field.get()->mapping();
   EXPECT_EQ(m.world_from_index(Vec3(0.0)), Vec3(10, 20, 30));
@@ -80,23 +80,23 @@ TEST_F(ForeignFormats, AnImageOfVtkLiesAsItsAxesSay) {
   EXPECT_NEAR(value_at(field, m.world_from_index(Vec3(1.25, 2.5, 0.75))), linear({1.25, 2.5, 0.75}), 1e-5);
 }
 
-TEST_F(ForeignFormats, ValuesOfCellsSitInTheirMiddles) {
+TEST_F(ForeignFormats, CellValuesAreAtCellCenters) {
   const AnyField field = read(file("cells.vti", files::vti_cells()));
   EXPECT_EQ(field.get()->mapping().origin, Vec3(0.5, 1, 1.5));
-  EXPECT_TRUE(has_note(field, "belongs to cells"));
+  EXPECT_TRUE(has_note(field, "has cell values"));
   EXPECT_DOUBLE_EQ(value_at(field, {0.5, 1, 1.5}), 0);
   EXPECT_DOUBLE_EQ(value_at(field, {1.5, 1, 1.5}), 1);
   EXPECT_DOUBLE_EQ(value_at(field, {0.5, 3, 1.5}), 3);
 }
 
-TEST_F(ForeignFormats, HiddenPointsAreNoData) {
+TEST_F(ForeignFormats, HiddenPointsAreInvalid) {
   const AnyField field = read(file("ghost.vti", files::vti_hidden()));
   Cursor cursor;
   EXPECT_TRUE(field.scalar->sample({2.5, 0.5, 0.5}, cursor).inside);
   EXPECT_FALSE(field.scalar->sample({0.5, 0.5, 0.5}, cursor).inside);
 }
 
-TEST_F(ForeignFormats, ALegacyFileHoldsVectorsAndUnits) {
+TEST_F(ForeignFormats, ReadsVectorsAndUnitsOfALegacyFile) {
   const AnyField field = read(file("old.vtk", files::legacy_vectors()), "wind");
   Cursor cursor;
   const VectorSample sample = field.vector->sample({0.5, 0.5, 0.5}, cursor);
@@ -106,10 +106,10 @@ TEST_F(ForeignFormats, ALegacyFileHoldsVectorsAndUnits) {
 }
 
 TEST_F(ForeignFormats, ACurvilinearGridIsResampledWithinOnePercent) {
-  // half a ring; a field that no lattice repeats
+  // Half a ring, with a field that no lattice reproduces.
   const auto wave = [](const Vec3& p) { return std::sin(3 * p.x) * std::cos(2 * p.y) + p.z; };
   const AnyField field = read(file("ring.vts", files::vts_ring(24, 60, 10, wave)));
-  EXPECT_TRUE(has_note(field, "cells resampled to"));
+  EXPECT_TRUE(has_note(field, "cells were resampled to"));
   test::Random random{7};
   Cursor cursor;
   std::vector<double> errors;
@@ -128,21 +128,21 @@ TEST_F(ForeignFormats, ACurvilinearGridIsResampledWithinOnePercent) {
   std::sort(errors.begin(), errors.end());
   const double range = 3;  // sin cos from -1 to 1, z from 0 to 1
   EXPECT_LT(errors[errors.size() * 99 / 100], 0.012 * range);
-  // beyond a voxel of the ring there is nothing
+  // More than a voxel outside the ring there is no value.
   EXPECT_FALSE(field.scalar->sample({0, 0, 0.5}, cursor).inside);
   EXPECT_FALSE(field.scalar->sample({0, -0.3, 0.5}, cursor).inside);
 }
 
-TEST_F(ForeignFormats, UnstructuredCellsRepeatALinearField) {
+TEST_F(ForeignFormats, UnstructuredCellsReproduceALinearField) {
   const AnyField field = read(file("mixed.vtu", files::vtu_mixed(linear)), "v");
-  // in the hexahedron, in the tetrahedron on its side
+  // In the hexahedron, and in the tetrahedron on its side.
   EXPECT_NEAR(value_at(field, {0.3, 0.6, 0.2}), linear({0.3, 0.6, 0.2}), 2e-4);
   EXPECT_NEAR(value_at(field, {1.2, 0.3, 0.3}), linear({1.2, 0.3, 0.3}), 2e-4);
   const AnyField cells = read(folder_ / "mixed.vtu", "c");
   EXPECT_TRUE(has_note(cells, "averaged at the points"));
 }
 
-TEST_F(ForeignFormats, OfAMeshPointsAndCellsAreCountedAndOfAnImageVoxels) {
+TEST_F(ForeignFormats, MeshesCountPointsAndCellsAndImagesCountVoxels) {
   const auto mixed = describe_grids(file("mixed.vtu", files::vtu_mixed(linear)));
   ASSERT_TRUE(mixed) << mixed.error().message;
   ASSERT_EQ(mixed->size(), 2u);
@@ -156,7 +156,7 @@ TEST_F(ForeignFormats, OfAMeshPointsAndCellsAreCountedAndOfAnImageVoxels) {
   EXPECT_EQ(image->at(0).element_kind, ElementKind::voxels);
 }
 
-TEST_F(ForeignFormats, EveryPlaceOfACellOfSecondOrderHasItsValue) {
+TEST_F(ForeignFormats, QuadraticCellsHaveTheirValuesEverywhere) {
   const auto square = [](const Vec3& p) { return p.x * p.x + 0.5 * p.y * p.y - p.z; };
   const AnyField field = read(file("q.vtu", files::vtu_quadratic(square)));
   test::Random random{3};
@@ -167,8 +167,8 @@ TEST_F(ForeignFormats, EveryPlaceOfACellOfSecondOrderHasItsValue) {
   }
 }
 
-TEST_F(ForeignFormats, ValuesThatJumpBetweenCellsDoNotTakeAllVoxels) {
-  // hexahedra in a row that share faces, but not their points: 0 and 1 in turn
+TEST_F(ForeignFormats, DiscontinuousCellsDoNotExhaustTheVoxelLimit) {
+  // Hexahedra in a row that share faces but not points, with alternating values 0 and 1.
   constexpr int kCells = 60;
   std::string points, values, corners, offsets, types;
   for (int cell = 0; cell < kCells; ++cell) {
@@ -182,11 +182,11 @@ TEST_F(ForeignFormats, ValuesThatJumpBetweenCellsDoNotTakeAllVoxels) {
     types += "12 ";
   }
   const AnyField field = read(file("jump.vtu", files::make_vtu(8 * kCells, points, values, corners, offsets, types)));
-  EXPECT_TRUE(has_note(field, "finer voxels hardly help")) << field.notes.front();
+  EXPECT_TRUE(has_note(field, "finer voxels do not reduce the error")) << field.notes.front();
   EXPECT_LT(field.scalar->grid()->stats().active_voxels, 2'000'000u);
 }
 
-TEST_F(ForeignFormats, VectorsTurnWithTheirAxes) {
+TEST_F(ForeignFormats, VectorsAreReorientedWithTheAxes) {
   Cursor cursor;
   const auto vector = [&](const std::string& name, const std::string& bytes) {
     const AnyField field = read(file(name, bytes));
@@ -195,15 +195,15 @@ TEST_F(ForeignFormats, VectorsTurnWithTheirAxes) {
   EXPECT_EQ(vector("lps.nrrd", files::nrrd_vectors("left-posterior-superior")), Vec3(-1, -2, 3));
   EXPECT_EQ(vector("ras.nrrd", files::nrrd_vectors("right-anterior-superior")), Vec3(1, 2, 3));
   EXPECT_EQ(vector("las.nrrd", files::nrrd_vectors("left-anterior-superior")), Vec3(-1, 2, 3));
-  // columns of the frame: what x, y and z of the numbers mean
+  // The columns of the measurement frame are the directions of the components.
   EXPECT_EQ(vector("frame.nrrd", files::nrrd_vectors("right-anterior-superior", "measurement frame: (0,1,0) (0,0,1) (1,0,0)\n")),
             Vec3(3, 1, 2));
   const AnyField las = read(folder_ / "las.nrrd");
   EXPECT_NEAR(norm(las.get()->mapping().world_from_index(Vec3(1, 1, 1)) - Vec3(-12, 23, 34)), 0, 1e-12);
 }
 
-TEST_F(ForeignFormats, OnlyDirectionsTurnWithAnNrrdsSpace) {
-  // the numbers of each voxel are (1, 2, 3); `kinds` in the space left-posterior-superior, with a measurement frame
+TEST_F(ForeignFormats, OnlyDirectionsAreReorientedWithAnNrrdsSpace) {
+  // The components of each voxel are (1, 2, 3), with a `kind` in the space left-posterior-superior and a measurement frame.
   const auto with_kind = [&](const std::string& kind, int components = 3, const std::string& more = {}) {
     std::string bytes = files::nrrd_vectors("left-posterior-superior", more);
     bytes.replace(bytes.find("kinds: vector"), 13, "kinds: " + kind);
@@ -219,13 +219,13 @@ TEST_F(ForeignFormats, OnlyDirectionsTurnWithAnNrrdsSpace) {
   for (const char* kind : {"RGB-color", "rgb-color", "list", "XYZ-color", "HSV-color", "3-color"}) {
     const AnyField field = read(file("a.nrrd", with_kind(kind, 3, "measurement frame: (0,1,0) (0,0,1) (1,0,0)\n")));
     EXPECT_EQ(vector(field), Vec3(1, 2, 3)) << kind;
-    EXPECT_TRUE(has_note(field, "are no directions (")) << kind;
+    EXPECT_TRUE(has_note(field, "are not a direction (")) << kind;
   }
-  // two components: of a plane's vectors x and y turn, of complex numbers nothing does
+  // Two components: x and y of planar vectors are reoriented, complex numbers are not.
   EXPECT_EQ(vector(read(file("a.nrrd", with_kind("2-vector", 2)))).z, 0);
   EXPECT_LT(vector(read(folder_ / "a.nrrd")).x, 0);
   EXPECT_GT(vector(read(file("a.nrrd", with_kind("complex", 2)))).x, 0);
-  // what is no scalar and no vector is left out by its name
+  // Arrays that are neither scalars nor vectors are left out by kind.
   for (const auto& [kind, n] : {std::pair{"3D-symmetric-matrix", 6},
                                 {"3D-masked-symmetric-matrix", 7},
                                 {"3D-matrix", 9},
@@ -237,19 +237,19 @@ TEST_F(ForeignFormats, OnlyDirectionsTurnWithAnNrrdsSpace) {
     for (const auto& message : {error_of(folder_ / "t.nrrd"),
                                 describe_grids(folder_ / "t.nrrd") ? "described" : describe_grids(folder_ / "t.nrrd").error().message}) {
       EXPECT_NE(message.find(fmt::format("t ({}, ", kind)), std::string::npos) << message;
-      EXPECT_NE(message.find("is left out"), std::string::npos) << message;
+      EXPECT_NE(message.find("cannot be read"), std::string::npos) << message;
     }
   }
-  EXPECT_NE(error_of(file("t.nrrd", with_kind("???"))).find("axis 1 has no direction"), std::string::npos);
-  // MetaImage: three unsigned bytes are colours
+  EXPECT_NE(error_of(file("t.nrrd", with_kind("???"))).find("axis 1 has neither a direction"), std::string::npos);
+  // MetaImage: three unsigned bytes are colors.
   std::string rgb = files::mha("RAI");
   rgb.replace(rgb.find("ElementType"), 11, "ElementNumberOfChannels = 3\nElementType");
   const AnyField colours = read(file("c.mha", rgb + std::string(16, '\5')));
   EXPECT_GT(vector(colours).x, 0);
-  EXPECT_TRUE(has_note(colours, "are no directions"));
+  EXPECT_TRUE(has_note(colours, "are not a direction"));
 }
 
-TEST_F(ForeignFormats, AnNrrdsSpaceDoesNotDependOnWhatItkMakesOfIt) {
+TEST_F(ForeignFormats, AnNrrdsSpaceDoesNotDependOnTheVersionOfItk) {
   const auto look = [&](const std::string& space) {
     const std::string bytes = files::nrrd_vectors(space, "measurement frame: (0,1,0) (0,0,1) (1,0,0)\n");
     const AnyField field = read(file("a.nrrd", bytes));
@@ -273,8 +273,8 @@ TEST_F(ForeignFormats, AnNrrdsSpaceDoesNotDependOnWhatItkMakesOfIt) {
   }
 }
 
-TEST_F(ForeignFormats, NumbersInTheOtherByteOrderAreHintedAt) {
-  // legacy .vtk in binary must be big-endian; here it is little-endian
+TEST_F(ForeignFormats, ASuspectedWrongByteOrderHasANote) {
+  // A binary legacy .vtk must be big-endian; this one is little-endian.
   const auto image = [&](const std::string& type, auto number) {
     std::string bytes =
         "# vtk DataFile Version 3.0\nx\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4 4 4\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA "
@@ -286,11 +286,11 @@ TEST_F(ForeignFormats, NumbersInTheOtherByteOrderAreHintedAt) {
     }
     return bytes;
   };
-  const std::string hint = "bytes were in the other order: a legacy .vtk in BINARY must be big-endian";
+  const std::string hint = "bytes were in the other order: a BINARY legacy .vtk must be big-endian";
   EXPECT_TRUE(has_note(read(file("a.vtk", image("float", [](int i) { return static_cast<float>(i); }))), hint));
   EXPECT_TRUE(has_note(read(file("a.vtk", image("double", [](int i) { return 0.37 * i; }))), hint));
   EXPECT_TRUE(has_note(read(file("a.vtk", image("short", [](int i) { return static_cast<short>(i * 17); }))), hint));
-  // small numbers: multiples of 256 and more
+  // Small integers become multiples of 256 in the wrong byte order.
   const std::string in_order = image("short", [](int i) { return static_cast<short>(256 * (10 + i / 3)); });
   EXPECT_TRUE(has_note(read(file("a.vtk", image("short", [](int i) { return static_cast<short>(10 + i / 3); }))), hint));
   EXPECT_TRUE(has_note(read(file("a.vtk", image("unsigned_short", [](int i) { return static_cast<unsigned short>(i % 4); }))), hint));
@@ -306,13 +306,13 @@ TEST_F(ForeignFormats, NumbersInTheOtherByteOrderAreHintedAt) {
   const auto mesh = mesh::load_mesh(file("m.ply", files::ply_doubles("binary_big_endian", "binary_little_endian")));
   ASSERT_FALSE(mesh);
   EXPECT_NE(mesh.error().message.find("bytes were in the other order: see \"format\""), std::string::npos) << mesh.error().message;
-  // any format: sizes that nobody means
+  // Implausible values of any format.
   LoadRequest raw;
   raw.path = file("a.raw", std::string(32, '\1'));
   raw.raw = RawLayout{{2, 2, 2}, Vec3(1.0), Vec3(0.0), "float32"};
   const auto absurd = load(raw);
   ASSERT_TRUE(absurd) << absurd.error().message;
-  EXPECT_TRUE(has_note(*absurd, "the order of the bytes"));
+  EXPECT_TRUE(has_note(*absurd, "the byte order"));
 }
 
 TEST_F(ForeignFormats, APlyKeepsDoublesFarFromTheOrigin) {
@@ -324,7 +324,7 @@ TEST_F(ForeignFormats, APlyKeepsDoublesFarFromTheOrigin) {
     EXPECT_EQ((*mesh)->dropped_triangles() + (*mesh)->open_edges(), 0u) << format;
     EXPECT_EQ((*mesh)->min_corner(), Vec3(615850.125, 5846925.0625, 758.03)) << format;
   }
-  // a short count of integers, properties and elements that are passed over, strips
+  // A list with a short count, properties and elements that are skipped, and triangle strips.
   const std::string text =
       "ply\r\nformat ascii 1.0\r\ncomment x\r\nelement vertex 4\r\nproperty list uchar int junk\r\nproperty short z\r\nproperty int "
       "y\r\nproperty uchar "
@@ -335,26 +335,26 @@ TEST_F(ForeignFormats, APlyKeepsDoublesFarFromTheOrigin) {
   ASSERT_TRUE(strips) << strips.error().message;
   EXPECT_EQ((*strips)->triangles().size(), 2u);
   EXPECT_EQ((*strips)->min_corner(), Vec3(0, 0, -3));
-  for (const auto& [from, to, wanted] : {std::tuple{"vertex 4", "vertex 400000000", "more than its"},
-                                         {"8 0 1", "8 0 9", "names vertex 9"},
+  for (const auto& [from, to, wanted] : {std::tuple{"vertex 4", "vertex 400000000", "more than the"},
+                                         {"8 0 1", "8 0 9", "refers to vertex 9"},
                                          {"property short z", "property short w", "without x, y and z"},
-                                         {"list uchar int", "list text int", "unknown form"}}) {
+                                         {"list uchar int", "list text int", "invalid property"}}) {
     std::string bad = text + "2 7 7 0 0 0 1\r\n0 0 0 1 1\r\n0 0 1 0 1\r\n1 5 -3 1 1 1\r\n0.5\r\n8 0 1 2 -1 2 1 3 -1\r\n";
     bad.replace(bad.find(from), std::string(from).size(), to);
     const auto refused = mesh::load_mesh(file("bad.ply", bad));
     ASSERT_FALSE(refused) << wanted;
     EXPECT_NE(refused.error().message.find(wanted), std::string::npos) << refused.error().message;
   }
-  // lines are kept in single precision: what that rounds is said
+  // Lines are stored in single precision: rounding has a note.
   std::string far = files::vtp_lines();
   const std::string near = "0 0 0 1 0 0 1 1 0 5 5 5 5 5 6";
   far.replace(far.find(near), near.size(), "6e5 5846925.06 0 600001 5846926 0 600002 5846926 0 6e5 5846925 5 6e5 5846925 6");
   const auto lines = curves::load_curves(file("far.vtp", far));
   ASSERT_TRUE(lines) << lines.error().message;
-  EXPECT_NE((*lines)->note.find("far from the origin, and are rounded by up to 0.06"), std::string::npos) << (*lines)->note;
+  EXPECT_NE((*lines)->note.find("far from the origin and were rounded by up to 0.06"), std::string::npos) << (*lines)->note;
 }
 
-TEST_F(ForeignFormats, OfFilesThatAreNotReadItIsSaidHowToConvertThem) {
+TEST_F(ForeignFormats, UnsupportedFormatsNameAConversion) {
   std::filesystem::create_directories(folder_ / "a.ome.zarr/0");
   for (const auto& [name, word] : {std::pair{"a.TIF", "Fiji"},
                                    {"a.ome.tif", "OME-TIFF"},
@@ -372,8 +372,8 @@ TEST_F(ForeignFormats, OfFilesThatAreNotReadItIsSaidHowToConvertThem) {
   }
 }
 
-TEST_F(ForeignFormats, NumPyArraysAreIndexedZyx) {
-  // a[k, j, i] = 100 k + 10 j + i
+TEST_F(ForeignFormats, NumpyArraysAreIndexedZyx) {
+  // a[k, j, i] = 100 k + 10 j + i.
   for (const bool fortran : {false, true})
     for (const char* type : {"<f8", ">f4", "<i2"}) {
       const AnyField field =
@@ -391,8 +391,8 @@ TEST_F(ForeignFormats, NumPyArraysAreIndexedZyx) {
   EXPECT_DOUBLE_EQ(value_at(*field, {7.5, 2, 6}), 123);
 }
 
-TEST_F(ForeignFormats, NrrdAndMetaImageAreTurnedIntoAPatientsAxes) {
-  // left, posterior, superior: x and y change their signs
+TEST_F(ForeignFormats, NrrdAndMetaImageAreReorientedToPatientAxes) {
+  // Left, posterior, superior: x and y change their signs.
   const AnyField nrrd = read(file("head.nrrd", files::nrrd("left-posterior-superior")));
   EXPECT_NEAR(norm(nrrd.get()->mapping().world_from_index(Vec3(1, 1, 1)) - Vec3(-(10 + 2), -(20 + 3), 30 + 4)), 0, 1e-12);
   EXPECT_TRUE(read_units(folder_ / "head.nrrd", "head").is_patient_space);
@@ -410,7 +410,7 @@ TEST_F(ForeignFormats, NrrdAndMetaImageAreTurnedIntoAPatientsAxes) {
 }
 
 TEST_F(ForeignFormats, ADicomFolderIsOneVolumeInHounsfieldUnits) {
-  // out of order, and with a gap twice as wide at the end: x to the left and y to the back in the file
+  // Slices in arbitrary order, with a double gap at the end; in the file, x runs to the left and y to the back.
   const std::string series = folder_ / "series";
   std::filesystem::create_directory(series);
   const auto slice = [&](const char* name, int number, double z, int base) {
@@ -426,26 +426,26 @@ TEST_F(ForeignFormats, ADicomFolderIsOneVolumeInHounsfieldUnits) {
   EXPECT_NEAR(value_at(field, {-10, -20, 30}), 2 * 500 - 1000, 1e-3);
   EXPECT_NEAR(value_at(field, {-10.25, -20.5, 32}), 2 * 604 - 1000, 1e-3);
   EXPECT_NEAR(value_at(field, {-10, -20, 34}), 2 * 700 - 1000, 1e-3);
-  EXPECT_TRUE(has_note(field, "slices lie 2 to 4 mm apart"));
+  EXPECT_TRUE(has_note(field, "slices are 2 to 4 mm apart"));
   const Units units = read_units(series, "Chest 1.2.3");
   EXPECT_EQ(units.value, "HU");
   EXPECT_TRUE(units.is_patient_space);
-  // one of its files says so; one without a series beside it does not
+  // One file of a series has a note; a file without other files of its series has none.
   std::filesystem::copy_file(series + "/a", folder_ / "alone.dcm");
-  EXPECT_FALSE(has_note(read(folder_ / "alone.dcm"), "the folder opens"));
+  EXPECT_FALSE(has_note(read(folder_ / "alone.dcm"), "open the folder"));
   std::filesystem::rename(series + "/a", series + "/a.dcm");
-  EXPECT_TRUE(has_note(read(series + "/a.dcm"), "the folder opens as a volume (catena render " + series + ")"));
-  // the others may be read with it: no output replaces them
+  EXPECT_TRUE(has_note(read(series + "/a.dcm"), "open the folder to get the volume (catena render " + series + ")"));
+  // The other files may be read too: no output may replace them.
   const std::vector<FileId> parts = find_data_files(series + "/a.dcm");
   EXPECT_NE(std::find(parts.begin(), parts.end(), *find_file_id(series + "/b")), parts.end());
-  // a second series beside it
+  // A second series in the folder.
   test::write_file(series + "/d", files::dicom(1, {0, 0, 0}, {1, 2, 3, 4, 5, 6}, "1.2.7"));
   test::write_file(series + "/e", files::dicom(2, {0, 0, 1}, {1, 2, 3, 4, 5, 6}, "1.2.7"));
   EXPECT_TRUE(has_note(read(series), "the largest of 2 volumes is shown, 1 \"Chest 1.2.3\" (3 images)"));
-  EXPECT_NE(error_of(series, "Head").find("there is no grid \"Head\", there are: 1 \"Chest 1.2.3\""), std::string::npos);
+  EXPECT_NE(error_of(series, "Head").find("there is no grid \"Head\", expected one of: 1 \"Chest 1.2.3\""), std::string::npos);
 }
 
-TEST_F(ForeignFormats, SurfacesOfPlyGiftiAndVtk) {
+TEST_F(ForeignFormats, ReadsSurfacesOfPlyGiftiAndVtk) {
   const auto with = [](std::string text, const std::string& from, const std::string& to) {
     return text.replace(text.find(from), from.size(), to);
   };
@@ -464,7 +464,7 @@ TEST_F(ForeignFormats, SurfacesOfPlyGiftiAndVtk) {
   }
 }
 
-TEST_F(ForeignFormats, LinesAndPointsOfVtkAndPly) {
+TEST_F(ForeignFormats, ReadsLinesAndPointsOfVtkAndPly) {
   const auto lines = curves::load_curves(file("a.vtp", files::vtp_lines()));
   ASSERT_TRUE(lines) << lines.error().message;
   EXPECT_EQ((*lines)->line_offsets, (std::vector<std::uint32_t>{0, 3, 5}));
@@ -475,7 +475,7 @@ TEST_F(ForeignFormats, LinesAndPointsOfVtkAndPly) {
   ASSERT_TRUE(points) << points.error().message;
   EXPECT_EQ((*points)->points.size(), 3u);
   EXPECT_EQ((*points)->max_corner, Vec3(1, 2, 3));
-  // what a file shows is what it holds
+  // The file's kind is determined by its contents.
   using scene::FileKind;
   EXPECT_EQ(scene::detect_file_kind(folder_ / "a.vtp"), FileKind::curves);
   EXPECT_EQ(scene::detect_file_kind(folder_ / "a.ply"), FileKind::points);
@@ -483,7 +483,7 @@ TEST_F(ForeignFormats, LinesAndPointsOfVtkAndPly) {
   EXPECT_EQ(scene::detect_file_kind(file("b.ply", files::ply())), FileKind::mesh);
   EXPECT_EQ(scene::detect_file_kind(file("b.vtk", files::legacy_vectors())), FileKind::field);
   EXPECT_EQ(scene::detect_file_kind(file("b.vtu", files::vtu_mixed(linear))), FileKind::field);
-  // of cells without values: by their dimension
+  // Cells without values are classified by dimension.
   const std::string cell =
       "# vtk DataFile Version 3.0\nc\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 ";
   EXPECT_EQ(scene::detect_file_kind(file("vertex.vtk", cell + "2\n1 0\nCELL_TYPES 1\n1\n")), FileKind::points);
@@ -492,24 +492,24 @@ TEST_F(ForeignFormats, LinesAndPointsOfVtkAndPly) {
   EXPECT_EQ(scene::detect_file_kind(file("tetrahedron.vtk", cell + "5\n4 0 1 2 3\nCELL_TYPES 1\n10\n")), FileKind::mesh);
 }
 
-TEST_F(ForeignFormats, WhatIsWrongIsSaidInOneLine) {
+TEST_F(ForeignFormats, ErrorsAreOneLine) {
   EXPECT_NE(error_of(file("text.vti", "this is no image")).find("text.vti: "), std::string::npos);
   EXPECT_NE(error_of(file("cut.npy", files::npy({2, 3, 4}, "<f8", false, [](int, int, int) { return 1; }).substr(0, 200)))
-                .find("bytes of numbers"),
+                .find("bytes of array data"),
             std::string::npos);
   EXPECT_NE(error_of(file("o.npy", files::npy({2, 3, 4}, "|O", false, [](int, int, int) { return 1; })))
                 .find("expected integers, floats or bools"),
             std::string::npos);
-  EXPECT_NE(error_of(folder_.path()).find("holds no DICOM images"), std::string::npos);
+  EXPECT_NE(error_of(folder_.path()).find("contains neither DICOM images"), std::string::npos);
 }
 
-TEST_F(ForeignFormats, ABarOfColoursHasTheNameAndUnitOfWhatItShows) {
+TEST_F(ForeignFormats, TheDefaultSceneOfAVtkImageHasAScalarBar) {
   const auto bare = scene::make_default_scene(file("a.vti", files::vti("1 0 0 0 1 0 0 0 1", linear)), {}, {});
   ASSERT_TRUE(bare) << bare.error().message;
   EXPECT_NE(bare->text.find("\"scalar_bars\": [{\"volume\": 0}]"), std::string::npos) << bare->text;
 }
 
-TEST_F(ForeignFormats, WhatLibrariesTrustIsCheckedFirst) {
+TEST_F(ForeignFormats, HeadersAreValidatedBeforeTheLibrariesReadThem) {
   const auto nrrd = [](const std::string& kind, int numbers) {
     return fmt::format(
         "NRRD0005\ntype: uchar\ndimension: 4\nspace: left-posterior-superior\nsizes: {} 2 2 2\nspace directions: none (1,0,0) (0,1,0) "
@@ -532,9 +532,9 @@ TEST_F(ForeignFormats, WhatLibrariesTrustIsCheckedFirst) {
            {"c.mha", meta("three"), "NDims is three, expected 1 to 10"},
            {"a.nhdr", "NRRD0004\ntype: float\ndimension: 1\nsizes: 2\nencoding: raw\ndata file: " + std::string(200'000, 'q') + "\n",
             "\"data file\" has a name of 200000 characters, expected at most 4096"},
-           {"a.nrrd", nrrd("3D-masked-matrix", 10), "(3D-masked-matrix, 10 numbers a voxel) is left out"},
+           {"a.nrrd", nrrd("3D-masked-matrix", 10), "(3D-masked-matrix, 10 numbers per voxel), the only array of the file"},
            {"b.nrrd", nrrd("2D-masked-symmetric-matrix", 4), "(2D-masked-symmetric-matrix, "},
-           {"c.nrrd", nrrd("3-gradient", 3), "\"3-gradient\" cannot be read, expected \"covariant-vector\""},
+           {"c.nrrd", nrrd("3-gradient", 3), "\"3-gradient\" is not supported, expected \"covariant-vector\""},
            {"a.vtm", blocks("2000000000"), "a block has the index 2000000000, expected 0 to 999999"},
            {"b.vtm", blocks("-1"), "a block has the index -1, expected"},
            {"a.vtk", surface, "the cells of a, b have no volume (surfaces, lines or points)"},
@@ -542,8 +542,8 @@ TEST_F(ForeignFormats, WhatLibrariesTrustIsCheckedFirst) {
     EXPECT_NE(error_of(file(name, bytes)).find(words), std::string::npos) << name << ": " << error_of(folder_ / name);
 }
 
-TEST_F(ForeignFormats, AReaderOpensNothingOutsideTheFolder) {
-  // the header names data elsewhere
+TEST_F(ForeignFormats, AReaderOpensNoFileOutsideTheFolder) {
+  // The header names a data file in another folder.
   test::write_file(folder_ / "secret.raw", std::string(4 * 8, 'x'));
   std::filesystem::create_directory(folder_ / "in");
   const std::string header = files::mhd("../secret.raw");

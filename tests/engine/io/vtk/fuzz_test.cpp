@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Damaged files of the formats that catena-read-vtk and catena-read read: a grid or a mesh that can be sampled, or one line; never a
-/// reader that stays, never more memory than is allowed. Two bytes of three are changed in the first 2 kB, where the heads are.
+/// Damaged files of the formats that catena-read-vtk and catena-read read: the result is a grid or mesh that can be sampled, or a one-line
+/// error, within the limits of time and memory. Two of three changed bytes are in the first 2 kB, which contain the headers.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ struct Seed {
   bool mesh = false;
 };
 
-/// Functional groups and a vector of offsets, so that both ways to place frames are met.
+/// A DICOM file with functional groups and a vector of offsets, which covers both ways to place frames.
 std::string dicom_frames() {
   using files::Dicom;
   Dicom d = files::dicom_image({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}).decimals(files::kFrames, {2}, "IS").decimals(0x3004000c, {0, 3});
@@ -62,7 +62,7 @@ class VtkFuzz : public testing::Test {
     EXPECT_EQ(message.find("0x"), std::string::npos) << "an address: " << message;
     EXPECT_LT(message.size(), 800u) << message;
   }
-  /// True: loaded.
+  /// Loads the bytes; true if they are a valid file.
   bool check(const Seed& seed, const std::string& bytes) {
     const std::string path = folder_ / seed.name;
     test::write_file(path, bytes);

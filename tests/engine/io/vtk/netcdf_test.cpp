@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// NetCDF files made by its own library: holes and values as the attributes of each variable define them.
+/// NetCDF files written by the NetCDF library: holes and values as the attributes of each variable define them.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
@@ -24,16 +24,16 @@ constexpr int kZ = 2, kY = 3, kX = 4, kAll = kZ * kY * kX;
 
 void check(int code) { ASSERT_EQ(code, NC_NOERR) << nc_strerror(code); }
 
-/// A variable "v" over (z, y, x) that holds 0, 1, 2, ... but for `special` numbers, from place 5 on.
+/// A variable "v" over (z, y, x) with the values 0, 1, 2, ... and `special` values from index 5.
 struct Case {
   const char* what;
-  int format;  ///< NC_CLASSIC_MODEL: NetCDF 3; NC_NETCDF4: packed and shuffled
+  int format;  ///< NC_CLASSIC_MODEL: NetCDF 3; NC_NETCDF4: compressed and shuffled
   nc_type type;
   std::vector<double> special;
   std::function<void(int file, int v)> attributes;
   double factor = 1, offset = 0;
-  std::set<int> holes{};                         ///< places
-  std::vector<std::pair<int, double>> values{};  ///< of places where it is not factor * stored + offset
+  std::set<int> holes{};                         ///< indices without a value
+  std::vector<std::pair<int, double>> values{};  ///< indices whose value is not factor * stored + offset
 };
 
 template <class T>
@@ -57,7 +57,7 @@ void write(const std::string& path, const Case& c) {
   std::vector<double> numbers(kAll);
   for (int i = 0; i < kAll; ++i) numbers[static_cast<std::size_t>(i)] = i;
   std::copy(c.special.begin(), c.special.end(), numbers.begin() + 5);
-  if (c.type == NC_INT64) {  // a double does not hold its default fill
+  if (c.type == NC_INT64) {  // a double cannot represent the type's default fill value
     std::vector<long long> whole(numbers.begin(), numbers.end());
     for (long long& n : whole) n = n == -9'000'000'000'000'000'000 ? NC_FILL_INT64 : n;
     check(nc_put_var_longlong(file, v, whole.data()));
@@ -79,7 +79,7 @@ std::vector<float> read(const std::string& path, std::vector<std::string>* notes
   return values;
 }
 
-TEST(Netcdf, HolesAndValuesAreThoseOfTheAttributes) {
+TEST(Netcdf, HolesAndValuesFollowTheAttributes) {
   using B = signed char;
   using S = short;
   const std::vector<Case> cases = {
@@ -222,10 +222,10 @@ TEST(Netcdf, HolesAndValuesAreThoseOfTheAttributes) {
   write(folder / "n.nc", cases.back());
   read(folder / "n.nc", &notes);
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("2 of 24 values are outside the file's valid range (0 .. 999)"), std::string::npos) << notes[0];
+  EXPECT_NE(notes[0].find("2 of 24 values are outside the valid range of the file (0 .. 999)"), std::string::npos) << notes[0];
 }
 
-/// v(t, e, y, x) = 100 t + 12 e + n with axes of its own: y falls, x is packed; w(y) beside it.
+/// Writes v(t, e, y, x) = 100 t + 12 e + n with coordinate variables: y decreases, x is packed; and a variable w(y).
 void write_axes(const std::string& path) {
   int file = 0, dims[4] = {0, 0, 0, 0}, v = 0, y = 0, x = 0, t = 0, w = 0, group = 0, inner = 0;
   check(nc_create(path.c_str(), NC_CLOBBER | NC_NETCDF4, &file));
@@ -257,7 +257,7 @@ void write_axes(const std::string& path) {
   check(nc_close(file));
 }
 
-TEST(Netcdf, AxesStepsAndWhatIsLeftOut) {
+TEST(Netcdf, ReadsAxesAndStepsAndReportsOmittedVariables) {
   test::TemporaryFolder folder;
   LoadRequest request;
   request.path = folder / "a.nc";
@@ -269,7 +269,7 @@ TEST(Netcdf, AxesStepsAndWhatIsLeftOut) {
   EXPECT_EQ(second->times.size(), 2u);
   Cursor cursor;
   const auto at = [&](const AnyField& field, double x, double lat) {
-    // a flat field has a thickness
+    // A 2D field has a thickness.
     const Vec3 middle = field.get()->mapping().world_from_index(Vec3(0.0, 0.0, 0.5));
     const ScalarSample sample = field.scalar->sample({x, lat, middle.z}, cursor);
     return sample.inside ? sample.value : -1.0;
@@ -284,14 +284,14 @@ TEST(Netcdf, AxesStepsAndWhatIsLeftOut) {
   };
   EXPECT_FALSE(has("resampled")) << "falling latitudes of even steps are an image";
   EXPECT_TRUE(has("w (lat)"));
-  EXPECT_TRUE(has("1 variables lie in groups"));
+  EXPECT_TRUE(has("1 variables in groups"));
 }
 
-TEST(Netcdf, AxesAreThoseThatTheVariablesState) {
-  // v = x + 10 y + 100 z at x = 0, 1, 2, 3; y = 0, 1, 2 (or 0, 1, 4); z = 0, 1, whatever the order of the dimensions
+TEST(Netcdf, AxesFollowTheCoordinateVariables) {
+  // v = x + 10 y + 100 z at x = 0, 1, 2, 3; y = 0, 1, 2 (or 0, 1, 4); z = 0, 1, in any order of dimensions.
   struct Stated {
     const char* what;
-    std::array<std::array<std::string, 3>, 3> axes;  ///< of x, y, z: its name, an attribute, what it says
+    std::array<std::array<std::string, 3>, 3> axes;  ///< for x, y, z: name, attribute and value of the attribute
     bool noted = false;
   };
   const Stated cases[] = {
@@ -308,8 +308,8 @@ TEST(Netcdf, AxesAreThoseThatTheVariablesState) {
   for (const Stated& c : cases)
     for (const std::array<std::size_t, 3>& order : {std::array<std::size_t, 3>{2, 1, 0}, {0, 1, 2}, {1, 2, 0}, {0, 2, 1}})
       for (const double last_y : {2.0, 4.0}) {
-        if (&c != cases && (order[0] != 0 || order[1] != 1 || last_y > 2)) continue;  // all orders of one
-        const double up = c.axes[2][2] == "down" ? -1 : 1;                            // z counts upwards
+        if (&c != cases && (order[0] != 0 || order[1] != 1 || last_y > 2)) continue;  // all orders for the first case only
+        const double up = c.axes[2][2] == "down" ? -1 : 1;                            // sign of z, which points upwards
         const std::string path = folder / "a.nc", what = fmt::format("{} {} {}", c.what, fmt::join(order, " "), last_y);
         int file = 0, ids[3] = {0, 0, 0}, dims[4] = {0, 0, 0, 0}, v = 0, t = 0, coordinates[3] = {0, 0, 0};
         check(nc_create(path.c_str(), NC_CLOBBER | NC_NETCDF4, &file));
@@ -359,7 +359,7 @@ TEST(Netcdf, AxesAreThoseThatTheVariablesState) {
       }
 }
 
-TEST(Netcdf, DamagedFilesEndInOneLine) {
+TEST(Netcdf, DamagedFilesAreOneErrorLine) {
   set_memory_limit(std::uint64_t{256} << 20);
   test::TemporaryFolder folder;
   const std::string path = folder / "a.nc";

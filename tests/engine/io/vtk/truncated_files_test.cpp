@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Files that end before their data do, as a copy that was broken off or a program that still writes leaves them: refused, never read as
-/// what the memory held.
+/// Files that are truncated, as by an interrupted copy or a program that is still writing: they are refused, and never read as
+/// uninitialized memory.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <netcdf.h>
@@ -13,13 +13,13 @@
 #include "tests/support/support.h"
 
 namespace catena::field {
-namespace cut_test {
+namespace truncated_files_test {
 
 constexpr int kEdge = 12, kAll = kEdge * kEdge * kEdge;
 
 int counted(int n) { return n + 1; }
 
-/// `number` of 0, 1, 2, ... as floats.
+/// `number` of 0, 1, 2, ... as the bytes of floats.
 std::string floats(int count, bool big_endian, int (*number)(int) = counted) {
   std::string bytes;
   for (int n = 0; n < count; ++n) {
@@ -107,8 +107,8 @@ TEST(TruncatedFiles, AreRefused) {
   }
 }
 
-/// Whole files whose last values look like the filling are read twice, and are right.
-TEST(TruncatedFiles, OnlyLookSo) {
+/// Complete files whose last values equal the fill pattern are read twice, and accepted.
+TEST(TruncatedFiles, CompleteFilesThatResembleTruncatedOnesAreRead) {
   const test::TemporaryFolder folder;
   for (const unsigned fill : {0x5au, 0xa5u, 0x3cu, 0xc3u}) {
     std::string file = appended();
@@ -122,7 +122,7 @@ TEST(TruncatedFiles, OnlyLookSo) {
 
 int scattered(int n) { return n * 7919 % 1009 + 1; }
 
-TEST(TruncatedFiles, AMeshIsRefused) {
+TEST(TruncatedFiles, ATruncatedMeshIsRefused) {
 #if defined(__SANITIZE_ADDRESS__)
   GTEST_SKIP() << "its allocator has no filling of one's own";
 #endif
@@ -142,5 +142,5 @@ TEST(TruncatedFiles, AMeshIsRefused) {
   }
 }
 
-}  // namespace cut_test
+}  // namespace truncated_files_test
 }  // namespace catena::field

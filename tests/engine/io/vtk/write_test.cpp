@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What Catena writes as .vti and .nrrd, read again by VTK and ITK.
+/// Files that Catena writes as .vti and .nrrd, read back by VTK and ITK.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ bool is_sheared(const Mapping& m) {
 
 const Mapping kTurned = Mapping::from_linear(Mat3(0.4, 0.3, 0, -0.6, 0.8, 0, 0, 0, 2), Vec3(10, -20, 30));
 
-TEST(Write, ScalarsVectorsAndMasksComeBackInEveryFrame) {
+TEST(Write, ScalarsVectorsAndMasksReadBackInEveryFrame) {
   const TemporaryFolder folder;
   const Index3 n{7, 6, 9};
   const Block block = random_block(n, 3);
@@ -84,7 +84,7 @@ TEST(Write, ScalarsVectorsAndMasksComeBackInEveryFrame) {
       }
 }
 
-TEST(Write, APatientsAxesStayAPatients) {
+TEST(Write, PatientAxesReadBackAsPatientAxes) {
   const TemporaryFolder folder;
   AnyField field;
   field.scalar = make_scalar_grid("ct", kTurned, {7, 6, 9}, random_block({7, 6, 9}, 3).values);

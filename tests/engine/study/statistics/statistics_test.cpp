@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// The statistics of a study against two independent packages: R 4.2.2 (t.test, cor.test, p.adjust, power.t.test with strict = TRUE, pt
-/// with ncp and uniroot, binom.test) and scipy 1.10.1 with numpy 1.24.2 (permutation_test, and where it says so). NumberArray as they
-/// printed them.
+/// with ncp and uniroot, binom.test), and scipy 1.10.1 with numpy 1.24.2 (permutation_test, and where stated). The expected numbers are as
+/// the packages printed them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,7 +33,7 @@ Values differences(const Values& a, const Values& b) {
   return d;
 }
 
-TEST(Summary, MeanDeviationAndIntervalAreThoseOfR) {
+TEST(Summary, MeanDeviationAndIntervalEqualThoseOfR) {
   const auto s = summarize(kA);
   ASSERT_TRUE(s);
   EXPECT_NEAR(s->mean, 4.875, 1e-14);
@@ -41,7 +41,7 @@ TEST(Summary, MeanDeviationAndIntervalAreThoseOfR) {
   EXPECT_NEAR(s->half_width, 0.599125181069666, 1e-13);
 }
 
-TEST(PairedTest, IsThatOfR) {
+TEST(PairedTest, EqualsR) {
   const auto t = paired_test(kA, kB);
   ASSERT_TRUE(t);
   EXPECT_NEAR(t->t, 5.830507581064425793, 1e-12);
@@ -57,26 +57,26 @@ TEST(PairedTest, IsThatOfR) {
   EXPECT_NEAR(second->p, 0.0287028719014346, 1e-14);
   EXPECT_NEAR(second->low, 0.1260827559995779, 1e-12);
   EXPECT_NEAR(second->high, 1.8905839106670890, 1e-12);
-  // the other way round: the mirror image
+  // Exchanged arguments: the mirror image.
   const auto turned = paired_test(kB, kA);
   EXPECT_NEAR(turned->effect_low, -t->effect_high, 1e-9);
   EXPECT_NEAR(turned->effect_high, -t->effect_low, 1e-9);
   EXPECT_EQ(turned->p, t->p);
 }
 
-TEST(PairedTest, AnIntervalOfAHugeEffectJoinsTheLimit) {
-  // on either side of t = 200, where the way of finding it changes
+TEST(PairedTest, TheIntervalOfAHugeEffectIsContinuous) {
+  // Both sides of t = 200, where the method changes.
   const double below = solve_noncentrality(199.9, 19, 0.975), above = solve_noncentrality(200.1, 19, 0.975);
   EXPECT_NEAR(below / 199.9, above / 200.1, 1e-3 * above / 200.1);
 }
 
-TEST(Holm, IsThatOfR) {
+TEST(Holm, EqualsR) {
   const Values corrected = holm_correction(Values{.01, .04, .03, .005, .6, .04}), expected{.05, .12, .12, .03, .6, .12};
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(corrected[i], expected[i], 1e-15) << i;
   EXPECT_TRUE(holm_correction(Values{}).empty());
 }
 
-TEST(Pearson, IsThatOfR) {
+TEST(Pearson, EqualsR) {
   const auto c = pearson(kA, kB);
   ASSERT_TRUE(c);
   EXPECT_NEAR(c->r, 0.7340871442963960, 1e-14);
@@ -84,13 +84,13 @@ TEST(Pearson, IsThatOfR) {
   EXPECT_NEAR(c->p, 0.0381303558061136, 1e-14);
   EXPECT_NEAR(c->low, 0.0609357530901201, 1e-13);
   EXPECT_NEAR(c->high, 0.9482424614080353, 1e-13);
-  // the paper's strongest one: r = -0.704 of 20 subjects
+  // The strongest correlation of the paper: r = -0.704 of 20 subjects.
   EXPECT_NEAR(-0.704 * std::sqrt(18 / (1 - 0.704 * 0.704)), -4.206, 5e-4);
   EXPECT_NEAR(two_sided_p(-4.206, 18), 0.000531092930852332, 1e-15);
 }
 
-TEST(Pearson, TwoOfTheSameSubjectsAreCompared) {
-  // numpy, by the covariance of correlations as I. Olkin and M. Siotani write it
+TEST(Pearson, ComparesTwoCorrelationsOfTheSameSubjects) {
+  // Computed with numpy, by the covariance of correlations of I. Olkin and M. Siotani.
   const auto first = compare_correlations(kX, kY, kU, kV);
   ASSERT_TRUE(first);
   EXPECT_NEAR(first->first, 0.902045340815415, 1e-14);
@@ -102,14 +102,14 @@ TEST(Pearson, TwoOfTheSameSubjectsAreCompared) {
   EXPECT_FALSE(compare_correlations(kX, kY, kX, kY));
 }
 
-TEST(Regression, IsThatOfR) {
+TEST(Regression, EqualsR) {
   const auto line = regression(kA, kB);
   ASSERT_TRUE(line);
   EXPECT_NEAR(line->slope, 0.607093184979138, 1e-14);
   EXPECT_NEAR(line->intercept, 0.902920723226699, 1e-13);
 }
 
-TEST(SignFlips, AreCountedAsScipyDoes) {
+TEST(SignFlips, EqualScipy) {
   const auto a = sign_flip_test(differences(kA, kB)), x = sign_flip_test(differences(kX, kY));
   ASSERT_TRUE(a && x);
   EXPECT_EQ(a->p, 0.0078125);
@@ -117,11 +117,11 @@ TEST(SignFlips, AreCountedAsScipyDoes) {
   EXPECT_TRUE(x->exact);
 }
 
-TEST(SignFlips, HalvesCountWhatAllChoicesCount) {
+TEST(SignFlips, ExactCountsEqualAFullEnumeration) {
   std::mt19937 random(3);
   for (const int n : {2, 3, 7, 13}) {
     Values d(static_cast<std::size_t>(n));
-    for (double& x : d) x = static_cast<double>(random() % 21) - 9;  // many ties
+    for (double& x : d) x = static_cast<double>(random() % 21) - 9;  // with many ties
     const double seen = std::fabs(std::accumulate(d.begin(), d.end(), 0.0));
     int far = 0;
     for (int choice = 0; choice < 1 << n; ++choice) {
@@ -133,8 +133,9 @@ TEST(SignFlips, HalvesCountWhatAllChoicesCount) {
   }
 }
 
-TEST(SignFlips, AreDrawnWhereTheyAreTooMany) {
-  // differences of one size: p is the binomial's, here P(|X - 25| >= 8) of 50 throws = 0.0328 (R: binom.test(33, 50))
+TEST(SignFlips, AreSampledIfThereAreTooMany) {
+  // Differences of equal size: p is that of the binomial distribution, here P(|X - 25| >= 8) of 50 throws = 0.0328 (R: binom.test(33,
+  // 50)).
   Values d(50, 1.0);
   for (std::size_t i = 0; i < 17; ++i) d[i] = -1;
   const auto drawn = sign_flip_test(d);
@@ -144,7 +145,7 @@ TEST(SignFlips, AreDrawnWhereTheyAreTooMany) {
   EXPECT_NE(drawn->p, sign_flip_test(d, 2)->p);
 }
 
-TEST(Power, IsThatOfR) {
+TEST(Power, EqualsR) {
   struct Case {
     double effect;
     int n;
@@ -164,7 +165,7 @@ TEST(Power, IsThatOfR) {
   EXPECT_GT(paired_power(100, 1000, .05), 1 - 1e-9);
 }
 
-TEST(Proportions, IntervalsAreThoseOfR) {
+TEST(Proportions, IntervalsEqualThoseOfR) {
   const Interval i = proportion_interval(70, 1600, 0.95), none = proportion_interval(0, 20, 0.95), all = proportion_interval(20, 20, 0.95);
   EXPECT_NEAR(i.low, 0.0342613292717083, 1e-12);
   EXPECT_NEAR(i.high, 0.0549547669367596, 1e-12);
@@ -174,24 +175,24 @@ TEST(Proportions, IntervalsAreThoseOfR) {
   EXPECT_EQ(all.high, 1);
 }
 
-TEST(Degenerate, InputIsToldApartInASentence) {
+TEST(Degenerate, InputHasASpecificError) {
   const auto says = [](const auto& result, const std::string& words) {
     ASSERT_FALSE(result);
     EXPECT_NE(result.error().message.find(words), std::string::npos) << result.error().message;
   };
-  says(summarize(Values{}), "at least 2 values are needed, there are 0");
+  says(summarize(Values{}), "at least 2 values are required, but there are 0");
   says(summarize(Values{1}), "there is 1");
   says(summarize(Values{1, kNan}), "not a finite number");
   says(summarize(Values{1e308, 1e308, -1e308}), "too large");
   EXPECT_EQ(summarize(Values{2, 2, 2})->sd, 0);
   says(paired_test(Values{1, 2}, Values{1, kInf}), "not a finite number");
   says(paired_test(Values{1}, Values{2}), "at least 2");
-  says(paired_test(Values{1, 2, 3}, Values{1, 2, 3}), "all 3 differences are the same");
-  says(paired_test(Values{1.3, 2.3, 3.3}, Values{1, 2, 3}), "all 3 differences are the same");
+  says(paired_test(Values{1, 2, 3}, Values{1, 2, 3}), "all 3 differences are equal");
+  says(paired_test(Values{1.3, 2.3, 3.3}, Values{1, 2, 3}), "all 3 differences are equal");
   says(pearson(Values{1, 2}, Values{2, 1}), "at least 3");
-  says(pearson(Values{1, 2, 3}, Values{.1, .1, .1}), "all 3 values of one measure are the same");
+  says(pearson(Values{1, 2, 3}, Values{.1, .1, .1}), "all 3 values of one measure are equal");
   says(pearson(Values{1, kNan, 3}, Values{1, 2, 3}), "not a finite number");
-  says(regression(Values{1, 1}, Values{1, 2}), "all values of x are the same");
+  says(regression(Values{1, 1}, Values{1, 2}), "all values of x are equal");
   says(sign_flip_test(Values{1}), "at least 2");
   EXPECT_EQ(sign_flip_test(Values{0, 0, 0})->p, 1);
   EXPECT_EQ(sign_flip_test(Values{1, -1, 0})->p, 1);

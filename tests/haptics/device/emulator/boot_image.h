@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// A made-up boot stream of the C2000 form, for tests: the vendor's firmware may not be shipped.
+/// A synthetic boot stream in the C2000 format, for tests, because the vendor's firmware may not be redistributed.
 #pragma once
 #include <cstdint>
 #include <vector>
 
 namespace catena::haptics::tests {
 
-/// Blocks of these sizes (words), filled with a pattern.
+/// A stream with blocks of the given sizes (words), filled with a pattern.
 inline std::vector<std::uint8_t> boot_image(const std::vector<int>& blocks) {
   std::vector<std::uint16_t> words{0x08AA, 0, 0, 0, 0, 0, 0, 0, 0, 0x003F, 0x8000};
   std::uint16_t pattern = 0x1234;

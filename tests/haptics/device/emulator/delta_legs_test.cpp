@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The emulator's mechanism against golden values of the device, which pin the driver's kinematics too.
+/// The emulator's mechanism against golden values of the device. The driver's kinematics are tested against the same values.
 #include "haptics/device/emulator/emulated_mechanism.h"
 
 #include <gtest/gtest.h>
@@ -22,14 +22,14 @@ void expect_counts(const Vec3& p_mm, const Vec3& counts, double tolerance) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(at[i], counts[i], tolerance) << i;
 }
 
-TEST(DeltaLegs, GoldenPositionsGiveTheirEncoders) {
+TEST(DeltaLegs, GoldenPositionsGiveTheGoldenEncoders) {
   expect_counts({0, 0, 134.60243}, {0, 0, 0}, 1e-3);
   expect_counts({0, 0, 110.7545}, {-500, -500, -500}, 2e-3);
   expect_counts({-1.49499, -6.69457, 124.77869}, {-100, -200, -300}, 1e-3);
   expect_counts({20, 0, 110}, {-351.36, -856.23, -209.63}, 0.01);
 }
 
-TEST(DeltaLegs, AtTheMiddleACountIsItsLengthAndANewtonItsTorque) {
+TEST(DeltaLegs, AtTheMiddleCountLengthAndTorquePerNewtonAreGolden) {
   const auto legs = *solve_delta_legs({0, 0, 0.11});
   const double count_rad = kEmulatedDegreesPerCount * std::numbers::pi / 180;
   const Mat3 p_by_theta = glm::inverse(legs.dtheta_dp);
@@ -37,13 +37,13 @@ TEST(DeltaLegs, AtTheMiddleACountIsItsLengthAndANewtonItsTorque) {
     EXPECT_NEAR(norm(p_by_theta[i]) * count_rad, 37.7e-6, 0.05e-6);
     EXPECT_NEAR(p_by_theta[i].z, 24.18e-3, 0.01e-3);
   }
-  // tau = J^T F: the counts of 1 N along z give 1 N back
+  // tau = J^T F: the motor counts of 1 N along z give 1 N
   const Vec3 force = compute_motor_force(legs, {-242, -242, -242});
   EXPECT_NEAR(force.z, 242e-4 / 24.18e-3, 1e-3);
   EXPECT_NEAR(force.x, 0, 1e-9);
 }
 
-TEST(DeltaLegs, TheJacobianIsThatOfDifferences) {
+TEST(DeltaLegs, TheJacobianMatchesFiniteDifferences) {
   for (const Vec3& p : {Vec3(0.01, -0.02, 0.1), Vec3(0.03, 0.03, 0.15), Vec3(-0.025, 0.01, 0.095)}) {
     const auto legs = *solve_delta_legs(p);
     for (int j = 0; j < 3; ++j) {
@@ -55,7 +55,7 @@ TEST(DeltaLegs, TheJacobianIsThatOfDifferences) {
   }
 }
 
-TEST(DeltaLegs, OutOfReachIsSaid) {
+TEST(DeltaLegs, OutOfReachIsRefused) {
   EXPECT_FALSE(solve_delta_legs({0, 0, 0.19}));
   EXPECT_FALSE(solve_delta_legs({0.12, 0, 0.11}));
   EXPECT_TRUE(solve_delta_legs({0.027, 0, 0.170}));

@@ -16,7 +16,7 @@ struct Rig {
   void send(const std::vector<std::uint8_t>& bytes) { device.bulk_out(bytes); }
   void send(std::initializer_list<std::uint8_t> bytes) { send(std::vector<std::uint8_t>(bytes)); }
   void send(const std::string& text) { send(bytes_of(text)); }
-  /// The next packet's payload.
+  /// Payload of the next packet.
   std::string receive() {
     std::uint8_t packet[64];
     const std::size_t n = device.bulk_in(packet);
@@ -42,11 +42,11 @@ struct Rig {
 
 const std::string kRest = "<AAAAAAAAAAAAAA>";
 
-TEST(EmulatedFalcon, EncodersComeLowNibbleFirst) {
+TEST(EmulatedFalcon, EncodersAreSentLowNibbleFirst) {
   EmulatedFalconOptions options;
   options.power_on_offset = {-1447 + 510, 0, 0};
   Rig rig(options);
-  // at rest at z = 0.11 the encoders stand near -516
+  // at rest at z = 0.11 the encoders are near -516
   const int near = static_cast<int>(std::lround(angles_to_counts(solve_delta_legs({0, 0, 0.11})->theta).x));
   options.power_on_offset = {-1447 - near, -near, 1 - near};
   Rig exact(options);
@@ -55,11 +55,11 @@ TEST(EmulatedFalcon, EncodersComeLowNibbleFirst) {
   EXPECT_EQ(exact.device.last_exchange().encoders, (EmulatedMechanism::Counts{-1447, 0, 1}));
 }
 
-TEST(EmulatedFalcon, MotorsAndLightsArriveAndMakeAForce) {
+TEST(EmulatedFalcon, MotorCountsAndLightsAreDecodedAndGiveAForce) {
   Rig rig;
   rig.device.mechanism().hold({0, 0, 0.11});
   // 0xFF0E = -242 is the nibbles E 0 F F; control 0x04: blue
-  rig.send("<OAPPOAPPOAPPEAA>");  // a byte too many: no frame
+  rig.send("<OAPPOAPPOAPPEAA>");  // one byte too many: not a frame
   rig.send("<OAPPOAPPOAPPEA>");
   EXPECT_EQ(rig.device.frames(), 1u);
   EXPECT_EQ(rig.device.last_exchange().motors, (EmulatedMechanism::Counts{-242, -242, -242}));
@@ -68,7 +68,7 @@ TEST(EmulatedFalcon, MotorsAndLightsArriveAndMakeAForce) {
   EXPECT_EQ(rig.device.bad_bytes(), 17u);
 }
 
-TEST(EmulatedFalcon, AFrameMayComeInPiecesAndAfterNoise) {
+TEST(EmulatedFalcon, AFrameMayArriveInPiecesAndAfterNoise) {
   Rig rig;
   rig.send("xx<AAA");
   rig.send(kRest.substr(4));
@@ -78,7 +78,7 @@ TEST(EmulatedFalcon, AFrameMayComeInPiecesAndAfterNoise) {
   EXPECT_EQ(rig.device.bad_bytes(), 2u + 4u);
 }
 
-TEST(EmulatedFalcon, AWrongBaudRateIsHeardAsNothing) {
+TEST(EmulatedFalcon, AtAWrongBaudRateCommandsAreIgnored) {
   Rig rig;
   rig.device.control({0x40, 3, kBaud9600, 0});
   rig.send(kRest);
@@ -135,7 +135,7 @@ TEST(EmulatedFalcon, ADamagedOrWrongImageNeverStarts) {
   ASSERT_EQ(echo.size(), image.size());
   EXPECT_NE(static_cast<std::uint8_t>(echo[30]), image[30]);
   EXPECT_FALSE(rig.device.running());
-  // after a reset, whole
+  // a complete image after a reset
   rig.wake();
   rig.send(image);
   EXPECT_TRUE(rig.device.running());
@@ -149,7 +149,7 @@ TEST(EmulatedFalcon, ADamagedOrWrongImageNeverStarts) {
   EXPECT_FALSE(other.device.running());
 }
 
-TEST(EmulatedFalcon, HandshakesMayGoUnheardOrStartWithAZero) {
+TEST(EmulatedFalcon, HandshakesMayBeIgnoredOrStartWithAZero) {
   EmulatedFalconOptions options;
   options.firmware = false;
   Rig rig(options);
@@ -163,7 +163,7 @@ TEST(EmulatedFalcon, HandshakesMayGoUnheardOrStartWithAZero) {
   EXPECT_EQ(rig.receive(), std::string("\0\x0A\x44\x2C\x0D", 5));
 }
 
-TEST(EmulatedFalcon, AnAxisHomesWhenItComesBackInAndItsOriginJumps) {
+TEST(EmulatedFalcon, AnAxisHomesOnItsReturnAndItsOriginJumps) {
   Rig rig;
   const auto at = [&](double z, const std::string& frame) {
     EXPECT_TRUE(rig.device.mechanism().hold({0, 0, z}));
@@ -174,13 +174,13 @@ TEST(EmulatedFalcon, AnAxisHomesWhenItComesBackInAndItsOriginJumps) {
   const std::string homing = "<AAAAAAAAAAAABA>";
   EXPECT_EQ(at(0.11, homing).homed, 0u);
   EXPECT_EQ(at(0.175, homing).homed, 0u);
-  EXPECT_EQ(at(0.15, kRest).homed, 0u);  // not asked for
+  EXPECT_EQ(at(0.15, kRest).homed, 0u);  // homing was not requested
   at(0.175, homing);
   const auto homed = at(0.15, homing);
   EXPECT_EQ(homed.homed, 7u);
   EXPECT_EQ(homed.encoders, (EmulatedMechanism::Counts{336, 336, 336}));
   EXPECT_EQ(at(0.11, kRest).homed, 7u);
-  // power lost: so is the origin
+  // after a loss of power the origin is lost
   rig.device.unplug();
   rig.device.plug(false);
   EXPECT_EQ(rig.device.mechanism().homed_bits(), 0u);
@@ -196,7 +196,7 @@ TEST(EmulatedFalcon, ButtonsAndHomedBitsShareAByte) {
   EXPECT_EQ(static_cast<std::uint8_t>(rig.receive()[13]), 0x41 + 0x7F);
 }
 
-TEST(EmulatedFalcon, RepliesSplitJoinShrinkVanishAndGatherNoise) {
+TEST(EmulatedFalcon, ReplyFaultsSplitJoinTruncateDropAndAddGarbage) {
   using Kind = ReplyFault::Kind;
   Rig rig;
   rig.device.faults().replies = {{Kind::split, 5},    {Kind::join, 0}, {Kind::none, 0},
@@ -228,7 +228,7 @@ TEST(EmulatedFalcon, AHostThatDoesNotReadLosesReplies) {
   EXPECT_FALSE(rig.device.has_payload());
 }
 
-TEST(EmulatedFalcon, GoesAfterSoManyBytes) {
+TEST(EmulatedFalcon, UnplugsAfterTheGivenNumberOfBytes) {
   Rig rig;
   rig.device.faults().unplug_after_out_bytes = 20;
   rig.send(kRest);
@@ -238,7 +238,7 @@ TEST(EmulatedFalcon, GoesAfterSoManyBytes) {
   EXPECT_EQ(rig.device.frames(), 1u);
 }
 
-TEST(EmulatedFalcon, AHandCarriesTheGripAndFeelsTheMotors) {
+TEST(EmulatedFalcon, AnEmulatedHandMovesTheGripAndYieldsToTheMotors) {
   EmulatedUser hand;
   hand.path = {{0, {0, 0, 0.11}, 0}, {0.1, {0.01, 0, 0.11}, 1}};
   Rig free, pushed;

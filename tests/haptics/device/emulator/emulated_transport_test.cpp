@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The type "emulated-falcon": the real driver over the emulator without libusb.
+/// Device type "emulated-falcon": the real driver over the emulator, without libusb.
 #include "haptics/device/emulator/emulated_transport.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ bool eventually(F&& condition) {
   return condition();
 }
 
-TEST(EmulatedTransport, ErrorsAreThoseOfABus) {
+TEST(EmulatedTransport, ErrorsMatchThoseOfAUsbBus) {
   auto shared = std::make_shared<SharedEmulatedFalcon>();
   EmulatedTransportSource source(shared, false);
   auto transport = std::move(*source.open());
@@ -39,13 +39,13 @@ TEST(EmulatedTransport, ErrorsAreThoseOfABus) {
   EXPECT_TRUE(source.wait_for_arrival(1));
 }
 
-TEST(EmulatedTransport, TheGentleHandHomesArmsAndStaysInTheWorkspace) {
+TEST(EmulatedTransport, TheDefaultHandHomesArmsAndStaysInTheWorkspace) {
   auto shared = std::make_shared<SharedEmulatedFalcon>();
   shared->device.mechanism().attach_user(gentle_user());
   bool outside = false;
   int early = 0;
   shared->device.set_exchange_observer([&](const EmulatedFalcon::Exchange& exchange) {
-    // forces flow (green) only after the grip was homed and far out
+    // forces start only after the grip was homed and pulled out
     if (exchange.position_m.z > 0.170 && exchange.homed == 7) outside = true;
     early += !outside && exchange.motors != EmulatedMechanism::Counts{};
   });
@@ -65,7 +65,7 @@ TEST(EmulatedTransport, TheGentleHandHomesArmsAndStaysInTheWorkspace) {
   EXPECT_TRUE(outside);
   EXPECT_EQ((*falcon)->stats().out_of_reach, 0u);
   EXPECT_EQ((*falcon)->stats().disconnects, 0u);
-  // the round takes it through the cube that the hand uses
+  // the path covers the cube of the workspace
   const DeviceInput input = (*falcon)->read();
   EXPECT_EQ(input.status, DeviceStatus::ready);
   EXPECT_LT(std::fabs(input.position_m.x), 0.03);
@@ -73,7 +73,7 @@ TEST(EmulatedTransport, TheGentleHandHomesArmsAndStaysInTheWorkspace) {
   EXPECT_LT(input.position_m.z, 0.14);
 }
 
-TEST(EmulatedTransport, TheRegistryOpensItAndItMovesByItself) {
+TEST(EmulatedTransport, TheRegistryOpensItAndTheEmulatedHandMoves) {
   EXPECT_TRUE(is_device_type("emulated-falcon"));
   EXPECT_FALSE(open_device("emulated-falcon:2", {}));
   auto device = open_device("emulated-falcon", {});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The Falcon driver over the unmodified libusb, on an emulated device on umockdev's bus: coming and going, stalls, time-outs,
-/// damaged frames, homing. Asserts counts, order and states, never a time.
+/// The Falcon driver over the unmodified libusb, on an emulated device on umockdev's bus: plug and unplug, stalls, timeouts,
+/// damaged frames, homing. Asserts counts, order and states, never times.
 #include "haptics/device/usb/falcon.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ class FalconUsb : public testing::Test {
 
 const EmulatedFalconOptions kHomed{.homed = true}, kCold{.firmware = false};
 
-// ---- coming ----
+// ---- plug and open ----
 
 TEST_F(FalconUsb, TheRegistryListsIt) {
   UmockdevBus bus;
@@ -50,7 +50,7 @@ TEST_F(FalconUsb, TheRegistryListsIt) {
   EXPECT_TRUE(open_device("falcon", {}));
 }
 
-TEST_F(FalconUsb, ItIsNotThereUntilItIsPlugged) {
+TEST_F(FalconUsb, IsAbsentUntilPlugged) {
   UmockdevBus bus;
   usb::LibusbTransportSource source(usb::kFalconUsbId);
   EXPECT_TRUE(source.has_hotplug());
@@ -61,7 +61,7 @@ TEST_F(FalconUsb, ItIsNotThereUntilItIsPlugged) {
   EXPECT_TRUE(source.open());
 }
 
-TEST_F(FalconUsb, ABusyDeviceIsSaidToBeBusy) {
+TEST_F(FalconUsb, ABusyDeviceIsReportedAsBusy) {
   UmockdevBus bus;
   bus.port().faults.claimed_by_another = true;
   bus.plug();
@@ -70,7 +70,7 @@ TEST_F(FalconUsb, ABusyDeviceIsSaidToBeBusy) {
   EXPECT_NE(opened.error().message.find("another program"), std::string::npos) << opened.error().message;
 }
 
-TEST_F(FalconUsb, OpeningClaimsOnceAndSetsTheLineUpBeforeItAsksForFrames) {
+TEST_F(FalconUsb, OpeningClaimsOnceAndSetsUpTheLineBeforeTheFirstFrame) {
   UmockdevBus bus(kHomed);
   bus.plug();
   Controls before_frames;
@@ -91,7 +91,7 @@ TEST_F(FalconUsb, OpeningClaimsOnceAndSetsTheLineUpBeforeItAsksForFrames) {
 
 // ---- firmware ----
 
-TEST_F(FalconUsb, FirmwareIsUploadedInTheDevicesOwnOrder) {
+TEST_F(FalconUsb, FirmwareIsUploadedInTheExpectedOrder) {
   UmockdevBus bus(kCold);
   bus.plug();
   auto falcon = open_falcon(with_firmware());
@@ -101,7 +101,7 @@ TEST_F(FalconUsb, FirmwareIsUploadedInTheDevicesOwnOrder) {
     EXPECT_TRUE(device.running());
     EXPECT_EQ(device.boot_rom().attempts(), 1);
     EXPECT_EQ(device.boot_rom().image_bytes(), boot_image({300, 40}).size());
-    // looks for running firmware first; then boots; then the running line again
+    // checks for running firmware, boots, then sets the line to the firmware's settings
     const Controls running{{kV, 0, 1}, {kV, 0, 2}, {kV, 9, 1}, {kV, 3, 0x02}, {kV, 0, 1}, {kV, 0, 2}};
     Controls expected = running;
     expected.insert(expected.end(), {{kV, 0, 1},
@@ -120,7 +120,7 @@ TEST_F(FalconUsb, FirmwareIsUploadedInTheDevicesOwnOrder) {
   });
 }
 
-TEST_F(FalconUsb, EchoErrorsAreSeenAndTheUploadTriedAgain) {
+TEST_F(FalconUsb, EchoErrorsAreDetectedAndTheUploadRetried) {
   UmockdevBus bus(kCold);
   bus.port().device.boot_rom().faults().echo_errors = {100, 0, boot_image({300, 40}).size() - 1, EmulatedBootRom::npos};
   bus.plug();
@@ -140,7 +140,7 @@ TEST_F(FalconUsb, TenDamagedUploadsAreAnError) {
   bus.with([](EmulatedFalcon& device) { EXPECT_EQ(device.boot_rom().attempts(), 10); });
 }
 
-TEST_F(FalconUsb, DeafHandshakesAndALeadingZeroDoNotStopIt) {
+TEST_F(FalconUsb, IgnoredHandshakesAndALeadingZeroAreTolerated) {
   UmockdevBus bus(kCold);
   bus.port().device.boot_rom().faults() = {.ignored_handshakes = 3, .leading_zero = true, .echo_errors = {}};
   bus.plug();
@@ -149,7 +149,7 @@ TEST_F(FalconUsb, DeafHandshakesAndALeadingZeroDoNotStopIt) {
   EXPECT_EQ(falcon->stats().uploads, 1u);
 }
 
-TEST_F(FalconUsb, WithoutFirmwareItSaysWhatToGive) {
+TEST_F(FalconUsb, WithoutFirmwareTheErrorNamesTheOption) {
   UmockdevBus bus(kCold);
   bus.plug();
   const auto opened = Falcon::open(std::make_unique<usb::LibusbTransportSource>(usb::kFalconUsbId), patient_options());
@@ -157,7 +157,7 @@ TEST_F(FalconUsb, WithoutFirmwareItSaysWhatToGive) {
   EXPECT_NE(opened.error().message.find("--firmware"), std::string::npos) << opened.error().message;
 }
 
-TEST_F(FalconUsb, AnUnplugDuringTheUploadIsAnErrorAndTheNextOpenWorks) {
+TEST_F(FalconUsb, AnUnplugDuringTheUploadIsAnErrorAndTheNextOpenSucceeds) {
   UmockdevBus bus(kCold);
   bus.port().device.faults().unplug_after_out_bytes = 500;
   bus.plug();
@@ -171,7 +171,7 @@ TEST_F(FalconUsb, AnUnplugDuringTheUploadIsAnErrorAndTheNextOpenWorks) {
 
 // ---- homing ----
 
-TEST_F(FalconUsb, NoForceLeavesBeforeItIsHomedAndPulledOut) {
+TEST_F(FalconUsb, NoForceIsSentBeforeHomingAndPullingOut) {
   UmockdevBus bus;
   bus.plug();
   bus.with([](EmulatedFalcon& device) { device.mechanism().hold({0, 0, 0.12}); });
@@ -204,12 +204,12 @@ TEST_F(FalconUsb, NoForceLeavesBeforeItIsHomedAndPulledOut) {
   falcon->stop();
   ASSERT_TRUE(wait_for_frames(bus, 3));
   EXPECT_EQ(last().motors, (EmulatedMechanism::Counts{}));
-  // the last packet: zero, no light
+  // the last packet has zero motors and no light
   falcon.reset();
   EXPECT_EQ(last().control, 0u);
 }
 
-TEST_F(FalconUsb, ButtonsComeThrough) {
+TEST_F(FalconUsb, ButtonsAreReported) {
   UmockdevBus bus(kHomed);
   bus.plug();
   auto falcon = open_falcon();
@@ -223,7 +223,7 @@ TEST_F(FalconUsb, ButtonsComeThrough) {
 
 // ---- frames ----
 
-TEST_F(FalconUsb, FramesSplitJoinedShortOrAmongNoiseGiveNoFalsePose) {
+TEST_F(FalconUsb, SplitJoinedTruncatedAndNoisyFramesGiveNoFalsePose) {
   using Kind = ReplyFault::Kind;
   UmockdevBus bus(kHomed);
   bus.plug();
@@ -251,7 +251,7 @@ TEST_F(FalconUsb, FramesSplitJoinedShortOrAmongNoiseGiveNoFalsePose) {
   EXPECT_EQ(falcon->stats().jumps, 0u);
 }
 
-TEST_F(FalconUsb, RepliesThatNeverComeAreCountedNotWaitedForForEver) {
+TEST_F(FalconUsb, MissingRepliesTimeOutAndAreCounted) {
   UmockdevBus bus(kHomed);
   bus.port().faults.idle_packets = false;
   bus.plug();
@@ -271,7 +271,7 @@ TEST_F(FalconUsb, RepliesThatNeverComeAreCountedNotWaitedForForEver) {
   EXPECT_GE(bus.port().counts.discarded, 6u);
 }
 
-TEST_F(FalconUsb, AStalledEndpointIsClearedAndUsedAgain) {
+TEST_F(FalconUsb, AStalledEndpointIsClearedAndReused) {
   UmockdevBus bus(kHomed);
   bus.plug();
   auto falcon = open_falcon();
@@ -286,7 +286,7 @@ TEST_F(FalconUsb, AStalledEndpointIsClearedAndUsedAgain) {
   EXPECT_EQ(falcon->stats().disconnects, 0u);
 }
 
-TEST_F(FalconUsb, SubmissionsThatTheKernelRefusesAreCountedAndTriedAgain) {
+TEST_F(FalconUsb, SubmissionsRefusedByTheKernelAreCountedAndRetried) {
   UmockdevBus bus(kHomed);
   bus.plug();
   auto falcon = open_falcon();
@@ -300,9 +300,9 @@ TEST_F(FalconUsb, SubmissionsThatTheKernelRefusesAreCountedAndTriedAgain) {
   EXPECT_EQ(falcon->read().status, DeviceStatus::ready);
 }
 
-// ---- going ----
+// ---- loss and unplug ----
 
-TEST_F(FalconUsb, ASilentDeviceIsLostAndComesBackUnarmed) {
+TEST_F(FalconUsb, ASilentDeviceIsLostAndReturnsUnarmed) {
   UmockdevBus bus(kHomed);
   bus.plug();
   bus.with([](EmulatedFalcon& device) { device.mechanism().hold({0, 0, 0.175}); });
@@ -326,7 +326,7 @@ TEST_F(FalconUsb, ASilentDeviceIsLostAndComesBackUnarmed) {
   EXPECT_EQ(falcon->stats().reconnects, 1u);
 }
 
-TEST_F(FalconUsb, UnpluggedMidTransferItIsLostAndReplugedItWantsFirmwareHomingAndArmingAgain) {
+TEST_F(FalconUsb, AfterAnUnplugMidTransferItNeedsFirmwareHomingAndArming) {
   UmockdevBus bus(kCold);
   bus.plug();
   auto falcon = open_falcon(with_firmware(boot_image({20})));
@@ -337,7 +337,7 @@ TEST_F(FalconUsb, UnpluggedMidTransferItIsLostAndReplugedItWantsFirmwareHomingAn
   ASSERT_TRUE(hold_grip_at(bus, {0, 0, 0.15}));
   ASSERT_NE(bus.with([](EmulatedFalcon& device) { return device.last_exchange().motors; }), (EmulatedMechanism::Counts{}));
 
-  // a read is pending while the device says nothing
+  // a read is pending while the device sends nothing
   bus.with([&](EmulatedFalcon& device) {
     bus.port().faults.idle_packets = false;
     device.faults().replies.push_back({ReplyFault::Kind::drop, 0});
@@ -365,7 +365,7 @@ TEST_F(FalconUsb, UnpluggedMidTransferItIsLostAndReplugedItWantsFirmwareHomingAn
   EXPECT_NE(bus.with([](EmulatedFalcon& device) { return device.last_exchange().motors; }), (EmulatedMechanism::Counts{}));
 }
 
-TEST_F(FalconUsb, UnpluggedAtAnyByteOfAFrameItIsLostEachTimeAndReturns) {
+TEST_F(FalconUsb, AnUnplugAtAnyByteOfAFrameIsALossAndTheDeviceReturns) {
   UmockdevBus bus(kHomed);
   bus.plug();
   auto falcon = open_falcon();
@@ -382,7 +382,7 @@ TEST_F(FalconUsb, UnpluggedAtAnyByteOfAFrameItIsLostEachTimeAndReturns) {
   EXPECT_EQ(falcon->stats().reconnects, 6u);
 }
 
-TEST_F(FalconUsb, ADeviceThatIsNotReadStillEnds) {
+TEST_F(FalconUsb, TheDriverClosesWhileOutTransfersArePending) {
   UmockdevBus bus(kHomed);
   bus.plug();
   auto falcon = open_falcon();

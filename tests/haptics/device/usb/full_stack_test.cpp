@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-/// The whole of the hand's side once through umockdev: libusb's own enumeration and events included.
+/// The full haptic stack through umockdev, with libusb's own enumeration and events.
 #include "tests/haptics/device/usbfs/full_stack_program.h"
 
 #include "haptics/device/usb/libusb_transport.h"
 #include "tests/haptics/device/usbfs/umockdev_bus.h"
 
 namespace catena::haptics::tests {
-namespace whole_catena_test {
+namespace full_stack_test {
 
-TEST(FullStackUsb, TheMotorsGetTheTicksForceToWithinHalfACount) {
+TEST(FullStackUsb, TheMotorForceMatchesTheTicksWithinHalfACount) {
   ASSERT_TRUE(UmockdevBus::available()) << "run this program through umockdev-wrapper";
   UmockdevBus bus({.homed = true});
   bus.plug();
@@ -23,5 +23,5 @@ TEST(FullStackUsb, TheMotorsGetTheTicksForceToWithinHalfACount) {
   EXPECT_EQ((*falcon)->stats().disconnects, 0u);
 }
 
-}  // namespace whole_catena_test
+}  // namespace full_stack_test
 }  // namespace catena::haptics::tests

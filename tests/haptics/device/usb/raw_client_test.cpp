@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The emulation itself, with a small client of libusb's own instead of the driver: what umockdev, the URB queues and the
-/// device make of bulk and control transfers, stalls, time-outs, hotplug and unplugging.
+/// The emulated bus, with a small libusb client instead of the driver: bulk and control transfers, stalls, timeouts, hotplug and
+/// unplugs through umockdev and the URB queues.
 #include "tests/haptics/device/usbfs/raw_client.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ class RawUsb : public testing::Test {
   void SetUp() override { ASSERT_TRUE(UmockdevBus::available()) << "run this program through umockdev-wrapper"; }
 };
 
-TEST_F(RawUsb, TheDeviceIsEnumeratedAndSaysItsName) {
+TEST_F(RawUsb, TheDeviceIsEnumeratedWithItsName) {
   UmockdevBus bus;
   bus.plug();
   Context usb;
@@ -39,7 +39,7 @@ TEST_F(RawUsb, TheDeviceIsEnumeratedAndSaysItsName) {
   EXPECT_EQ(libusb_get_max_packet_size(libusb_get_device(client.get()), 0x81), 64);
 }
 
-TEST_F(RawUsb, AFrameGoesOutAndItsReplyComesBack) {
+TEST_F(RawUsb, AFrameIsSentAndItsReplyReceived) {
   UmockdevBus bus;
   bus.plug();
   Context usb;
@@ -69,7 +69,7 @@ TEST_F(RawUsb, AnIdleChipSendsTwoBytes) {
   EXPECT_EQ(n, 2);
 }
 
-TEST_F(RawUsb, AReadThatGetsNothingIsCancelledAfterItsTime) {
+TEST_F(RawUsb, AReadWithoutDataIsCancelledAfterItsTimeout) {
   UmockdevBus bus;
   bus.port().faults.idle_packets = false;
   bus.plug();
@@ -129,7 +129,7 @@ bool eventually(Context& usb, F&& condition) {
   return condition();
 }
 
-TEST_F(RawUsb, PluggingAndUnpluggingAreToldAndTheNextPlugIsANewDevice) {
+TEST_F(RawUsb, HotplugEventsAreReportedAndEachPlugIsANewDevice) {
   UmockdevBus bus;
   Context usb;
   Seen seen;
@@ -164,7 +164,7 @@ struct Flight {
   }
 };
 
-TEST_F(RawUsb, UnpluggingEndsWhatIsInFlight) {
+TEST_F(RawUsb, UnpluggingEndsTransfersInFlight) {
   UmockdevBus bus;
   bus.port().faults.idle_packets = false;
   bus.plug();
@@ -182,7 +182,7 @@ TEST_F(RawUsb, UnpluggingEndsWhatIsInFlight) {
   EXPECT_EQ(bus.port().counts.shut_down, 2u);
 }
 
-TEST_F(RawUsb, AnUnplugMidTransferEndsThatTransfer) {
+TEST_F(RawUsb, AnUnplugMidTransferEndsTheTransfer) {
   UmockdevBus bus;
   bus.port().device.faults().unplug_after_out_bytes = 8;
   bus.plug();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The program `catena` with a Falcon on umockdev's bus is killed and stopped at random moments: the motors' last packet is a zero. The
-/// device is this test's: it outlives the program, and keeps every packet that it gets. Asserts order and counts; the times that a
-/// force outlived its program are kept as properties.
+/// The program `catena` with a Falcon on umockdev's bus is killed and stopped at random moments: the last packet to the motors is zero.
+/// The emulated device belongs to the test, outlives the program and records every packet. Asserts order and counts; the times for
+/// which a force outlived its program are recorded as properties.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
@@ -34,7 +34,7 @@ struct Packet {
   double force_n = 0;
 };
 
-/// LD_PRELOAD with one library more, before umockdev's and behind a sanitizer's.
+/// LD_PRELOAD with `library` added before umockdev's library and after a sanitizer's.
 std::string before_umockdev(const std::string& library) {
   std::istringstream in(std::getenv("LD_PRELOAD"));
   std::string all;
@@ -43,7 +43,7 @@ std::string before_umockdev(const std::string& library) {
   return all;
 }
 
-/// A Falcon on the bus, homed, and the program that holds its hand out of a ball.
+/// A homed Falcon on the bus, and the program with a ball as its constraint.
 class Rig {
  public:
   Rig() {
@@ -57,7 +57,7 @@ class Rig {
   }
 
   void start() {
-    // what a killed program left in the queues went with the last of its descriptors
+    // a new plug-in has empty queues
     if (std::exchange(plugged, true)) bus.unplug();
     bus.plug(true);
     std::vector<std::string> words{test::program_path(), "feel", folder / "ball.json", "--device", "falcon", "--forces", "on"};
@@ -76,8 +76,8 @@ class Rig {
     ASSERT_EQ(posix_spawn(&child, words[0].c_str(), &actions, nullptr, arguments.data(), environment.data()), 0);
     posix_spawn_file_actions_destroy(&actions);
     const std::uint64_t frames = frame_count(bus);
-    ASSERT_TRUE(wait_until([&] { return frame_count(bus) > frames + 3; })) << said();
-    // armed, then into the ball: 10 mm
+    ASSERT_TRUE(wait_until([&] { return frame_count(bus) > frames + 3; })) << messages();
+    // arms the device, then moves 10 mm into the ball
     for (const double z : {0.155, 0.165, 0.175, 0.165, 0.155, 0.145, 0.135}) ASSERT_TRUE(hold_grip_at(bus, {0, 0, z}));
   }
   bool pushes() {
@@ -88,9 +88,9 @@ class Rig {
     waitpid(std::exchange(child, 0), &status, 0);
     return status;
   }
-  std::string said() const { return test::read_file(folder / "err"); }
+  std::string messages() const { return test::read_file(folder / "err"); }
 
-  /// The program's watchdog process; 0: none.
+  /// Process id of the program's watchdog; 0 if none.
   int watchdog() const {
     for (const auto& task : std::filesystem::directory_iterator("/proc/" + std::to_string(child) + "/task")) {
       std::istringstream children(test::read_file(task.path() / "children"));
@@ -99,8 +99,8 @@ class Rig {
     }
     return 0;
   }
-  static bool lives(int id) {
-    // a zombie does not
+  static bool is_running(int id) {
+    // a zombie does not count
     const std::string path = "/proc/" + std::to_string(id) + "/stat";
     std::ifstream in(path);
     std::string line;
@@ -116,7 +116,7 @@ class Rig {
   std::uint64_t bulks() {
     return bus.with([&](EmulatedFalcon&) { return bus.port().counts.bulks; });
   }
-  /// How long after `since` a force was still there, ms.
+  /// Time in ms from `since` to the first zero after the last force; -1 if the last force is not zero.
   double force_outlived_ms(std::int64_t since) {
     return bus.with([&](EmulatedFalcon&) {
       std::size_t k = packets.size();
@@ -125,7 +125,7 @@ class Rig {
     });
   }
 
-  std::vector<Packet> packets;  ///< under the port's mutex; before the bus, whose thread adds to it
+  std::vector<Packet> packets;  ///< guarded by the port's mutex; declared before the bus, whose thread adds to it
   UmockdevBus bus{{.homed = true}};
   test::TemporaryFolder folder;
   pid_t child = 0;
@@ -139,7 +139,7 @@ class WatchdogUsb : public testing::Test {
     random_ = random_ * 6364136223846793005u + 1442695040888963407u;
     std::this_thread::sleep_for(std::chrono::microseconds((random_ >> 33) % 5000));
   }
-  void keep(const std::string& name, std::vector<double> ms) {
+  void record_times(const std::string& name, std::vector<double> ms) {
     std::sort(ms.begin(), ms.end());
     RecordProperty(name + "_ms_median", std::to_string(ms[ms.size() / 2]));
     RecordProperty(name + "_ms_most", std::to_string(ms.back()));
@@ -147,12 +147,12 @@ class WatchdogUsb : public testing::Test {
   std::uint64_t random_ = 17;
 };
 
-TEST_F(WatchdogUsb, AKilledProgramHoldsNoForce) {
+TEST_F(WatchdogUsb, AfterTheProgramIsKilledTheForceIsZero) {
   std::vector<double> outlived_ms;
   Rig rig;
   for (int i = 0; i < 8; ++i) {
     rig.start();
-    ASSERT_TRUE(rig.pushes()) << rig.said();
+    ASSERT_TRUE(rig.pushes()) << rig.messages();
     sleep_at_random();
     const int watchdog = rig.watchdog();
     ASSERT_GT(watchdog, 0);
@@ -161,44 +161,45 @@ TEST_F(WatchdogUsb, AKilledProgramHoldsNoForce) {
     kill(rig.child, SIGKILL);
     const int status = rig.wait();
     EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
-    ASSERT_TRUE(wait_until([&] { return !Rig::lives(watchdog); })) << "its work is done";
-    // two zeros; a machine that is slow to end the program has it stand still first, which is said, and lets go then, too
-    const bool stood_still = rig.said().find("has stood still with a force on") != std::string::npos;
+    ASSERT_TRUE(wait_until([&] { return !Rig::is_running(watchdog); })) << "its work is done";
+    // two zeros; on a slow machine the watchdog first reports that the program stands still, and sends more zeros
+    const bool stood_still = rig.messages().find("stopped responding while a force was on") != std::string::npos;
     EXPECT_GE(rig.bulks(), bulks + 2);
     if (!stood_still) {
       EXPECT_EQ(rig.bulks(), bulks + 2);
     }
     EXPECT_EQ(rig.last().force_n, 0) << i;
     outlived_ms.push_back(rig.force_outlived_ms(killed_ns));
-    EXPECT_NE(rig.said().find("catena: the program has ended with a force on: its device was let go\n"), std::string::npos) << rig.said();
+    EXPECT_NE(rig.messages().find("catena: the program ended while a force was on: the force was set to zero\n"), std::string::npos)
+        << rig.messages();
   }
-  keep("killed", outlived_ms);
+  record_times("killed", outlived_ms);
 }
 
-TEST_F(WatchdogUsb, AStoppedProgramHoldsNoForceAndRampsInWhenItGoesOn) {
+TEST_F(WatchdogUsb, WhileTheProgramIsStoppedTheForceIsZeroThenRampsIn) {
   std::vector<double> outlived_ms;
   Rig rig;
   rig.start();
-  int on_its_way = 0;
+  int in_flight = 0;
   for (int i = 0; i < 10; ++i) {
-    ASSERT_TRUE(rig.pushes()) << rig.said();
+    ASSERT_TRUE(rig.pushes()) << rig.messages();
     sleep_at_random();
     const std::uint64_t bulks = rig.bulks();
-    kill(rig.child, SIGRTMIN + 5);  // SIGSTOP, outside of a request (inherited_node.cpp)
+    kill(rig.child, SIGRTMIN + 5);  // SIGSTOP outside of a request (inherited_node.cpp)
     int status = 0;
     waitpid(rig.child, &status, WUNTRACED);
     ASSERT_TRUE(WIFSTOPPED(status));
     const std::int64_t stopped_ns = now_ns();
     ASSERT_TRUE(wait_until([&] { return rig.bulks() > bulks && rig.last().force_n == 0; }));
     outlived_ms.push_back(rig.force_outlived_ms(stopped_ns));
-    // it holds: a second zero, and nothing else
+    // the watchdog keeps sending zeros
     const std::uint64_t held = rig.bulks();
     ASSERT_TRUE(wait_until([&] { return rig.bulks() > held; }));
     EXPECT_EQ(rig.last().force_n, 0);
     const std::size_t from = rig.count();
     const std::int64_t goes_on_ns = now_ns();
     kill(rig.child, SIGCONT);
-    // zeros, perhaps with one packet between that was on its way at the moment of the stop, then the ramp; the end: not yet
+    // index of the ramp's first packet: after zeros and at most one packet that was in flight at the stop; packets.size(): none so far
     bool late_packet = false;
     const auto ramp_from = [&] {
       const std::vector<Packet>& packets = rig.packets;
@@ -213,17 +214,17 @@ TEST_F(WatchdogUsb, AStoppedProgramHoldsNoForceAndRampsInWhenItGoesOn) {
     ASSERT_TRUE(wait_until([&] { return rig.bus.with([&](EmulatedFalcon&) { return ramp_from() < rig.packets.size(); }); }));
     rig.bus.with([&](EmulatedFalcon&) {
       const Packet& first = rig.packets[ramp_from()];
-      on_its_way += late_packet;
-      // 8 N in 0.1 s; a program that waits for the processor may miss the first steps
+      in_flight += late_packet;
+      // 8 N in 0.1 s; a program that waits for a processor may skip the first steps
       EXPECT_LT(first.force_n, 0.5 + 80e-9 * static_cast<double>(first.ns - goes_on_ns)) << "the ramp from its beginning, " << i;
     });
   }
-  keep("stopped", outlived_ms);
-  RecordProperty("on_its_way", on_its_way);
-  EXPECT_NE(rig.said().find("catena: the program has stood still with a force on"), std::string::npos) << rig.said();
+  record_times("stopped", outlived_ms);
+  RecordProperty("on_its_way", in_flight);
+  EXPECT_NE(rig.messages().find("catena: the program stopped responding while a force was on"), std::string::npos) << rig.messages();
 }
 
-TEST_F(WatchdogUsb, AProgramThatEndsByItselfEndsItAndItWritesNothing) {
+TEST_F(WatchdogUsb, ANormalExitEndsTheWatchdogWithoutWrites) {
   Rig rig;
   rig.start();
   ASSERT_TRUE(rig.pushes());
@@ -233,22 +234,21 @@ TEST_F(WatchdogUsb, AProgramThatEndsByItselfEndsItAndItWritesNothing) {
   kill(rig.child, SIGINT);
   const int status = rig.wait();
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-  EXPECT_FALSE(Rig::lives(watchdog));
+  EXPECT_FALSE(Rig::is_running(watchdog));
   EXPECT_EQ(rig.bulks(), bulks);
   EXPECT_EQ(rig.last().force_n, 0);
-  EXPECT_EQ(rig.said().find("let go"), std::string::npos) << rig.said();
+  EXPECT_EQ(rig.messages().find("set to zero"), std::string::npos) << rig.messages();
 }
 
-// before, each of these ended the program as SIGKILL does: the last force stayed until the watchdog process had let go
-TEST_F(WatchdogUsb, ASignalThatEndsTheProgramLetsGoFirst) {
+TEST_F(WatchdogUsb, ATerminatingSignalSendsZeroForceFirst) {
   Rig rig;
   for (const int signal_number : {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGXCPU, SIGRTMAX, SIGTRAP}) {
     int status = 0;
-    // a program that got no processor was let go before the signal, which is not what is asked here: once more
-    for (int i = 0; i < 5 && (i == 0 || rig.said().find("has stood still") != std::string::npos); ++i) {
+    // retries if the watchdog had already taken over before the signal
+    for (int i = 0; i < 5 && (i == 0 || rig.messages().find("stopped responding") != std::string::npos); ++i) {
       rig.start();
-      ASSERT_TRUE(rig.pushes()) << rig.said();
-      kill(rig.child, SIGXFSZ);  // of a file that is too long: it ends nothing
+      ASSERT_TRUE(rig.pushes()) << rig.messages();
+      kill(rig.child, SIGXFSZ);  // ignored by the program
       kill(rig.child, signal_number);
       status = rig.wait();
     }
@@ -258,14 +258,14 @@ TEST_F(WatchdogUsb, ASignalThatEndsTheProgramLetsGoFirst) {
       EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << signal_number << ": " << status;
     }
     EXPECT_EQ(rig.last().force_n, 0) << signal_number;
-    EXPECT_EQ(rig.said().find("has ended with a force on"), std::string::npos)
-        << "nothing was left to the watchdog process: " << rig.said();
-    EXPECT_NE(rig.said().find("catena: ended by "), std::string::npos) << rig.said();
-    EXPECT_NE(rig.said().find("the device is off\n"), std::string::npos) << rig.said();
+    EXPECT_EQ(rig.messages().find("ended while a force was on"), std::string::npos)
+        << "nothing was left to the watchdog process: " << rig.messages();
+    EXPECT_NE(rig.messages().find("catena: ended by "), std::string::npos) << rig.messages();
+    EXPECT_NE(rig.messages().find("the device is off\n"), std::string::npos) << rig.messages();
   }
 }
 
-TEST_F(WatchdogUsb, TheProcessStandsApartIsSmallAndIsStartedAgain) {
+TEST_F(WatchdogUsb, TheWatchdogProcessIsSeparateSmallAndRestarted) {
   Rig rig;
   rig.start();
   ASSERT_TRUE(rig.pushes());
@@ -285,15 +285,15 @@ TEST_F(WatchdogUsb, TheProcessStandsApartIsSmallAndIsStartedAgain) {
   RecordProperty("resident_kb", static_cast<int>(resident_kb));
   for (const int signal_number : {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGUSR1, SIGPIPE}) kill(first, signal_number);
   ASSERT_TRUE(wait_for_frames(rig.bus, 20));
-  EXPECT_TRUE(Rig::lives(first)) << "signals do not end it";
-  // it is killed: the driver lets go while it starts another one
+  EXPECT_TRUE(Rig::is_running(first)) << "signals do not end it";
+  // when the watchdog is killed, the driver sends zero while it starts another one
   kill(first, SIGKILL);
   ASSERT_TRUE(wait_until([&] { return rig.watchdog() != 0 && rig.watchdog() != first; }));
   ASSERT_TRUE(rig.pushes());
   const int second = rig.watchdog();
   kill(rig.child, SIGKILL);
   rig.wait();
-  ASSERT_TRUE(wait_until([&] { return !Rig::lives(second); }));
+  ASSERT_TRUE(wait_until([&] { return !Rig::is_running(second); }));
   EXPECT_EQ(rig.last().force_n, 0);
 }
 

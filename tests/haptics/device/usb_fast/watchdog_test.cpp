@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The watchdog's work (haptics/watchdog) and the driver's side of it, in one process: it runs on a thread here, and "the program stands
-/// still" is the driver's threads held in a signal handler, at any instruction outside the kernel, as SIGSTOP would hold them.
+/// The watchdog (haptics/watchdog) and the driver's side of it in one process: the watchdog runs on a thread, and a stopped program is
+/// simulated by suspending the driver's threads in a signal handler, at any instruction outside the kernel, as SIGSTOP would.
 /// Asserts order and counts.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -23,32 +23,32 @@ namespace watchdog_test {
 using watchdog::EndReason;
 using watchdog::Holder;
 
-// ---- threads that stand still ----
+// ---- suspended threads ----
 
-std::atomic<bool> still{false};
-std::atomic<int> standing{0};
+std::atomic<bool> suspend{false};
+std::atomic<int> suspended_count{0};
 thread_local bool asked_in_kernel = false;
 
-void stand() {
-  ++standing;
-  while (still) {
+void suspend_here() {
+  ++suspended_count;
+  while (suspend) {
     timespec nap{0, 200000};
     nanosleep(&nap, nullptr);
   }
-  --standing;
+  --suspended_count;
 }
 void on_signal(int) {
   const int error = errno;
   if (InProcessBus::in_kernel())
     asked_in_kernel = true;
   else
-    stand();
+    suspend_here();
   errno = error;
 }
 void on_return() {
   if (!std::exchange(asked_in_kernel, false)) return;
   const int error = errno;
-  stand();
+  suspend_here();
   errno = error;
 }
 
@@ -58,26 +58,26 @@ std::set<int> threads() {
   return all;
 }
 
-/// Holds threads where they are until it ends.
-class StandStill {
+/// Suspends threads for its lifetime.
+class SuspendedThreads {
  public:
-  explicit StandStill(std::set<int> ids) : ids_(std::move(ids)) {
+  explicit SuspendedThreads(std::set<int> ids) : ids_(std::move(ids)) {
     struct sigaction action {};
     action.sa_handler = on_signal;
     action.sa_flags = SA_RESTART;
     sigaction(SIGRTMIN + 3, &action, nullptr);
     InProcessBus::on_return(on_return);
-    still = true;
+    suspend = true;
     for (const int id : ids_) syscall(SYS_tgkill, getpid(), id, SIGRTMIN + 3);
     const int all = static_cast<int>(ids_.size());
-    EXPECT_TRUE(wait_until([&] { return standing == all; }));
+    EXPECT_TRUE(wait_until([&] { return suspended_count == all; }));
   }
-  ~StandStill() {
-    still = false;
-    EXPECT_TRUE(wait_until([] { return standing == 0; }));
+  ~SuspendedThreads() {
+    suspend = false;
+    EXPECT_TRUE(wait_until([] { return suspended_count == 0; }));
   }
-  StandStill(const StandStill&) = delete;
-  StandStill& operator=(const StandStill&) = delete;
+  SuspendedThreads(const SuspendedThreads&) = delete;
+  SuspendedThreads& operator=(const SuspendedThreads&) = delete;
 
  private:
   std::set<int> ids_;
@@ -114,7 +114,7 @@ class OnAThread final : public usb::ExternalWatchdog {
   std::thread thread_;
 };
 
-/// Orders a force, tick by tick, as a servo would: after a read that is not ready it begins at zero and grows.
+/// Commands a force in each tick, as a servo would: after a read that is not ready the force ramps in from zero.
 class Ticks {
  public:
   static constexpr int kRampTicks = 60;
@@ -131,7 +131,7 @@ class Ticks {
   }
   std::atomic<int> id{0};
   std::atomic<std::uint64_t> lost{0};
-  std::atomic<int> since{0};  ///< the last read that was not ready, up to kRampTicks
+  std::atomic<int> since{0};  ///< ticks since the last read that was not ready, up to kRampTicks
   std::atomic<bool> pushes{true};
 
  private:
@@ -141,7 +141,7 @@ class Ticks {
       const DeviceInput input = falcon_.read();
       const bool good = input.status == DeviceStatus::ready;
       if (!good) ++lost;
-      since = good && pushes ? std::min(since + 1, kRampTicks) : 0;  // before the order: no packet is ahead of it
+      since = good && pushes ? std::min(since + 1, kRampTicks) : 0;  // set before the write, so that no packet precedes it
       falcon_.write({.force_n = Vec3(0, 0, kForceN * since / kRampTicks)});
       std::this_thread::sleep_for(std::chrono::microseconds(300));
     }
@@ -151,7 +151,7 @@ class Ticks {
   std::thread thread_;
 };
 
-/// A Falcon that is armed and pushes, its watchdog, and every force that its motors have had.
+/// An armed Falcon with a commanded force, its watchdog, and all forces of its motors.
 class Rig {
  public:
   Rig() {
@@ -192,7 +192,7 @@ class Rig {
   bool pushes_fully() {
     return wait_until([&] { return last() > 0.97 * Ticks::kForceN; });
   }
-  /// The full force again, in a packet after the one at `from`: a packet of the old force may have been on its way.
+  /// Waits for the full force in a packet after `from` + 1: a packet of the old force may have been in flight.
   bool pushes_fully_after(std::size_t from) {
     return wait_until([&] { return packets() > from + 1 && last() > 0.97 * Ticks::kForceN; });
   }
@@ -206,19 +206,19 @@ class Rig {
   std::unique_ptr<usb::Falcon> falcon;
   std::unique_ptr<Ticks> ticks;
   std::set<int> io_threads;
-  std::vector<double> forces;   ///< under the port's mutex
-  std::vector<double> ordered;  ///< the most that the haptic thread can have ordered when the force came; likewise
+  std::vector<double> forces;     ///< guarded by the port's mutex
+  std::vector<double> commanded;  ///< maximum force that the haptic thread can have commanded at each packet; guarded by the port's mutex
 
  private:
   void add(double force_n) {
     forces.push_back(force_n);
-    ordered.push_back(Ticks::kForceN * ticks->since / Ticks::kRampTicks);
+    commanded.push_back(Ticks::kForceN * ticks->since / Ticks::kRampTicks);
   }
 };
 
-/// How often a packet that was on its way at the moment of the stop came after the watchdog's zero.
-int stand_still_at_random(Rig& rig, bool ticks_too, int times) {
-  int on_its_way = 0;
+/// Number of times that a packet in flight at the stop arrived after the watchdog's zero.
+int suspend_at_random(Rig& rig, bool ticks_too, int times) {
+  int in_flight = 0;
   std::uint64_t state = 88172645463325252u;
   for (int i = 0; i < times && !testing::Test::HasFailure(); ++i) {
     EXPECT_TRUE(rig.pushes_fully()) << i;
@@ -230,63 +230,63 @@ int stand_still_at_random(Rig& rig, bool ticks_too, int times) {
     const std::uint64_t lost = rig.ticks->lost;
     std::size_t after_zero = 0;
     {
-      const StandStill stopped(ticks_too ? rig.all_threads() : rig.io_threads);
+      const SuspendedThreads stopped(ticks_too ? rig.all_threads() : rig.io_threads);
       EXPECT_TRUE(wait_until([&] { return rig.page->acknowledged_zeros > zeros; })) << i;
       after_zero = rig.packets();
       EXPECT_EQ(rig.last(), 0) << i;
-      // it goes on to hold: another zero, and nothing but zeros
+      // the watchdog keeps sending zeros and nothing else
       EXPECT_TRUE(wait_until([&] { return rig.page->acknowledged_zeros > zeros + 1; })) << i;
       EXPECT_EQ(rig.page->holder, Holder::watchdog);
       EXPECT_GE(rig.page->takeovers, takeovers + 1);
-      const double most = rig.bus.with([&](EmulatedFalcon&) {
+      const double maximum = rig.bus.with([&](EmulatedFalcon&) {
         return *std::max_element(rig.forces.begin() + static_cast<std::ptrdiff_t>(after_zero) - 1, rig.forces.end());
       });
-      EXPECT_EQ(most, 0) << i;
+      EXPECT_EQ(maximum, 0) << i;
       after_zero = rig.packets();
     }
     EXPECT_TRUE(rig.pushes_fully_after(after_zero)) << i;
     if (testing::Test::HasFailure()) break;
     EXPECT_GT(rig.ticks->lost, lost) << "the haptic thread has been told";
-    // threads that did not get the processor meanwhile were let go once more, which is right: no ramp without a break to look at
+    // threads that got no processor cause another takeover, so that the ramp is interrupted and not checked
     if (rig.page->takeovers != takeovers + 1) {
-      rig.bus.with([&](EmulatedFalcon&) { rig.forces.clear(), rig.ordered.clear(); });
+      rig.bus.with([&](EmulatedFalcon&) { rig.forces.clear(), rig.commanded.clear(); });
       continue;
     }
     EXPECT_EQ(rig.page->holder, Holder::program);
-    // what came: at most one packet of the force of before, zeros, then the ramp from its beginning; never to and fro
+    // packets: at most one of the old force, zeros, then a monotonic ramp from zero
     rig.bus.with([&](EmulatedFalcon&) {
       std::size_t k = after_zero;
-      if (rig.forces[k] > 0.5 * Ticks::kForceN) ++k, ++on_its_way;
+      if (rig.forces[k] > 0.5 * Ticks::kForceN) ++k, ++in_flight;
       EXPECT_EQ(rig.forces[k], 0) << i;
       while (k < rig.forces.size() && rig.forces[k] == 0) ++k;
-      EXPECT_LE(rig.forces[k], rig.ordered[k] + 0.05) << i;  // an I/O thread that waits for the processor may miss the first steps
+      EXPECT_LE(rig.forces[k], rig.commanded[k] + 0.05) << i;  // an I/O thread that waits for a processor may skip the first steps
       for (; k + 1 < rig.forces.size(); ++k) EXPECT_GE(rig.forces[k + 1], rig.forces[k] - 0.05) << i << " " << k;
-      rig.forces.clear(), rig.ordered.clear();
+      rig.forces.clear(), rig.commanded.clear();
     });
   }
-  return on_its_way;
+  return in_flight;
 }
 
-TEST(Watchdog, AProgramThatStandsStillAtAnyMomentHoldsNoForceAndRampsInAgain) {
+TEST(Watchdog, WhenAllThreadsAreSuspendedTheForceIsZeroThenRampsIn) {
   Rig rig;
-  const int on_its_way = stand_still_at_random(rig, true, 40);
-  RecordProperty("on_its_way", on_its_way);
+  const int in_flight = suspend_at_random(rig, true, 40);
+  RecordProperty("on_its_way", in_flight);
   EXPECT_EQ(rig.falcon->stats().takeovers, rig.page->takeovers);
 }
 
-TEST(Watchdog, SoDoesADriverWhoseOwnThreadHangs) {
+TEST(Watchdog, WhenTheDriversThreadHangsTheForceIsZeroThenRampsIn) {
   Rig rig;
-  stand_still_at_random(rig, false, 10);
+  suspend_at_random(rig, false, 10);
 }
 
-TEST(Watchdog, ADeviceWithoutAForceIsLeftAlone) {
+TEST(Watchdog, ADeviceWithoutForceGetsNoPackets) {
   Rig rig;
   rig.ticks->pushes = false;
   ASSERT_TRUE(wait_until([&] { return rig.last() == 0 && rig.page->force_active == 0; }));
   const std::uint64_t bulks = rig.bus.port().counts.bulks;
   {
-    // at rest a packet with room for a force is only now and then on its way: such a moment would count
-    const StandStill stopped(rig.all_threads());
+    // checked only if no packet with a force is in flight at the stop
+    const SuspendedThreads stopped(rig.all_threads());
     if (rig.page->force_active == 0) {
       std::this_thread::sleep_for(std::chrono::milliseconds(150));
       EXPECT_EQ(rig.page->takeovers, 0u);
@@ -295,12 +295,12 @@ TEST(Watchdog, ADeviceWithoutAForceIsLeftAlone) {
   }
 }
 
-TEST(Watchdog, AStalledEndpointIsClearedAndAFullOneIsTriedAgain) {
+TEST(Watchdog, AStalledEndpointIsClearedAndABlockedOneRetried) {
   Rig rig;
   ASSERT_TRUE(rig.pushes_fully());
   {
-    const StandStill stopped(rig.all_threads());
-    // not those of a takeover before, when the threads did not get the processor
+    const SuspendedThreads stopped(rig.all_threads());
+    // read here, because an earlier takeover may have sent zeros
     const std::uint32_t zeros = rig.page->acknowledged_zeros;
     rig.bus.with([](EmulatedFalcon& device) { device.halt(EmulatedFalcon::kEndpointOut); });
     ASSERT_TRUE(wait_until([&] { return rig.page->acknowledged_zeros > zeros; }));
@@ -310,7 +310,7 @@ TEST(Watchdog, AStalledEndpointIsClearedAndAFullOneIsTriedAgain) {
   ASSERT_TRUE(rig.pushes_fully());
   rig.bus.with([&](EmulatedFalcon&) { rig.bus.port().faults.out_naks = true; });
   {
-    const StandStill stopped(rig.all_threads());
+    const SuspendedThreads stopped(rig.all_threads());
     const std::uint64_t bulks = rig.bus.port().counts.bulks;
     ASSERT_TRUE(wait_until([&] { return rig.bus.port().counts.bulks > bulks + 3; })) << "it tries on";
     const std::uint32_t zeros = rig.page->acknowledged_zeros;
@@ -321,16 +321,16 @@ TEST(Watchdog, AStalledEndpointIsClearedAndAFullOneIsTriedAgain) {
   EXPECT_TRUE(rig.pushes_fully());
 }
 
-TEST(Watchdog, AnUnpluggedDeviceEndsIt) {
+TEST(Watchdog, AnUnpluggedDeviceEndsTheWatchdog) {
   Rig rig;
   ASSERT_TRUE(rig.pushes_fully());
-  const StandStill stopped(rig.all_threads());
+  const SuspendedThreads stopped(rig.all_threads());
   rig.bus.unplug();
   EXPECT_TRUE(wait_until([&] { return rig.watchdog->has_ended.load(); }));
   EXPECT_EQ(rig.watchdog->ended, EndReason::device_gone);
 }
 
-TEST(Watchdog, WhereTheProgramIsGoneItLetsGoAndEnds) {
+TEST(Watchdog, AfterTheProgramIsGoneItSendsZerosAndEnds) {
   InProcessBus bus({.homed = true});
   auto memory = usb::WatchdogSharedMemory::make(0x02, usb::encode_command({}));
   ASSERT_TRUE(memory);
@@ -338,48 +338,48 @@ TEST(Watchdog, WhereTheProgramIsGoneItLetsGoAndEnds) {
   EXPECT_EQ((*memory)->page().acknowledged_zeros, 2u);
   EXPECT_EQ(bus.port().counts.bulks, 2u);
   {
-    OnAThread told((*memory)->page(), bus.fd());
-    told.quit();
-    EXPECT_TRUE(wait_until([&] { return told.has_ended.load(); }));
-    EXPECT_EQ(told.ended, EndReason::requested);
+    OnAThread stopped((*memory)->page(), bus.fd());
+    stopped.quit();
+    EXPECT_TRUE(wait_until([&] { return stopped.has_ended.load(); }));
+    EXPECT_EQ(stopped.ended, EndReason::requested);
   }
   EXPECT_EQ(bus.port().counts.bulks, 2u) << "told to end, it writes nothing";
 }
 
-TEST(Watchdog, ADriverThatClosesTellsItToEnd) {
+TEST(Watchdog, ClosingTheDriverEndsTheWatchdog) {
   InProcessBus bus({.homed = true});
   usb::FalconOptions options = patient_options();
-  std::atomic<int> started{0}, told{0};
+  std::atomic<int> started{0}, quit_calls{0};
   struct Counted final : usb::ExternalWatchdog {
-    explicit Counted(std::atomic<int>& told_by) : told(told_by) {}
+    explicit Counted(std::atomic<int>& quit_counter) : quit_calls(quit_counter) {}
     bool is_alive() noexcept override { return true; }
-    void quit() noexcept override { ++told; }
-    std::atomic<int>& told;
+    void quit() noexcept override { ++quit_calls; }
+    std::atomic<int>& quit_calls;
   };
   options.watchdog = [&](usb::Transport&, const usb::WatchdogSharedMemory&) {
     ++started;
-    return Result<std::unique_ptr<usb::ExternalWatchdog>>(std::make_unique<Counted>(told));
+    return Result<std::unique_ptr<usb::ExternalWatchdog>>(std::make_unique<Counted>(quit_calls));
   };
   auto falcon = usb::Falcon::open(std::make_unique<WrapSource>(bus.fd()), std::move(options));
   ASSERT_TRUE(falcon);
   ASSERT_TRUE(wait_for_frames(bus, 3));
   falcon->reset();
   EXPECT_EQ(started, 1);
-  EXPECT_EQ(told, 1);
+  EXPECT_EQ(quit_calls, 1);
 }
 
-TEST(Watchdog, WithoutOneADeviceThatShallHaveOneGetsNoForceUntilItIsBack) {
+TEST(Watchdog, ADeadWatchdogIsRestartedAndTheForceReturns) {
   Rig rig;
   ASSERT_TRUE(rig.pushes_fully());
   OnAThread* const first = rig.watchdog;
-  // it dies
+  // the watchdog ends
   first->quit();
   EXPECT_TRUE(wait_until([&] { return rig.falcon->stats().watchdog_restarts == 1; }));
   EXPECT_TRUE(rig.pushes_fully());
   EXPECT_NE(rig.watchdog, nullptr);
 }
 
-TEST(Watchdog, WhereItCannotBeStartedTheDeviceIsNotOpened) {
+TEST(Watchdog, TheDeviceIsNotOpenedIfTheWatchdogCannotStart) {
   InProcessBus bus({.homed = true});
   usb::FalconOptions options = patient_options();
   options.watchdog = usb::make_watchdog_launcher("/no/such/program");

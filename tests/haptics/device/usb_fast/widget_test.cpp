@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The cutting plane in the hand, end to end: encoder counts and button bits over the unmodified libusb, the driver, the servo, the
-/// machine; poses against closed forms of where the grip is.
+/// The cutting plane end to end: encoder counts and button bits over the unmodified libusb, the driver, the servo and the widget's
+/// state machine; poses against closed forms of the grip's position.
 #include "tests/haptics/device/usbfs/full_stack_widget_program.h"
 #include "tests/haptics/device/usbfs/in_process_bus.h"
 #include "tests/haptics/device/usbfs/wrap_source.h"
@@ -10,12 +10,12 @@ namespace widget_test {
 
 using Mode = WidgetMode;
 
-/// A grip that is held still somewhere, with some buttons pressed.
+/// A grip that is held at a position with some buttons pressed.
 class Hand {
  public:
   Hand(InProcessBus& bus, Servo& servo) : bus_(bus), servo_(servo) {}
 
-  /// At the encoder counts nearest to this place of the world; true once a tick has it.
+  /// Holds the grip at the encoder counts nearest to a world position; true once a tick has it.
   bool hold(const Vec3& world, unsigned buttons) {
     const Vec3 grip = snap_to_whole_counts(kBallCenterM + world * 0.04);
     place = to_world(grip);
@@ -29,7 +29,7 @@ class Hand {
       return norm(tick.probe - place) < 1e-7 && tick.buttons == buttons;
     });
     seen = tick.tick;
-    // two more ticks: what this one changed has been seen
+    // two more ticks, so that the changes of this one are visible
     return there && wait_until([&] {
              servo_.receive(tick);
              return tick.tick > seen + 1;
@@ -45,7 +45,7 @@ class Hand {
   Servo& servo_;
 };
 
-TEST(WidgetOverUsb, ExploreTranslateRotateTurn) {
+TEST(WidgetOverUsb, ExploresTranslatesRotatesAndTurnsACuttingPlane) {
   InProcessBus bus({.homed = true});
   auto falcon = open_wrapped_falcon(bus.fd());
   ASSERT_NE(falcon, nullptr);
@@ -53,7 +53,7 @@ TEST(WidgetOverUsb, ExploreTranslateRotateTurn) {
   ASSERT_TRUE(catena.start());
   Hand hand(bus, catena.servo());
 
-  // away, then on the plane, which holds
+  // away from the plane, then on it
   ASSERT_TRUE(hand.hold({0.75, 0.1, 0.3}, 0));
   EXPECT_EQ(hand.cut().mode, Mode::idle);
   ASSERT_TRUE(hand.hold({0.75, 0.1, 0.05}, 0));
@@ -61,7 +61,7 @@ TEST(WidgetOverUsb, ExploreTranslateRotateTurn) {
   EXPECT_NEAR(hand.tick.links[2].proxy.z, 0, 1e-12);
   EXPECT_NEAR(hand.tick.force_n.z, -200 * 0.04 * hand.place.z, 1e-6);
 
-  // the button: along x, while y and z stay to the bit
+  // button pressed: a drag along x; y and z stay bit-identical
   ASSERT_TRUE(hand.hold({0.75, 0.1, 0.05}, 1));
   EXPECT_EQ(hand.cut().mode, Mode::translate);
   EXPECT_EQ(hand.cut().active_planes, 7);
@@ -78,7 +78,7 @@ TEST(WidgetOverUsb, ExploreTranslateRotateTurn) {
   ASSERT_TRUE(hand.hold({0.2, 0.1, 0.02}, 0));
   EXPECT_EQ(hand.cut().pose.points[0], centre);
 
-  // on the sphere, at the great circle across y
+  // on the sphere, at the great circle perpendicular to y
   const auto on_circle = [&](double angle) { return centre + Vec3(0.48 * std::sin(angle), 0, 0.48 * std::cos(angle)); };
   ASSERT_TRUE(hand.hold(on_circle(0.9), 0));
   EXPECT_EQ(hand.cut().mode, Mode::rotate);

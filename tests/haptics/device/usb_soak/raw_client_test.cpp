@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The in-process way of putting libusb before the emulated device, with a small client of libusb's own.
+/// The in-process bus between libusb and the emulated device, with a small libusb client.
 #include "tests/haptics/device/usbfs/raw_client.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ TEST(InProcessUsb, TheDescriptorIsTheFalcons) {
   EXPECT_EQ(descriptor.idProduct, EmulatedFalcon::kProduct);
 }
 
-TEST(InProcessUsb, TenThousandFramesAllComeBack) {
+TEST(InProcessUsb, TenThousandFramesAreReturned) {
   InProcessBus bus;
   Wrapped usb(bus);
   RawClient client(usb.handle);
@@ -47,7 +47,7 @@ TEST(InProcessUsb, TenThousandFramesAllComeBack) {
   EXPECT_EQ(bus.with([](EmulatedFalcon& device) { return device.frames(); }), 10000u);
 }
 
-TEST(InProcessUsb, StallsTimeOutsAndTheUnplugAreSeen) {
+TEST(InProcessUsb, StallsTimeoutsAndUnplugsAreReported) {
   InProcessBus bus;
   Wrapped usb(bus);
   RawClient client(usb.handle);

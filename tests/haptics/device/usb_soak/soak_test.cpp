@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Servo, driver and the unmodified libusb for a long time within one process, with faults now and then: 20 000 ticks and frames,
-/// or CATENA_SOAK_TICKS=1000000. Four threads: servo, the driver's own, the bus's timer, this one.
+/// Long run of servo, driver and the unmodified libusb within one process, with periodic faults: 20 000 ticks and frames, or
+/// CATENA_SOAK_TICKS=1000000. Four threads: servo, driver, the bus's timer, test.
 #include <cstdlib>
 
 #include "tests/haptics/device/usbfs/ball_link.h"
@@ -11,7 +11,7 @@
 namespace catena::haptics::tests {
 namespace soak_test {
 
-TEST(UsbSoak, SoaksWithFaultsAndStaysReady) {
+TEST(UsbSoak, StaysReadyUnderFaults) {
   const char* asked = std::getenv("CATENA_SOAK_TICKS");
   const std::uint64_t ticks = asked != nullptr ? std::strtoull(asked, nullptr, 10) : 20000;
   InProcessBus bus({.homed = true});
@@ -40,7 +40,7 @@ TEST(UsbSoak, SoaksWithFaultsAndStaysReady) {
   const std::uint64_t frames_before = frame_count(bus);
   HapticState tick;
   std::uint64_t last = 0;
-  // no time limit but of progress
+  // limits only the time without progress
   while (frame_count(bus) < frames_before + ticks || tick.tick < ticks) {
     ASSERT_TRUE(wait_for_frames(bus, 1));
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -49,7 +49,7 @@ TEST(UsbSoak, SoaksWithFaultsAndStaysReady) {
     last = tick.tick;
   }
   catena.servo().stop();
-  // the I/O thread goes on: what the observer counts is read after it has gone
+  // the I/O thread is still running: remove the observer before its counts are read
   bus.with([](EmulatedFalcon& device) { device.set_exchange_observer(nullptr); });
   const usb::FalconStats stats = falcon->stats();
   EXPECT_EQ(falcon->state(), usb::FalconState::ready);

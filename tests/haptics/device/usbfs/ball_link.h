@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The ball of servo_rig.h as a constraint of a few lines, so that the thread sanitizer's program needs no scene.
+/// The ball of servo_fixture.h as a minimal constraint, so that the thread sanitizer's program needs no scene.
 #pragma once
 #include "haptics/chain/program.h"
 

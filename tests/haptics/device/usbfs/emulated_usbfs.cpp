@@ -60,11 +60,11 @@ EmulatedUsbfs::~EmulatedUsbfs() {
   latency_.join();
 }
 
-// the chip's latency timer: at each tick, who waits for data and gets none gets the two status bytes
+// the chip's latency timer: at each tick, a waiting IN URB without data gets the two status bytes
 void EmulatedUsbfs::tick_latency() {
   std::unique_lock lock(port_.mutex);
   while (!stop_) {
-    // a change of the latency is heard at the next tick
+    // a change of the latency takes effect at the next tick
     wake_.wait_until(lock, std::chrono::system_clock::now() + std::chrono::milliseconds(port_.device.latency_ms()));
     if (stop_ || !plugged_) continue;
     pump_locked();
@@ -121,7 +121,7 @@ void EmulatedUsbfs::pump_locked() {
       complete(urb, -EPIPE, 0);
       continue;
     }
-    // full packets go on to the next one, a short one ends the transfer; one that does not fit is babble
+    // a full packet continues the transfer, a short one ends it; one that does not fit is babble
     const auto room = static_cast<std::size_t>(urb.urb->buffer_length);
     std::size_t filled = 0, n = EmulatedFalcon::kPacket;
     while (n == EmulatedFalcon::kPacket && filled < room && device.has_payload()) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// What the kernel's usbdevfs does for one plugged-in device, with the emulated Falcon at the end of the wire: URBs are queued,
-/// completed, reaped, discarded. umockdev_bus.h and in_process_bus.h carry libusb's system calls here.
+/// Emulation of the kernel's usbdevfs for one plugged-in emulated Falcon: URBs are queued, completed, reaped and discarded.
+/// umockdev_bus.h and in_process_bus.h forward libusb's system calls here.
 /// An OUT URB is delivered at once; an IN URB waits for payload, or for the chip's latency timer (an idle packet of 2 bytes).
-/// One object a plug-in: after unplug() it answers ENODEV for ever. Thread-safe: the port's mutex guards device and queues.
+/// One object per plug-in: after unplug() every request returns ENODEV. Thread-safe: the port's mutex guards device and queues.
 #pragma once
 #include <linux/ioctl.h>
 #include <linux/usbdevice_fs.h>
@@ -16,12 +16,12 @@
 
 namespace catena::haptics::tests {
 
-/// What the tests may watch and break, beside the device's own faults. Guarded by the port's mutex.
+/// Faults of the bus that tests can set, besides the device's own. Guarded by the port's mutex.
 struct UsbfsFaults {
   bool out_naks = false;  ///< OUT URBs stay pending
   bool idle_packets = true;
   bool claimed_by_another = false;
-  int submit_errors = 0;  ///< so many submissions fail with ENOMEM
+  int submit_errors = 0;  ///< number of submissions that fail with ENOMEM
 };
 
 struct UsbfsCounts {
@@ -29,7 +29,7 @@ struct UsbfsCounts {
                 releases = 0, idle_packets = 0, after_unplug = 0;
 };
 
-/// The device with the lock that everything around it takes.
+/// The device with the mutex that guards it, the faults and the counts.
 struct EmulatedPort {
   explicit EmulatedPort(const EmulatedFalconOptions& options = {}) : device(options) {}
   std::mutex mutex;
@@ -40,7 +40,7 @@ struct EmulatedPort {
 
 class EmulatedUsbfs {
  public:
-  /// Tells the node whether there is something to reap, or that the device is gone. Called under the port's mutex.
+  /// Receives whether there is an URB to reap, and the loss of the device. Called under the port's mutex.
   class Node {
    public:
     virtual ~Node() = default;
@@ -49,10 +49,10 @@ class EmulatedUsbfs {
   };
 
   struct Urb {
-    usbdevfs_urb* urb = nullptr;     ///< whose status and length are set
-    std::uint8_t* buffer = nullptr;  ///< its data
-    std::uintptr_t client = 0;       ///< the client's address of it: what DISCARDURB names
-    void* owner = nullptr;           ///< the caller's own
+    usbdevfs_urb* urb = nullptr;     ///< its status and length are set on completion
+    std::uint8_t* buffer = nullptr;  ///< data of the URB
+    std::uintptr_t client = 0;       ///< address in the client, the argument of DISCARDURB
+    void* owner = nullptr;           ///< data of the caller
   };
 
   EmulatedUsbfs(EmulatedPort& port, Node& node);
@@ -60,18 +60,18 @@ class EmulatedUsbfs {
   EmulatedUsbfs(const EmulatedUsbfs&) = delete;
   EmulatedUsbfs& operator=(const EmulatedUsbfs&) = delete;
 
-  // all return 0 or an errno
+  // requests; all return 0 or an errno
   int submit(const Urb& urb);
   int reap(Urb& urb);
   int discard(std::uintptr_t client);
-  /// USBDEVFS_BULK: one transfer that completes within the request, whoever asks; behind what is queued. `moved`: its bytes. Never
-  /// waits: what would is ETIMEDOUT at once.
+  /// USBDEVFS_BULK from any process: one transfer that completes within the request, after the queued ones. `moved`: transferred
+  /// bytes. Never waits: returns ETIMEDOUT instead.
   int bulk(unsigned endpoint, std::uint8_t* data, std::size_t size, std::size_t& moved);
-  /// Every other request; `data` is the argument's memory, as large as the request says. ENOTTY: not known.
+  /// Every other request; `data` is the argument's memory, of the size in the request's number. ENOTTY: unknown request.
   int simple(unsigned long request, void* data);
 
   void unplug();
-  /// After a test has touched the device: gives waiting URBs what there is now.
+  /// Completes waiting URBs with available payload, after a test has changed the device.
   void pump();
 
   static std::vector<std::uint8_t> descriptors();

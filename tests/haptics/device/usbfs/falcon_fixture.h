@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the tests of the driver on an emulated Falcon share, whichever bus carries the bytes: patience, homing, whole counts.
+/// Shared helpers of the driver's tests on an emulated Falcon, for both buses: timeouts, homing, whole encoder counts.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 namespace catena::haptics::tests {
 
-/// Waits for what other threads bring about; false only where it never comes (half a minute).
+/// Waits for a condition that other threads bring about; false after 30 s.
 template <class F>
 bool wait_until(F&& condition) {
   for (int i = 0; i < 60000; ++i) {
@@ -22,7 +22,7 @@ bool wait_until(F&& condition) {
   return condition();
 }
 
-/// Slow machines are no part of these tests: nothing is stale or old.
+/// Options without timeouts for commands and poses, so that slow machines do not fail the tests.
 inline usb::FalconOptions patient_options() {
   usb::FalconOptions options;
   options.command_timeout_s = 1e6;
@@ -36,7 +36,7 @@ std::uint64_t frame_count(Bus& bus) {
   return bus.with([](EmulatedFalcon& device) { return device.frames(); });
 }
 
-/// Waits until the device has had `n` more frames: what it was told before is then in effect at the driver.
+/// Waits for `n` more frames of the device, after which the driver has its earlier state.
 template <class Bus>
 bool wait_for_frames(Bus& bus, std::uint64_t n) {
   const std::uint64_t from = frame_count(bus);
@@ -49,7 +49,7 @@ bool hold_grip_at(Bus& bus, const Vec3& position_m, std::uint64_t frames = 6) {
   return wait_for_frames(bus, frames);
 }
 
-/// Out, in (homes), out (arms), in steps that a hand could do.
+/// Moves out, in (homes) and out (arms), in steps of a hand's speed.
 template <class Bus>
 bool home_and_arm(Bus& bus, usb::Falcon& falcon) {
   for (const double z : {0.14, 0.165, 0.175, 0.165, 0.15, 0.14})
@@ -60,7 +60,7 @@ bool home_and_arm(Bus& bus, usb::Falcon& falcon) {
   return wait_until([&] { return falcon.state() == usb::FalconState::ready; });
 }
 
-/// The grip position at which the encoders stand at whole counts; Newton on the emulator's own mechanism, near `guess_m`.
+/// The grip position near `guess_m` with whole encoder counts, by Newton iterations on the emulator's mechanism.
 inline Vec3 snap_to_whole_counts(const Vec3& guess_m) {
   const Vec3 near = angles_to_counts(solve_delta_legs(guess_m)->theta);
   const Vec3 wanted{std::round(near.x), std::round(near.y), std::round(near.z)};
@@ -73,7 +73,7 @@ inline Vec3 snap_to_whole_counts(const Vec3& guess_m) {
   return p;
 }
 
-/// What rounding to whole motor counts may do to a force, by axis: half a count a motor, through (dp/dtheta)^-T.
+/// Maximum force error per axis from rounding to motor counts: half a count per motor, through (dp/dtheta)^-T.
 inline Vec3 force_quantum(const Vec3& position_m) {
   const auto legs = *solve_delta_legs(position_m);
   Vec3 bound(0.0);
@@ -82,7 +82,7 @@ inline Vec3 force_quantum(const Vec3& position_m) {
   return bound;
 }
 
-/// How far the grip may be from where whole counts say it is: half a count an axis, through dp/dtheta.
+/// Maximum position error from rounding to encoder counts: half a count per leg, through dp/dtheta.
 inline double encoder_quantum_m(const Vec3& position_m) {
   const Mat3 p_by_theta = glm::inverse(solve_delta_legs(position_m)->dtheta_dp);
   const double half_count = 0.5 * 0.0364347 * 3.14159265358979323846 / 180;

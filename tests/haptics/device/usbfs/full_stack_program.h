@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The ball of servo_rig.h as a scene's isosurface: all of the hand's side is the real one.
+/// The ball of servo_fixture.h as a scene's isosurface, with the real haptic stack.
 #pragma once
 #include "haptics/build/build_program.h"
 #include "tests/haptics/device/usbfs/servo_fixture.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A cutting plane in the hand's workspace (servo_rig.h): its sizes are those of L = 4.
+/// A cutting plane in the hand's workspace (servo_fixture.h), with its default sizes for L = 4.
 #pragma once
 #include "haptics/build/build_program.h"
 #include "tests/haptics/device/usbfs/servo_fixture.h"

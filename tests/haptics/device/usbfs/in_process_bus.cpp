@@ -23,7 +23,7 @@ std::atomic<int> the_fd{-1};
 thread_local int kernel_depth = 0;
 std::atomic<void (*)()> return_hook{nullptr};
 
-/// The time that a thread spends in the kernel.
+/// Marks the calling thread as within the emulated kernel for its lifetime.
 struct Kernel {
   Kernel() { ++kernel_depth; }
   ~Kernel() {
@@ -114,7 +114,7 @@ long InProcessBus::on_lseek(long offset) {
 
 }  // namespace catena::haptics::tests
 
-// the program's own system calls: libusb's are bound to these
+// interposed system calls, to which libusb's calls are bound
 extern "C" {
 
 __attribute__((visibility("default"))) int ioctl(int fd, unsigned long request, ...) noexcept {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// libusb on the emulated Falcon within one process, in microseconds a round trip: this program's own ioctl, read and lseek
-/// stand before the C library's, and answer for one file descriptor; everything else passes through. The descriptor is the
-/// writing end of a pipe of one slot: full = nothing to reap, empty = POLLOUT, the other end closed = POLLERR.
-/// Hand it to libusb_wrap_sys_device (with LIBUSB_OPTION_NO_DEVICE_DISCOVERY): no enumeration, no hotplug. One at a time.
+/// libusb on the emulated Falcon within one process, at microseconds per round trip: this program's ioctl, read and lseek
+/// interpose the C library's for one file descriptor; all other calls pass through. The descriptor is the writing end of a pipe of
+/// one slot: full = nothing to reap, empty = POLLOUT, the other end closed = POLLERR.
+/// For libusb_wrap_sys_device with LIBUSB_OPTION_NO_DEVICE_DISCOVERY: no enumeration, no hotplug. One instance at a time.
 #pragma once
 #include <memory>
 
@@ -28,12 +28,12 @@ class InProcessBus final : public EmulatedUsbfs::Node {
     return f(port_.device);
   }
 
-  /// True while this thread is within one of the system calls below: the kernel's side, where no signal stops a process.
+  /// True while the calling thread is within one of the system calls below: in a kernel, signals would not stop it there.
   static bool in_kernel();
-  /// Called by a thread that comes back from there; nullptr: nothing.
+  /// Sets the function that threads call on return from the system calls; nullptr: none.
   static void on_return(void (*hook)());
 
-  // the system calls
+  // interposed system calls
   int on_ioctl(unsigned long request, void* argument);
   long on_read(void* to, std::size_t size);
   long on_lseek(long offset);

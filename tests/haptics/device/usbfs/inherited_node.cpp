@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A library to preload before umockdev's, for two things that a kernel's usbfs does and umockdev's does not.
-//   A node that was inherited: umockdev knows one only where the process itself has opened it. catena-watchdog's descriptor 3 is opened
-//   again here, and its requests go to the new descriptor.
-//   SIGSTOP never stops a process within a request; umockdev's requests are a conversation of user programs, and its one thread waits
-//   for the rest of it. The signal SIGRTMIN + 5 stops the program (a real SIGSTOP) when none of its threads is within a request.
+// A library to preload before umockdev's, for two features of the kernel's usbfs that umockdev does not emulate.
+//   Inherited nodes: umockdev knows only nodes that the process itself has opened. The library reopens catena-watchdog's descriptor 3
+//   and forwards its requests to the new descriptor.
+//   Atomic requests: SIGSTOP never stops a process within a kernel request, but umockdev's requests are exchanged between user
+//   programs, and its one thread would wait. Signal SIGRTMIN + 5 stops the program by SIGSTOP outside of all requests.
 #include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -26,7 +26,7 @@ namespace {
 constexpr int kInherited = 3;
 int opened_again = -1;
 
-// the node of the test bed that is a link to what the descriptor is
+// the test bed's node that links to the descriptor's file
 bool find_node(const char* target, char (&node)[PATH_MAX]) {
   const char* root = std::getenv("UMOCKDEV_DIR");
   if (root == nullptr) return false;
@@ -47,7 +47,7 @@ bool find_node(const char* target, char (&node)[PATH_MAX]) {
   return found;
 }
 
-// ---- stopping outside of requests ----
+// ---- stop outside of requests ----
 
 sem_t stop_asked;
 std::atomic<bool> stopping{false};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A small client of libusb's own: what the emulation does is tested with it before the driver stands on it.
+/// A small libusb client, to test the emulation without the driver.
 #pragma once
 #include <libusb.h>
 
@@ -9,7 +9,7 @@
 
 namespace catena::haptics::tests {
 
-/// An open handle with interface 0 claimed; empty where libusb said no.
+/// An open handle with interface 0 claimed; empty if libusb failed.
 class RawClient {
  public:
   explicit RawClient(libusb_device_handle* handle) : handle_(handle) {
@@ -34,7 +34,7 @@ class RawClient {
     return error == 0 && sent != static_cast<int>(bytes.size()) ? LIBUSB_ERROR_IO : error;
   }
   int write_text(const std::string& text) { return write(std::vector<std::uint8_t>(text.begin(), text.end())); }
-  /// The next packet's payload (without the two status bytes); idle packets are passed over up to `patience` times.
+  /// Payload of the next packet without the two status bytes; skips up to `patience` idle packets.
   int read(std::vector<std::uint8_t>& payload, unsigned timeout_ms = 1000, int patience = 50) {
     payload.clear();
     for (int i = 0; i < patience; ++i) {
@@ -54,7 +54,7 @@ class RawClient {
   libusb_device_handle* handle_;
 };
 
-/// Motors at rest, no lights.
+/// Command with zero motors and no lights.
 inline const char* const kRestFrame = "<AAAAAAAAAAAAAA>";
 
 }  // namespace catena::haptics::tests

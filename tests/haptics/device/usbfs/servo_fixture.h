@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A program on the hand's side over USB bytes: servo, Falcon driver, libusb, and the emulated mechanism that stands where its
-/// encoders say and feels what its motors are sent. For both buses. The program holds the hand out of a ball: |x| = 0.5 at
-/// 0.04 m a unit, around the device's (0, 0, 0.12) m: 20 mm in radius.
+/// Servo, Falcon driver, libusb and the emulated mechanism, connected by USB bytes, for both buses. The program's constraint is a
+/// ball |x| = 0.5 at 0.04 m per unit around the device's (0, 0, 0.12) m: radius 20 mm.
 #pragma once
 #include "haptics/servo/servo.h"
 #include "tests/haptics/device/usbfs/falcon_fixture.h"
@@ -13,7 +12,7 @@ inline const Vec3 kBallCenterM{0, 0, 0.12};
 
 inline Vec3 to_world(const Vec3& device_m) { return (device_m - kBallCenterM) / 0.04; }
 
-/// The next of a fixed row of grip positions in the shell 16..25 mm around the ball's centre.
+/// A fixed sequence of grip positions in the shell 16..25 mm around the ball's centre.
 struct GripWalk {
   std::uint64_t state = 88172645463325252u;
   double next_uniform() {
@@ -29,7 +28,7 @@ struct GripWalk {
   }
 };
 
-/// The device is homed and pulled out; the driver is open: arms it, then runs the servo on it.
+/// Arms a homed device behind an open driver, then runs the servo on it.
 template <class Bus>
 class ServoRig {
  public:
@@ -44,46 +43,46 @@ class ServoRig {
     return static_cast<bool>(servo_.start());
   }
 
-  /// With the grip held there: the tick's probe, and what the motors get, both settled.
-  bool settle(const Vec3& grip_m, HapticState& tick, EmulatedFalcon::Exchange& felt) {
+  /// Holds the grip and waits until the tick's probe and the motors' force have settled.
+  bool settle(const Vec3& grip_m, HapticState& tick, EmulatedFalcon::Exchange& exchange) {
     bus_.with([&](EmulatedFalcon& device) { device.mechanism().hold(grip_m); });
-    // a late tick there holds the force of another place, and a proxy that ran out of budget is still on its way
+    // excludes late ticks, which hold an earlier force, and proxies that ran out of budget and have not arrived
     const bool arrived = wait_until([&] {
       servo_.receive(tick);
       return tick.force_state == ForceState::on && norm(tick.probe - to_world(grip_m)) < 1e-7 && tick.links[0].status != LinkStatus::budget;
     });
-    // the order may have been written just after the I/O thread looked: two more frames, and one for the tick itself
-    // a servo that the machine does not let run is let go of by the driver: its motors are off until it is back
+    // the command may have been written just after the I/O thread's read: two more frames, and one for the tick itself
+    // the driver sends zeros for a servo that gets no processor: the motors are off until it returns
     return arrived && wait_until([&] {
              if (!wait_for_frames(bus_, 4)) return false;
-             felt = bus_.with([](EmulatedFalcon& device) { return device.last_exchange(); });
+             exchange = bus_.with([](EmulatedFalcon& device) { return device.last_exchange(); });
              servo_.receive(tick);
-             const Vec3 least = force_quantum(grip_m);
-             bool weak = true;  // less than half a count
-             for (int j = 0; j < 3; ++j) weak = weak && std::abs(tick.force_n[j]) <= least[j] + 1e-9;
-             return weak || felt.motors != EmulatedMechanism::Counts{};
+             const Vec3 quantum = force_quantum(grip_m);
+             bool weak = true;  // force below half a motor count
+             for (int j = 0; j < 3; ++j) weak = weak && std::abs(tick.force_n[j]) <= quantum[j] + 1e-9;
+             return weak || exchange.motors != EmulatedMechanism::Counts{};
            });
   }
 
-  /// The force that the motors get is the tick's, but for whole counts; the proxy is on the surface, the probe is the grip.
+  /// Checks that the motors' force is the tick's up to whole counts, the proxy is on the surface, and the probe is the grip.
   void check(const Vec3& grip_m) {
     HapticState tick;
-    EmulatedFalcon::Exchange felt;
-    ASSERT_TRUE(settle(grip_m, tick, felt));
+    EmulatedFalcon::Exchange exchange;
+    ASSERT_TRUE(settle(grip_m, tick, exchange));
     const double radius_m = norm(grip_m - kBallCenterM);
     EXPECT_LT(norm(tick.probe - to_world(grip_m)) * 0.04, 1e-10) << "at whole counts the encoders say it all";
     const Vec3 bound = force_quantum(grip_m);
-    for (int j = 0; j < 3; ++j) EXPECT_NEAR(felt.force_n[j], tick.force_n[j], bound[j] + 1e-9) << "axis " << j;
+    for (int j = 0; j < 3; ++j) EXPECT_NEAR(exchange.force_n[j], tick.force_n[j], bound[j] + 1e-9) << "axis " << j;
     if (radius_m < kBallRadiusM - 1e-9) {
       EXPECT_NEAR(norm(tick.links[0].proxy), 0.5, 1e-9);
       EXPECT_NEAR(norm(tick.force_n), kBallStiffness * (kBallRadiusM - radius_m), 1e-6);
       EXPECT_GT(dot(tick.force_n, grip_m - kBallCenterM), 0) << "outwards";
       ++held;
     } else {
-      EXPECT_EQ(felt.motors, (EmulatedMechanism::Counts{}));
+      EXPECT_EQ(exchange.motors, (EmulatedMechanism::Counts{}));
       ++free;
     }
-    worst_n = std::max(worst_n, max_abs(felt.force_n - tick.force_n));
+    worst_n = std::max(worst_n, max_abs(exchange.force_n - tick.force_n));
   }
 
   Servo& servo() { return servo_; }

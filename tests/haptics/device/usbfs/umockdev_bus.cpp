@@ -17,7 +17,7 @@
 namespace catena::haptics::tests {
 namespace {
 
-/// One plug-in: its device node and what is behind it.
+/// One plug-in: its device node and its emulated usbfs.
 class Plug final : public EmulatedUsbfs::Node {
  public:
   Plug(EmulatedPort& port, const std::string& node_path) : node_path_(node_path) {
@@ -49,7 +49,7 @@ class Plug final : public EmulatedUsbfs::Node {
   }
   EmulatedUsbfs& usbfs() { return *usbfs_; }
 
-  // umockdev's thread only: the URBs' data live until they are reaped
+  // used by umockdev's thread only; holds the URBs' data until they are reaped
   std::set<UMockdevIoctlData*> held_;
 
  private:
@@ -69,12 +69,12 @@ int submit(Plug& plug, UMockdevIoctlData* argument) {
   const auto length = static_cast<gsize>(urb->buffer_length);
   UMockdevIoctlData* buffer = umockdev_ioctl_data_resolve(data, offsetof(usbdevfs_urb, buffer), length, nullptr);
   static std::uint8_t nothing[1];
-  if (buffer == nullptr && length > 0) {  // the client was killed meanwhile
+  if (buffer == nullptr && length > 0) {  // the client was killed
     g_object_unref(data);
     return EFAULT;
   }
   std::uint8_t* bytes = buffer != nullptr ? buffer->data : nothing;
-  // in the queue before it can be completed
+  // queued before it can complete
   plug.held_.insert(data);
   const int error = plug.usbfs().submit({urb, bytes, data->client_addr, data});
   if (error == 0) {
@@ -92,12 +92,12 @@ int reap(Plug& plug, UMockdevIoctlData* argument) {
   if (const int error = plug.usbfs().reap(urb); error != 0) return error;
   auto* data = static_cast<UMockdevIoctlData*>(urb.owner);
   UMockdevIoctlData* pointer = umockdev_ioctl_data_resolve(argument, 0, sizeof(void*), nullptr);
-  if (pointer != nullptr) {  // else the client was killed meanwhile
+  if (pointer != nullptr) {  // null: the client was killed
     umockdev_ioctl_data_set_ptr(pointer, 0, data);
     g_object_unref(pointer);
   }
   plug.held_.erase(data);
-  g_object_unref(data);  // the argument holds it now, until it is written back
+  g_object_unref(data);  // the argument holds it until it is written back
   return 0;
 }
 
@@ -118,7 +118,7 @@ int bulk(Plug& plug, UMockdevIoctlData* argument, int& moved) {
 }  // namespace
 
 struct UmockdevBus::State {
-  /// What umockdev's thread comes through: a request of a program that outlives the bus finds it shut.
+  /// Guard for umockdev's thread: rejects requests of programs that outlive the bus.
   struct Door {
     std::mutex mutex;
     State* state = nullptr;
@@ -163,13 +163,13 @@ struct UmockdevBus::State {
   Door* door = nullptr;
   std::string root;
   std::mutex plugs_mutex;
-  std::map<std::string, std::unique_ptr<Plug>> plugs;  ///< by device node
+  std::map<std::string, std::unique_ptr<Plug>> plugs;  ///< keyed by device node
   Plug* current = nullptr;
   std::string current_path;
   int last_number = 1;
 };
 
-// umockdev's own question needs a test bed first, and keeps its first answer
+// umockdev's own check needs a test bed and caches its first result
 bool UmockdevBus::available() {
   const char* preloaded = std::getenv("LD_PRELOAD");
   return preloaded != nullptr && std::string(preloaded).find("umockdev") != std::string::npos;
@@ -181,7 +181,7 @@ UmockdevBus::UmockdevBus(const EmulatedFalconOptions& options) : state_(std::mak
   state_->root = root;
   g_free(root);
   state_->handler = umockdev_ioctl_base_new();
-  state_->door = new State::Door{{}, state_.get()};  // deleted with the handler's last reference
+  state_->door = new State::Door{{}, state_.get()};  // deleted with the last reference to the handler
   const auto free_door = [](gpointer door, GClosure*) { delete static_cast<State::Door*>(door); };
   g_signal_connect_data(state_->handler, "handle-ioctl", G_CALLBACK(&State::on_ioctl), state_->door, free_door, GConnectFlags{});
 }
@@ -203,12 +203,12 @@ void UmockdevBus::pump() {
   if (state_->current != nullptr) state_->current->usbfs().pump();
 }
 
-void UmockdevBus::plug(bool power_kept) {
+void UmockdevBus::plug(bool stays_powered) {
   CATENA_ASSERT(state_->current == nullptr);
   const bool first = state_->plugs.empty();
   if (!first) {
     const std::scoped_lock lock(state_->port.mutex);
-    state_->port.device.plug(power_kept);
+    state_->port.device.plug(stays_powered);
   }
   const int number = ++state_->last_number;
   char digits[16];

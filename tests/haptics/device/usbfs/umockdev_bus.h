@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// A USB bus of umockdev's with the emulated Falcon on it: sysfs, udev events and the device node are umockdev's, so the
-/// unmodified libusb enumerates, opens and loses the device as it would a real one. Needs `umockdev-wrapper` around the test.
-/// Every plug-in is a new device number with a new node. A node is a link to a PTY: its output stopped = nothing to reap,
-/// started = POLLOUT, the master closed = POLLERR, which is how the kernel tells of an unplugged device.
-/// umockdev's own thread runs the requests: they never wait.
+/// A USB bus of umockdev with the emulated Falcon on it: sysfs, udev events and the device node are umockdev's, so that the
+/// unmodified libusb enumerates, opens and loses the device like a real one. Needs `umockdev-wrapper` around the test.
+/// Every plug-in has a new device number and a new node. A node is a link to a PTY: output stopped = nothing to reap,
+/// started = POLLOUT, master closed = POLLERR, the kernel's sign of an unplugged device.
+/// The requests run on umockdev's own thread and never wait.
 #pragma once
 #include <memory>
 #include <string>
@@ -14,18 +14,18 @@ namespace catena::haptics::tests {
 
 class UmockdevBus {
  public:
-  static bool available();  ///< the wrapper is there
+  static bool available();  ///< true: runs within umockdev-wrapper
 
   explicit UmockdevBus(const EmulatedFalconOptions& options = {});
   ~UmockdevBus();
   UmockdevBus(const UmockdevBus&) = delete;
   UmockdevBus& operator=(const UmockdevBus&) = delete;
 
-  void plug(bool power_kept = false);  ///< the device appears; the first time as the options say
-  void unplug();                       ///< pending URBs get -ESHUTDOWN, the node POLLERR, udev says "remove"
-  /// udev's part of an unplug that the device made by itself (EmulatedFaults::unplug_after_out_bytes).
+  void plug(bool stays_powered = false);  ///< plugs the device in; the first plug-in uses the options' power state
+  void unplug();                          ///< pending URBs get -ESHUTDOWN, the node POLLERR, udev a "remove" event
+  /// Sends udev's "remove" event for an unplug by the device itself (EmulatedFaults::unplug_after_out_bytes).
   void announce_removal();
-  /// Runs `f(device)` under the lock, then lets waiting URBs go on.
+  /// Runs `f(device)` under the lock, then completes waiting URBs.
   template <class F>
   auto with(F&& f);
   EmulatedPort& port();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The headset's wait has a thread of its own: answers come in order and once each, patience ends, a late answer is not lost, and the end
-/// waits for a call that is under way.
+/// The headset's frame wait on its own thread: results arrive in order and once each, waiting times out, a late result is not lost, and
+/// destruction waits for a pending call.
 #include "render/xr/frame_waiter.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using render::xr::FrameWaiter;
 std::atomic<int> calls = 0, under_way = 0;
 std::atomic<bool> held = false;
 
-/// A runtime that answers with the number of the call, when it is let go.
+/// A runtime call that returns its call number when released.
 XRAPI_ATTR XrResult XRAPI_CALL wait_frame(XrSession, const XrFrameWaitInfo*, XrFrameState* state) {
   ++under_way;
   while (held) std::this_thread::sleep_for(1ms);
@@ -34,7 +34,7 @@ class FrameWaits : public ::testing::Test {
   }
 };
 
-TEST_F(FrameWaits, AnswersComeInOrderAndOnceEach) {
+TEST_F(FrameWaits, ResultsArriveInOrderOnceEach) {
   FrameWaiter wait(wait_frame, XR_NULL_HANDLE);
   for (int k = 1; k <= 200; ++k) {
     const auto answer = wait.wait_for(std::nullopt);
@@ -44,7 +44,7 @@ TEST_F(FrameWaits, AnswersComeInOrderAndOnceEach) {
   }
 }
 
-TEST_F(FrameWaits, ALateAnswerIsNotLostAndNotAskedForTwice) {
+TEST_F(FrameWaits, ALateResultIsKeptAndNotRequestedTwice) {
   FrameWaiter wait(wait_frame, XR_NULL_HANDLE);
   held = true;
   for (int k = 0; k < 3; ++k) EXPECT_FALSE(wait.wait_for(1ms));
@@ -55,7 +55,7 @@ TEST_F(FrameWaits, ALateAnswerIsNotLostAndNotAskedForTwice) {
   EXPECT_EQ(calls, 1);
 }
 
-TEST_F(FrameWaits, TheEndWaitsForACallUnderWay) {
+TEST_F(FrameWaits, DestructionWaitsForAPendingCall) {
   held = true;
   std::thread release;
   {
@@ -72,7 +72,7 @@ TEST_F(FrameWaits, TheEndWaitsForACallUnderWay) {
   release.join();
 }
 
-TEST_F(FrameWaits, WhatNeverAnswersIsLeftBehind) {
+TEST_F(FrameWaits, ACallThatNeverReturnsIsAbandoned) {
   held = true;
   {
     FrameWaiter wait(wait_frame, XR_NULL_HANDLE);
@@ -81,19 +81,19 @@ TEST_F(FrameWaits, WhatNeverAnswersIsLeftBehind) {
     EXPECT_FALSE(wait.stop(5ms));
   }
   EXPECT_EQ(under_way, 1);
-  // and may come back when nothing else is there any more
+  // the call may return after the waiter is destroyed
   held = false;
   while (under_way != 0) std::this_thread::yield();
 }
 
-TEST_F(FrameWaits, WhatAnswersInTimeEndsThere) {
+TEST_F(FrameWaits, ACallThatReturnsInTimeEndsItsThread) {
   FrameWaiter wait(wait_frame, XR_NULL_HANDLE);
   ASSERT_TRUE(wait.wait_for(std::nullopt));
   EXPECT_TRUE(wait.stop(10s));
   EXPECT_EQ(calls, 1);
 }
 
-TEST_F(FrameWaits, NobodyAskedNobodyIsCalled) {
+TEST_F(FrameWaits, WithoutARequestThereIsNoCall) {
   { FrameWaiter wait(wait_frame, XR_NULL_HANDLE); }
   EXPECT_EQ(calls, 0);
 }

@@ -52,17 +52,17 @@ Result<std::vector<Curve>> measure_grid_spacing(Workload& subject) {
     const auto floor = estimate_interpolation_error(grid);
     if (!floor || !(floor->scale > 0)) {
       subject.skipped.push_back(
-          "The error of the data, field \"" + name +
-          "\": it is read by its nearest voxels, has fewer than nine voxels along an axis, or too many to be copied.");
+          "Discretization error of field \"" + name +
+          "\": the field uses nearest-neighbour interpolation, has fewer than nine voxels along an axis, or too many voxels for a copy.");
       return;
     }
     Curve curve;
     curve.id = "data-" + name;
-    curve.title = "What the grid \"" + name + "\" leaves open between its voxels";
+    curve.title = "Discretization error of the grid \"" + name + "\"";
     curve.description =
-        "Interpolation from every 4th and every 2nd voxel is held against the voxels left out; the error between the voxels that "
-        "there are follows from the observed order.";
-    curve.error_name = grid.vector ? "error of interpolation / twice the greatest length (RMS)" : "error of interpolation / range (RMS)";
+        "Interpolation from every 4th and every 2nd voxel is compared with the omitted voxels; the error between the voxels of the full "
+        "grid follows from the observed order of convergence.";
+    curve.error_name = grid.vector ? "interpolation error / twice the maximum length (RMS)" : "interpolation error / range (RMS)";
     curve.bytes_name = "bytes of the values";
     curve.cost = CostKind::bytes;
     const Vec3 n = grid.get()->index_box().hi - grid.get()->index_box().lo + Vec3(1.0);
@@ -76,17 +76,17 @@ Result<std::vector<Curve>> measure_grid_spacing(Workload& subject) {
     curve.current = 2;
     curve.discretization_error = floor->at_h.error / floor->scale;
     curve.discretization_error_method = fmt::format(
-        "extrapolated by the observed order {:.2f}{}", floor->at_h.order,
-        floor->at_h.is_converged ? "" : "; the error hardly falls with the spacing: edges or noise, which no finer grid would mend");
+        "extrapolated with the observed order {:.2f}{}", floor->at_h.order,
+        floor->at_h.is_converged ? ""
+                                 : "; the error hardly decreases with the spacing: a finer grid would not resolve the edges or the noise");
     if (source.rendered.get() == grid.get() && source.loaded.get() != nullptr && !source.loaded.get()->is_grid())
       curve.discretization_error_method +=
-          fmt::format("; by the formula itself it is {:.3g}", true_error(grid, source.loaded) / floor->scale);
+          fmt::format("; compared with the formula it is {:.3g}", true_error(grid, source.loaded) / floor->scale);
     const field::Interpolation cells = grid.scalar ? grid.scalar->interpolation() : grid.vector->grid()->interpolation();
     curve.choice_reason = fmt::format(
-        "Between its voxels the grid, read by {} cells, is off by {:.2g} of {}: values that are drawn or felt of it cannot be more exact "
-        "than that.",
+        "With {} cells, the interpolation error of the grid is {:.2g} of {}: images and forces cannot be more accurate than that.",
         cells == field::Interpolation::cubic ? "cubic" : "linear", curve.discretization_error,
-        grid.vector ? "twice the greatest length of its vectors" : "the range of its values");
+        grid.vector ? "twice the maximum length of the vectors" : "the range of the values");
     curves.push_back(std::move(curve));
   });
   return curves;

@@ -42,28 +42,27 @@ Outcome add_cells(Workload& subject, const Grid& grid, Curve& curve) {
     curve.points.push_back(std::move(p));
   }
   if (!(std::isfinite(curve.points[0].error) && std::isfinite(curve.points[1].error)))
-    return Error{"it has fewer than nine voxels along an axis, or too many to be copied"};
+    return Error{"it has fewer than nine voxels along an axis, or too many voxels for a copy"};
   curve.current = grid.interpolation() == field::Interpolation::cubic ? 1 : 0;
   return time_points(curve, {fetches(linear, places), fetches(cubic, places)}, 0.3 * subject.effort.haptics_s);
 }
 
 /// Cubic interpolation is always slower: it is chosen only if its error is smaller by at least a quarter. Where rays go through the field
-/// as a volume, the fetch is only part of the cost, and the scene's setting stays. volume, the fetch is not all that they cost: what the
-/// scene has stays.
+/// as a volume, the fetch is only part of the cost, and the scene's setting is kept.
 void decide(Curve& curve, bool as_volume) {
   const double gain = curve.points[0].error / curve.points[1].error, cost = curve.points[1].time.median / curve.points[0].time.median;
   curve.front = pareto_front(curve.points, curve.cost);
   curve.chosen = gain >= 1.25 ? 1 : 0;
   curve.choice_reason =
-      gain >= 1.25 ? fmt::format("Cubic cells are {:.3g} times nearer to these data, at {:.2g} times the cost of a fetch.", gain, cost)
-      : gain >= 1  ? fmt::format("Cubic cells are nearer to these data by {:.0f} % only: they are not smooth at their own spacing.",
+      gain >= 1.25 ? fmt::format("Cubic cells have a {:.3g} times smaller error, at {:.2g} times the cost of a fetch.", gain, cost)
+      : gain >= 1  ? fmt::format("Cubic cells reduce the error by {:.0f} % only: these data are not smooth at the spacing of the grid.",
                                  100 * (1 - 1 / gain))
-                   : "Cubic cells are farther from these data than linear ones: they overshoot where noise and edges are.";
+                   : "Cubic cells have a larger error than linear cells: they overshoot at noise and edges.";
   if (curve.chosen != 1 || !as_volume) return;
   curve.choice_reason +=
-      curve.current == 1 ? " The field is drawn as a volume, and a cubic volume has no fast rays: the picture takes longer, see --quality."
-                         : " But the field is drawn as a volume, and a cubic volume has no fast rays: the picture takes longer, see "
-                           "--quality, so that the cost of a fetch alone is no reason to choose them.";
+      curve.current == 1 ? " The field is rendered as a volume, and a cubic volume has no fast rays: the image takes longer, see --quality."
+                         : " But the field is rendered as a volume, and a cubic volume has no fast rays: the image takes longer, see "
+                           "--quality, so that the scene's setting is kept.";
   curve.chosen = curve.current;
 }
 
@@ -85,19 +84,19 @@ Result<std::vector<Curve>> measure_interpolation(Workload& subject) {
     const std::string name = subject.scene.entities.get<scene::Name>(e).value;
     Curve curve;
     curve.id = "data-cells-" + name;
-    curve.title = "How \"" + name + "\" is read between its voxels";
+    curve.title = "Interpolation of \"" + name + "\"";
     curve.description =
-        "Linear cells of eight samples, or cubic ones of 64. Every 4th and every 2nd voxel, read in either way, are held against "
-        "the voxels left out; the error between the voxels that there are follows from the observed order. One fetch is value and "
-        "gradient.";
-    curve.error_name = loaded.vector ? "error of interpolation / twice the greatest length (RMS)" : "error of interpolation / range (RMS)";
-    curve.time_name = "ns a fetch";
+        "Linear cells of eight samples, or cubic cells of 64. Interpolation from every 4th and every 2nd voxel is compared with the "
+        "omitted voxels; the error between the voxels of the full grid follows from the observed order of convergence. One fetch is value "
+        "and gradient.";
+    curve.error_name = loaded.vector ? "interpolation error / twice the maximum length (RMS)" : "interpolation error / range (RMS)";
+    curve.time_name = "ns per fetch";
     curve.bytes_name = "bytes of the grid";
-    curve.reference = "the data's own voxels";
+    curve.reference = "the voxels of the full grid";
     const Outcome made =
         loaded.scalar ? add_cells(subject, *loaded.scalar->grid(), curve) : add_cells(subject, *loaded.vector->grid(), curve);
     if (!made) {
-      subject.skipped.push_back("How field \"" + name + "\" is read: " + made.error().message + ".");
+      subject.skipped.push_back("Interpolation of field \"" + name + "\": " + made.error().message + ".");
       return;
     }
     decide(curve, is_volume(subject.scene, e));

@@ -11,12 +11,13 @@ Result<std::vector<Curve>> measure_chain_length(Workload& subject) {
   const std::size_t links = subject.program->scene_link_count();
   Curve curve;
   curve.id = "hand-chain";
-  curve.title = "How long the chain is";
+  curve.title = "Length of the chain";
   curve.description =
-      "The scene's links in their order, cut off after the first, the second ...: what is felt differs, so that there is only a cost.";
-  curve.work_name = "field fetches a tick";
-  curve.time_name = "ns a tick";
-  curve.extra_columns = {"share of the tick's period, %"};
+      "The scene's chain, cut off after the first link, the second link, and so on: the forces differ, so that there is a cost but no "
+      "error.";
+  curve.work_name = "field fetches per tick";
+  curve.time_name = "ns per tick";
+  curve.extra_columns = {"fraction of the tick period, %"};
   const std::vector<haptics::ProbeSample> path = subject.motion.samples(subject.rate_hz);
   std::vector<haptics::HapticProgram> programs;
   for (std::size_t n = 1; n <= links; ++n) {
@@ -27,7 +28,7 @@ Result<std::vector<Curve>> measure_chain_length(Workload& subject) {
     run_ticks(programs.back(), path, [&](const HapticState& out) {
       for (int i = 0; i < out.link_count; ++i) fetches += out.links[static_cast<std::size_t>(i)].evaluations;
     });
-    Point p{fmt::format("{} link{}, to \"{}\"", n, n > 1 ? "s" : "", subject.program->links[n - 1].name),
+    Point p{fmt::format("{} link{}, up to \"{}\"", n, n > 1 ? "s" : "", subject.program->links[n - 1].name),
             "",
             "",
             kNotMeasured,

@@ -14,7 +14,7 @@
 namespace catena::app::tuning {
 namespace {
 
-/// The same link on another field.
+/// Builds the constraint of a link on another field.
 Result<std::shared_ptr<const haptics::Constraint>> link_on(Workload& subject, const json::Node& node, const field::ScalarFieldPtr& field,
                                                            const std::string& name) {
   haptics::BuildContext context;
@@ -31,37 +31,37 @@ Result<Curve> measure_surface(Workload& subject, const NamedLink& link) {
   if (!field || level == nullptr || level->kind != json::Kind::number)
     return Error{"link \"" + link.name + "\" has no field with a stated level"};
   const auto motion = motion_through_surface(subject.scene, link, subject.effort.motion_s);
-  if (!motion) return Error{"from the faces of its domain to the middle, no way meets the level of link \"" + link.name + "\""};
+  if (!motion) return Error{"no path from the faces of the domain to the middle meets the level of link \"" + link.name + "\""};
   Curve curve;
   curve.id = "hand-isosurface-" + link.name;
-  curve.title = "How exactly the surface \"" + link.name + "\" is felt";
+  curve.title = "Accuracy of the surface link \"" + link.name + "\"";
   curve.description = fmt::format(
-      "The hand goes {} ({:g} Hz). The link has no setting for it: in each tick the proxy goes on until less than 1e-8 L is left along the "
-      "surface.",
+      "The probe moves {} ({:g} Hz). The link has no setting for the accuracy: in each tick the search of the proxy continues until the "
+      "remaining distance along the surface is below 1e-8 L.",
       motion->description, subject.rate_hz);
-  curve.error_name = "distance off the surface / L (RMS)";
-  curve.work_name = "field fetches a tick";
-  curve.time_name = "ns a tick";
+  curve.error_name = "distance of the proxy from the surface / L (RMS)";
+  curve.work_name = "field fetches per tick";
+  curve.time_name = "ns per tick";
   curve.bytes_name = "bytes of the field";
   curve.extra_columns = {"ticks that hold"};
-  curve.reference = "the level of the field as it is, which is known at every place";
+  curve.reference = "the level of the field at full resolution, which is known everywhere";
   std::vector<field::ScalarFieldPtr> fields{field};
   if (field->grid() != nullptr) {
     if (const auto levels = make_resolution_levels(*field->grid())) {
       fields.insert(fields.end(), {levels->grids[1], levels->grids[2]});
-      curve.description += " Beside it the same link on every 2nd and 4th voxel.";
+      curve.description += " For comparison, the same link on every 2nd and every 4th voxel.";
     }
   } else {
-    curve.discretization_error_method = "The field is a formula: the data leave nothing open.";
+    curve.discretization_error_method = "The field is a formula without discretization error.";
   }
   const std::vector<haptics::ProbeSample> path = motion->samples(subject.rate_hz);
   std::vector<haptics::HapticProgram> programs;
-  const char* words[] = {"as it is", "on every 2nd voxel", "on every 4th voxel"};
+  const char* words[] = {"full resolution", "every 2nd voxel", "every 4th voxel"};
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const json::Node* name = link.node.find("field");
     CATENA_TRY(auto constraint, link_on(subject, link.node, fields[i], name->string));
     programs.push_back(isolate_link(*subject.program, link.name, std::move(constraint)));
-    Point p{words[i], "", i == 0 ? "the field as it is" : "coarser", 0, 0, {}, static_cast<double>(fields[i]->bytes()), {0}};
+    Point p{words[i], "", i == 0 ? "full resolution" : "coarser", 0, 0, {}, static_cast<double>(fields[i]->bytes()), {0}};
     if (fields[i]->bytes() == 0) p.bytes = kNotMeasured;
     field::Cursor cursor;
     double squares = 0, fetches = 0;
@@ -81,13 +81,13 @@ Result<Curve> measure_surface(Workload& subject, const NamedLink& link) {
     p.extra_values[0] /= static_cast<double>(path.size());
     curve.points.push_back(std::move(p));
   }
-  if (!(curve.points[0].extra_values[0] > 0)) return Error{"link \"" + link.name + "\" never holds along this motion"};
+  if (!(curve.points[0].extra_values[0] > 0)) return Error{"link \"" + link.name + "\" is never in contact along this motion"};
   curve.current = 0;
   if (curve.points.size() == 3) {
     const ExtrapolatedError e = extrapolate_from_differences(curve.points[1].error, curve.points[2].error);
     curve.discretization_error = e.error;
     if (!e.is_converged) curve.discretization_error_name += ", at least";
-    curve.discretization_error_method = fmt::format("from the surfaces that every 2nd and 4th voxel hold; {}", describe_order(e));
+    curve.discretization_error_method = fmt::format("from the surfaces of every 2nd and every 4th voxel; {}", describe_order(e));
   }
   std::vector<TimedRun> repeats;
   for (const haptics::HapticProgram& program : programs) repeats.push_back(make_tick_run(program, path));
@@ -98,7 +98,7 @@ Result<Curve> measure_surface(Workload& subject, const NamedLink& link) {
 }  // namespace
 
 Result<std::vector<Curve>> measure_isosurface(Workload& subject) {
-  return measure_links(subject, "isosurface", "How exactly a surface is felt", measure_surface);
+  return measure_links(subject, "isosurface", "Accuracy of a surface link", measure_surface);
 }
 
 }  // namespace catena::app::tuning

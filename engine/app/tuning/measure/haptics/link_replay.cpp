@@ -8,13 +8,13 @@
 namespace catena::app::tuning {
 
 void run_ticks(const haptics::HapticProgram& program, std::span<const haptics::ProbeSample> path,
-               const std::function<void(const HapticState&)>& look) {
+               const std::function<void(const HapticState&)>& on_tick) {
   auto state = std::make_unique<haptics::ChainState>();
   auto scratch = std::make_unique<haptics::ChainScratch>();
   HapticState out;
   for (const haptics::ProbeSample& probe : path) {
     haptics::tick(program, probe, *state, *scratch, out);
-    if (look) look(out);
+    if (on_tick) on_tick(out);
   }
 }
 

@@ -11,9 +11,9 @@
 
 namespace catena::app::tuning {
 
-/// Runs one tick per sample and calls `look`, if set, after each.
+/// Runs one tick per sample and calls `on_tick`, if set, after each.
 void run_ticks(const haptics::HapticProgram& program, std::span<const haptics::ProbeSample> path,
-               const std::function<void(const HapticState&)>& look);
+               const std::function<void(const HapticState&)>& on_tick);
 
 /// Returns a timed run of the whole path: processor time in nanoseconds per tick. `program` and `path` must outlive it.
 TimedRun make_tick_run(const haptics::HapticProgram& program, std::span<const haptics::ProbeSample> path);

@@ -25,10 +25,11 @@ constexpr double kReferenceTolerance = 1e-13;  // L
 
 /// Maximum distance of one line from another, over the arc lengths lo..hi, by L.
 double apart(const flow::Curve& line, const flow::NearestOnCurve& other, double lo, double hi, double length) {
-  double most = 0;
-  constexpr int kPlaces = 400;
-  for (int k = 0; k <= kPlaces; ++k) most = std::max(most, other.find_exact(line.position(lo + (hi - lo) * k / kPlaces)).distance2);
-  return std::sqrt(most) / length;
+  double maximum = 0;
+  constexpr int kPointCount = 400;
+  for (int k = 0; k <= kPointCount; ++k)
+    maximum = std::max(maximum, other.find_exact(line.position(lo + (hi - lo) * k / kPointCount)).distance2);
+  return std::sqrt(maximum) / length;
 }
 
 struct Line : StreamlineSource {
@@ -50,12 +51,12 @@ double anywhere(const Line& line) {
 
 void add_floor(const Line& line, Curve& curve) {
   if (!line.field->is_grid()) {
-    curve.discretization_error_method = "The field is a formula, which the hand reads exactly: the data leave nothing open.";
+    curve.discretization_error_method = "The field is a formula without discretization error.";
     return;
   }
   const auto levels = make_resolution_levels(*line.field->grid());
   if (!levels) {
-    curve.discretization_error_method = "The data's own error is not known: the grid is too small, or too large, to be subsampled.";
+    curve.discretization_error_method = "The discretization error is not known: the grid is too small or too large to be subsampled.";
     return;
   }
   double off[2];
@@ -63,8 +64,8 @@ void add_floor(const Line& line, Curve& curve) {
   for (int level = 1; level < 3; ++level) {
     const auto coarse = flow::trace({levels->grids[level].get(), line.flow.is_line_field, line.flow.min_speed}, line.seed, line.options);
     if (!coarse) {
-      curve.discretization_error_method = "The data's own error is not known: at every " + std::string(level == 1 ? "2nd" : "4th") +
-                                          " voxel there is no line through the seed.";
+      curve.discretization_error_method = "The discretization error is not known: with every " + std::string(level == 1 ? "2nd" : "4th") +
+                                          " voxel there is no streamline through the seed.";
       return;
     }
     // limited to the range of both lines
@@ -75,15 +76,15 @@ void add_floor(const Line& line, Curve& curve) {
   curve.discretization_error = e.error;
   if (!e.is_converged) curve.discretization_error_name += ", at least";
   curve.discretization_error_method =
-      fmt::format("from the lines through the same seed on every 2nd voxel (off by {}) and every 4th ({}); {}", format_number(off[0]),
-                  format_number(off[1]), describe_order(e));
+      fmt::format("from the streamlines through the same seed on every 2nd voxel (difference {}) and every 4th ({}); {}",
+                  format_number(off[0]), format_number(off[1]), describe_order(e));
 }
 
 Result<Line> make_line(Workload& subject, const NamedLink& link) {
   CATENA_TRY(StreamlineSource stated, resolve_link_streamline(subject.scene, link));
   Line line{std::move(stated), link.name, {}, {}, 0, 0, {}};
   const auto motion = motion_along_streamline(subject.scene, link, subject.effort.motion_s);
-  if (!motion) return Error{"from the seed of link \"" + link.name + "\" no line goes"};
+  if (!motion) return Error{"there is no streamline through the seed of link \"" + link.name + "\""};
   line.motion = *motion;
   // somewhat longer than the probe path
   const double length = std::min(0.6 * probe_speed(subject.scene) * subject.effort.motion_s, 1.2 * line.field->domain_length());
@@ -104,7 +105,7 @@ Result<StreamlineSource> resolve_link_streamline(scene::Scene& scene, const Name
   CATENA_TRY(const double min_speed, json::get_number(link.node, "min_speed", 0));
   line.flow = {line.field.get(), kind != nullptr && kind->string == "line", min_speed};
   CATENA_TRY(const auto seed, json::get_optional_vec3(link.node, "seed"));
-  if (!seed) return Error{"link \"" + link.name + "\" has no seed: which line it follows is known only while it is felt"};
+  if (!seed) return Error{"link \"" + link.name + "\" has no seed: the streamline is known only during the interaction"};
   line.seed = *seed;
   return line;
 }
@@ -159,17 +160,17 @@ Result<Curve> measure_streamline_link(Workload& subject, const NamedLink& link) 
   const flow::NearestOnCurve nearest(line.truth);
   Curve curve;
   curve.id = streamline_curve_id(line.name);
-  curve.title = "How the streamline \"" + line.name + "\" is followed";
+  curve.title = "Method of the streamline link \"" + line.name + "\"";
   curve.description = fmt::format(
-      "The hand goes {} ({:g} Hz where no rate is named); each setting follows it alone, from the seed on. Tick by tick (1 ms at 1 kHz) "
-      "the fixed steps are as long as the hand's way, so that the servo's rate is their knob: other rates are shown, but not chosen here. "
-      "The cached line fetches "
-      "nothing in a tick, so that it has no place in a plot by fetches.",
+      "The probe moves {} ({:g} Hz unless a rate is stated); each setting follows the streamline alone, from the seed. A fixed step is "
+      "as long as the probe's motion in a tick, so that its error depends on the tick rate. Other tick rates are shown for comparison, but "
+      "only settings at the rate of the scene are chosen. The traced curve needs no fetches in a tick, and is not in the plot against "
+      "fetches.",
       line.motion.description, subject.rate_hz);
-  curve.error_name = "greatest distance from the line / L";
-  curve.work_name = "field fetches a ms of motion";
-  curve.time_name = "ns of processor a ms of motion";
-  curve.extra_columns = {"before the first tick, ms", "ticks not OK, %", "anywhere on its line, distance / L"};
+  curve.error_name = "maximum distance from the streamline / L";
+  curve.work_name = "field fetches per ms of motion";
+  curve.time_name = "ns of processor time per ms of motion";
+  curve.extra_columns = {"before the first tick, ms", "ticks not OK, %", "maximum distance anywhere on the streamline / L"};
 
   // the reference line, and a less accurate one
   flow::TraceOptions coarser = line.options;
@@ -178,7 +179,8 @@ Result<Curve> measure_streamline_link(Workload& subject, const NamedLink& link) 
   CATENA_TRY(const flow::CurvePtr check, flow::trace(line.flow, line.seed, coarser));
   curve.reference_error = apart(*check, nearest, line.lo, line.hi, length);
   curve.reference = fmt::format(
-      "the line traced with a tolerance of 1e-13 L; it differs from one of 1e-11 L by {} L, so that smaller errors cannot be told",
+      "the streamline traced with a tolerance of 1e-13 L; it differs from the one of 1e-11 L by {} L, so that smaller errors cannot be "
+      "resolved",
       format_number(curve.reference_error));
   add_floor(line, curve);
 
@@ -254,7 +256,7 @@ Result<Curve> measure_streamline_link(Workload& subject, const NamedLink& link) 
 }
 
 Result<std::vector<Curve>> measure_streamline(Workload& subject) {
-  return measure_links(subject, "streamline", "How a streamline is followed", measure_streamline_link);
+  return measure_links(subject, "streamline", "Method of a streamline link", measure_streamline_link);
 }
 
 }  // namespace catena::app::tuning

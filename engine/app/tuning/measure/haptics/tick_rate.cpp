@@ -47,23 +47,24 @@ std::string rate_key(double rate_hz) { return fmt::format("`\"device\": {{\"rate
 Result<Curve> force_curve(Workload& subject) {
   Curve curve;
   curve.id = "hand-rate-force";
-  curve.title = "How often the servo ticks: the force";
+  curve.title = "Tick rate of the servo: accuracy of the force";
   curve.description = fmt::format(
-      "The hand goes {}, the same way at every rate; a force is held until the next tick, as a device holds it. "
-      "What differs is how late a force comes.",
+      "The probe moves {}, with the same motion at every rate; a force is held until the next tick, as by a device. The rates differ in "
+      "the "
+      "delay of the force.",
       subject.motion.description);
-  curve.error_name = "difference of the force from that of 10 kHz, N (RMS)";
-  curve.work_name = "ticks a second";
-  curve.time_name = "us of processor a second of motion";
-  curve.extra_columns = {"greatest force, N"};
+  curve.error_name = "difference from the force at 10 kHz, N (RMS)";
+  curve.work_name = "ticks per second";
+  curve.time_name = "us of processor time per second of motion";
+  curve.extra_columns = {"maximum force, N"};
   std::vector<std::vector<haptics::ProbeSample>> paths;
   for (const double rate : kRates_hz) paths.push_back(subject.motion.samples(rate));
   const std::vector<Vec3> truth = forces_of(*subject.program, paths.back());
   const double finer = 2 * kFinest_hz;
   curve.reference_error = difference(truth, kFinest_hz, forces_of(*subject.program, subject.motion.samples(finer)), finer);
-  curve.reference = fmt::format("a servo at 10 kHz; it differs from one at 20 kHz by {} N, so that smaller errors cannot be told",
+  curve.reference = fmt::format("a servo at 10 kHz; it differs from one at 20 kHz by {} N, so that smaller errors cannot be resolved",
                                 format_number(curve.reference_error));
-  curve.discretization_error_method = "There is no error of the data here: it is in all rates alike.";
+  curve.discretization_error_method = "The discretization error is the same at all rates.";
   std::vector<TimedRun> repeats;
   for (std::size_t i = 0; i < std::size(kRates_hz); ++i) {
     const std::vector<Vec3> forces = forces_of(*subject.program, paths[i]);
@@ -110,18 +111,14 @@ Result<Curve> stability_curve(Workload& subject) {
   const double spring = subject.program->coupling.stiffness_n_per_m;
   Curve curve;
   curve.id = "hand-rate-stability";
-  curve.title = "How often the servo ticks: the spring that stays stable";
+  curve.title = "Tick rate of the servo: stability of the coupling";
   curve.description = fmt::format(
-      "The spring of the coupling, which pulls the hand to its proxy, has {:g} N/m. It is held against the stiffest one that {} of {:.3g} "
-      "kg "
-      "and a damping b of {:.3g} N s/m shows without making energy, 2 b / (T + 2 delay), where T is the time between two ticks and the "
-      "delay "
-      "that of the device, {:g} ms; and beside it stands the stiffest at which a simulated mass on a plane comes to rest. Above 1 the hand "
-      "may "
-      "feel a buzz.",
+      "The stiffness of the coupling is {:g} N/m. It is compared with the maximum stiffness at which {} of {:.3g} kg with a damping b of "
+      "{:.3g} N s/m is passive, 2 b / (T + 2 delay), where T is the tick period and the delay of the device is {:g} ms. The last column is "
+      "the maximum stiffness at which a simulated mass on a plane comes to rest. Above a ratio of 1 the device may vibrate.",
       spring, device, setting.mass_kg, setting.damping, 1e3 * setting.delay_s);
-  curve.error_name = "the coupling's spring / the stable one";
-  curve.work_name = "ticks a second";
+  curve.error_name = "stiffness of the coupling / maximum passive stiffness";
+  curve.work_name = "ticks per second";
   curve.cost = CostKind::work;
   curve.extra_columns = {"2 b / (T + 2 delay), N/m", "simulated, N/m"};
   for (const double rate : kRates_hz) {
@@ -138,7 +135,7 @@ Result<Curve> stability_curve(Workload& subject) {
   }
   curve.discretization_error = 1;
   curve.discretization_error_name = "the limit of stability";
-  curve.discretization_error_method = "at or below it the spring makes no energy";
+  curve.discretization_error_method = "at or below it the coupling generates no energy";
   mark_current(curve, subject.rate_hz);
   return curve;
 }
@@ -153,15 +150,15 @@ void choose_one_rate(Curve& force, Curve& stability) {
   if (slower.chosen == faster.chosen) return;
   const auto setting = [](const Curve& curve) { return curve.points[static_cast<std::size_t>(curve.chosen)].setting; };
   if (faster.is_flat)  // no requirement: the scene's rate stays
-    slower.choice_reason =
-        fmt::format("Here {} would do, but by the force no rate stands out, so that the scene's {} may stay: a servo has one rate.",
-                    setting(slower), setting(faster));
+    slower.choice_reason = fmt::format(
+        "{} would suffice for this quantity, but the scene's {} is kept: the force favours no rate, and the servo has one rate for both.",
+        setting(slower), setting(faster));
   else if (slower.is_flat)
     slower.choice_reason =
-        fmt::format("By the force no rate stands out; the spring's stability asks for {}, and a servo has one rate.", setting(faster));
+        fmt::format("The force favours no rate; the stability needs {}, and the servo has one rate for both.", setting(faster));
   else
-    slower.choice_reason = fmt::format("Here {} would do; {} needs {}, and a servo has one rate.", setting(slower),
-                                       &slower == &force ? "the spring's stability" : "the force", setting(faster));
+    slower.choice_reason = fmt::format("{} would suffice here; {} needs {}, and the servo has one rate.", setting(slower),
+                                       &slower == &force ? "the stability" : "the force", setting(faster));
   slower.chosen = faster.chosen;
 }
 

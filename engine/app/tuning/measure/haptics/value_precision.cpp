@@ -54,7 +54,7 @@ Result<Curve> measure_grid(Workload& subject, const std::string& name, const fie
   const field::Box& box = grid.index_box();
   const auto cut = [](double span) { return std::min(static_cast<int>(span) + 1, 256); };
   const field::Index3 n{cut(box.hi.x - box.lo.x), cut(box.hi.y - box.lo.y), cut(box.hi.z - box.lo.z)};
-  if (n.x < 2 || n.y < 2 || n.z < 2) return Error{"field \"" + name + "\" is thinner than a cell"};
+  if (n.x < 2 || n.y < 2 || n.z < 2) return Error{"field \"" + name + "\" has only one voxel along an axis"};
   const field::Index3 origin{static_cast<int>(box.lo.x), static_cast<int>(box.lo.y), static_cast<int>(box.lo.z)};
   Block<float, AsFloat> floats{n, 0, 1, std::vector<float>(std::size_t(n.x) * n.y * n.z)};
   grid.read_block(origin, n, floats.values);
@@ -62,7 +62,7 @@ Result<Curve> measure_grid(Workload& subject, const std::string& name, const fie
     if (!std::isfinite(v)) v = static_cast<float>(grid.min_value());
   const DisplayRange& shown = field::display_range(grid);
   const double lo = shown.lo, range = shown.hi - lo;
-  if (!(range > 0)) return Error{"field \"" + name + "\" has one value only"};
+  if (!(range > 0)) return Error{"field \"" + name + "\" has the same value everywhere"};
   Block<std::uint16_t, AsHalf> halves{n, 0, 1, {}};
   Block<std::uint8_t, AsByte> bytes{n, lo, range / 255, {}};
   for (const float v : floats.values) {
@@ -71,16 +71,17 @@ Result<Curve> measure_grid(Workload& subject, const std::string& name, const fie
   }
   Curve curve;
   curve.id = "hand-values-" + name;
-  curve.title = "In how many bits the values of \"" + name + "\" are kept";
+  curve.title = "Precision of the values of \"" + name + "\"";
   curve.description =
-      "A copy of the grid's samples in each format, fetched along straight walks of a tenth of a voxel a step. The hand keeps floats: this "
-      "is what other formats would change, not a setting.";
+      "A copy of the grid's samples in each format, sampled along straight paths with steps of a tenth of a voxel. The haptics uses "
+      "floats; "
+      "the other formats are for comparison and cannot be selected.";
   curve.error_name = "error of a sample / range (RMS)";
-  curve.time_name = "ns a fetch";
+  curve.time_name = "ns per fetch";
   curve.bytes_name = "bytes of the samples";
   curve.cost = CostKind::bytes;
-  curve.extra_columns = {"greatest error / range"};
-  curve.reference = "the same samples as floats, as they were read";
+  curve.extra_columns = {"maximum error / range"};
+  curve.reference = "the samples as floats";
   if (const auto floor = estimate_interpolation_error({grid.with_interpolation(field::Interpolation::linear), nullptr})) {
     curve.discretization_error = floor->at_h.error / range;
     curve.discretization_error_method =
@@ -112,12 +113,12 @@ Result<Curve> measure_grid(Workload& subject, const std::string& name, const fie
 
 Result<std::vector<Curve>> measure_value_precision(Workload& subject) {
   std::vector<Curve> curves;
-  bool felt = false;
+  bool has_scalar_link = false;
   std::vector<std::string> done;
   subject.scene.entities.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
     const field::ScalarFieldPtr field = find_link_field(subject.scene, link.node).scalar;
     if (!field || field->grid() == nullptr) return;
-    felt = true;
+    has_scalar_link = true;
     const std::string name = link.node.find("field")->string;
     if (std::find(done.begin(), done.end(), name) != done.end()) return;
     done.push_back(name);
@@ -125,9 +126,9 @@ Result<std::vector<Curve>> measure_value_precision(Workload& subject) {
     if (curve)
       curves.push_back(std::move(*curve));
     else
-      subject.skipped.push_back("In how many bits values are kept: " + curve.error().message + ".");
+      subject.skipped.push_back("Precision of the values: " + curve.error().message + ".");
   });
-  if (!felt) subject.skipped.emplace_back("In how many bits values are kept: no link feels a scalar grid; formulas keep no values.");
+  if (!has_scalar_link) subject.skipped.emplace_back("Precision of the values: no link uses a scalar grid, and formulas store no values.");
   return curves;
 }
 

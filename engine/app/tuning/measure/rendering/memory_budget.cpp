@@ -11,16 +11,16 @@ namespace catena::app::tuning {
 Result<std::vector<Curve>> measure_memory_budget(Workload& subject) {
   RenderWorkload& eye = *subject.rendering;
   if (!draws_grids(eye.packet)) {
-    subject.skipped.emplace_back("Memory budget: no grid is drawn.");
+    subject.skipped.emplace_back("Memory budget: no grid is rendered.");
     return std::vector<Curve>{};
   }
   Curve curve =
-      make_rendering_curve(subject, "budget", "How much memory of the device may be used",
-                           "The same picture (exact rays, steps of half a voxel) by renderers that may hold less and less: grids that do "
-                           "not fit are drawn coarser.");
+      make_rendering_curve(subject, "budget", "Memory limit of the graphics device",
+                           "The same image (exact rays, steps of half a voxel) with decreasing limits on GPU memory: grids that do "
+                           "not fit are rendered at a lower resolution.");
   curve.bytes_name = "bytes on the device";
   curve.cost = CostKind::bytes;
-  curve.extra_columns.emplace_back("drawn at 1 / this resolution");
+  curve.extra_columns.emplace_back("divisor of the resolution");
   const render::RenderSettings settings = render::exact_level(0.5);
   CATENA_CHECK(eye.renderer->draw(eye.packet, settings));
   const double whole = static_cast<double>(eye.renderer->device().counters().allocated_bytes);
@@ -38,7 +38,7 @@ Result<std::vector<Curve>> measure_memory_budget(Workload& subject) {
     if (!curve.points.empty() && factor == curve.points.back().extra_values.back()) continue;  // the same image
     const render::ImageError error = render::measure_error(*picture, eye.reference);
     const std::string budget = fmt::format("{:.3g} MB", 1e-6 * static_cast<double>(stats.gpu_budget));
-    const CandidateSetting tried{share > 0 ? budget : "as much as there is",
+    const CandidateSetting tried{share > 0 ? budget : "no limit",
                                  share > 0 ? fmt::format("--gpu-memory {:.3g}", 1e-6 * static_cast<double>(stats.gpu_budget)) : "", "",
                                  settings};
     curve.points.push_back(make_point(tried, error, stats));

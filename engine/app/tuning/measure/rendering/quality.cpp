@@ -40,14 +40,14 @@ Result<std::vector<render::Image8>> pictures_of(RenderWorkload& eye, const std::
 Result<std::vector<Curve>> measure_quality(Workload& subject) {
   RenderWorkload& eye = *subject.rendering;
   if (!eye.has_raycast) {
-    subject.skipped.emplace_back("Quality: nothing in the picture is sampled along rays: --quality makes no difference.");
+    subject.skipped.emplace_back("Quality: nothing in the image is sampled along rays, so that --quality has no effect.");
     return std::vector<Curve>{};
   }
   Curve curve = make_rendering_curve(
-      subject, "quality", "How finely the picture is drawn: --quality",
+      subject, "quality", "Image quality: --quality",
       fmt::format(
-          "What may be typed after --quality, or stand in the scene as \"quality\"; it sets steps, pixels and rays together. Flicker is of "
-          "three pictures {:g} degrees apart.",
+          "Values of --quality, or of \"quality\" in the scene, which set steps, pixels and rays together. Flicker is measured over "
+          "three images {:g} degrees apart.",
           kTurn_deg));
   std::vector<CandidateSetting> tried;
   const auto add = [&](const std::string& words, const render::RenderSettings& settings) {

@@ -11,13 +11,13 @@ namespace catena::app::tuning {
 Result<std::vector<Curve>> measure_ray_grid(Workload& subject) {
   if (!subject.rendering->supports_fast_raycast) {
     subject.skipped.emplace_back(
-        "Lattice and refinement: only the fast rays of a lone volume have them, and this picture is not drawn by those.");
+        "Ray grid and refinement: only the fast rays of a single volume use them, and this image does not use fast rays.");
     return std::vector<Curve>{};
   }
   Curve curve = make_rendering_curve(
-      subject, "lattice", "At how many pixels rays are marched",
-      "Fast rays with steps of one voxel on a lattice of pixels; between them the picture is interpolated, and refined "
-      "where that is expected to err by more than the threshold.");
+      subject, "lattice", "Spacing of the rays",
+      "Fast rays with steps of one voxel on a regular subset of the pixels; between them the image is interpolated, and refined "
+      "where the expected error exceeds the threshold.");
   const bool smooth = subject.rendering->packet.volumes.front().is_shaded;
   std::vector<CandidateSetting> tried{{"every 4th pixel", "", "every 4th", render::fast_level(1, 4, -1, -1, smooth)}};
   for (const double half : {12.0, 6.0, 3.0, 1.5})

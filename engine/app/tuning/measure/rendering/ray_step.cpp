@@ -10,13 +10,13 @@ namespace catena::app::tuning {
 
 Result<std::vector<Curve>> measure_ray_step(Workload& subject) {
   if (!subject.rendering->has_raycast) {
-    subject.skipped.emplace_back("Step: nothing in the picture is sampled along rays: --quality makes no difference.");
+    subject.skipped.emplace_back("Step: nothing in the image is sampled along rays, so that --quality has no effect.");
     return std::vector<Curve>{};
   }
   Curve curve = make_rendering_curve(
-      subject, "step", "How far apart a ray's samples are",
-      "Every pixel has a ray. Exact rays sample the values; fast ones integrate the transfer function between two "
-      "samples beforehand, plain or with the light of smooth gradients; --quality error=E and balanced choose among those.");
+      subject, "step", "Step along the rays",
+      "Every pixel has a ray. Exact rays sample the values; fast rays use the transfer function integrated between two "
+      "samples beforehand, optionally with smooth gradients for shading; --quality error=E and balanced choose among these.");
   const bool shaded = !subject.rendering->packet.volumes.empty() && subject.rendering->packet.volumes.front().is_shaded;
   std::vector<CandidateSetting> tried;
   for (const double step : {4.0, 2.0, 1.0, 0.5, 0.25, 0.125}) {

@@ -73,21 +73,21 @@ bool on_level(render::FramePacket& packet, std::map<const field::ScalarGrid*, Re
 }  // namespace
 
 Result<ImageDiscretizationError> estimate_image_discretization_error(render::Renderer& renderer, const render::FramePacket& packet) {
-  if (!draws_grids(packet)) return ImageDiscretizationError{kNotMeasured, "No grid is drawn: the data leave nothing open."};
+  if (!draws_grids(packet)) return ImageDiscretizationError{kNotMeasured, "No grid is rendered: there is no discretization error."};
   std::map<const field::ScalarGrid*, ResolutionLevels<field::ScalarGrid>> levels;
   render::Image8 pictures[3];
   for (int level = 0; level < 3; ++level) {
     render::FramePacket coarse = packet;
     if (!on_level(coarse, levels, level))
-      return ImageDiscretizationError{
-          kNotMeasured,
-          "The data's own error is not known: a grid has fewer than nine voxels along an axis, too many to be copied, or is a label map."};
+      return ImageDiscretizationError{kNotMeasured,
+                                      "The discretization error is not known: a grid has fewer than nine voxels along an axis, too many "
+                                      "for a copy, or is a label map."};
     CATENA_TRY(pictures[level], render_image(renderer, coarse, converged_settings(0.5 / (1 << level))));
   }
   const double at_2h = render::measure_error(pictures[1], pictures[0]).rmse, at_4h = render::measure_error(pictures[2], pictures[0]).rmse;
   const ExtrapolatedError e = extrapolate_from_differences(at_2h, at_4h);
   return ImageDiscretizationError{e.error,
-                                  fmt::format("from the pictures of every 2nd voxel (off by {}) and every 4th ({}); {}",
+                                  fmt::format("from the images of every 2nd voxel (difference {}) and every 4th ({}); {}",
                                               format_number(at_2h, 3), format_number(at_4h, 3), describe_order(e)),
                                   e.is_converged};
 }
@@ -150,13 +150,13 @@ Outcome add_rendering(Workload& subject) {
   packet.cursors.clear();
   packet.background[3] = 0;
   if (!draws_grids(packet) && packet.meshes.empty() && packet.tubes.empty() && packet.spheres.empty() && packet.glyphs.empty()) {
-    subject.skipped.emplace_back("The eye: the scene draws nothing.");
+    subject.skipped.emplace_back("Rendering: the scene has no visible items.");
     return Done{};
   }
   auto eye = std::make_unique<RenderWorkload>();
   auto renderer = render::Renderer::create({});
   if (!renderer) {
-    subject.skipped.push_back("The eye: " + renderer.error().message + ".");
+    subject.skipped.push_back("Rendering: " + renderer.error().message + ".");
     return Done{};
   }
   eye->renderer = std::move(*renderer);
@@ -172,7 +172,7 @@ Outcome add_rendering(Workload& subject) {
     return Done{};
   };
   if (const Outcome done = work(); !done) {
-    subject.skipped.push_back("The eye: " + done.error().message + ".");
+    subject.skipped.push_back("Rendering: " + done.error().message + ".");
     return Done{};
   }
   eye->supports_fast_raycast = eye->renderer->can_draw_fast(eye->packet);
@@ -206,20 +206,20 @@ Curve make_rendering_curve(const Workload& subject, const std::string& id, const
   curve.id = "eye-" + id;
   curve.title = title;
   curve.description = what;
-  curve.error_name = "error of the picture (RMSE, 1/255)";
-  curve.time_name = eye.renderer->device().info().is_cpu() ? "ms of processor a picture" : "ms a picture";
-  curve.extra_columns = {"99.9 %, 1/255", "thin parts kept, %", "of the worst thin part, %"};
+  curve.error_name = "error of the image (RMSE, 1/255)";
+  curve.time_name = eye.renderer->device().info().is_cpu() ? "ms of processor time per image" : "ms per image";
+  curve.extra_columns = {"99.9 %, 1/255", "thin parts kept, %", "worst of the thin parts, %"};
   const bool by_rounding = !(eye.reference_error > render::kMinReportedRmse);
   curve.reference_error = by_rounding ? render::kMinReportedRmse : eye.reference_error;
-  if (by_rounding) curve.reference_error_name = "what rounding to 8 bits hides";
-  const std::string least = fmt::format("smaller errors than {}/255{} cannot be told", format_number(curve.reference_error),
-                                        by_rounding ? ", which rounding to 8 bits hides," : "");
+  if (by_rounding) curve.reference_error_name = "the rounding error of 8 bits";
+  const std::string minimum = fmt::format("errors below {}/255{} cannot be resolved", format_number(curve.reference_error),
+                                          by_rounding ? ", the rounding error of 8 bits," : "");
   curve.reference = eye.has_raycast
                         ? fmt::format(
-                              "the picture of exact rays with steps of {:g} voxel and 32-bit texels; it differs from one with steps of "
+                              "the image of exact rays with steps of {:g} voxel and 32-bit texels; it differs from one with steps of "
                               "{:g} voxel by {}/255; {}",
-                              eye.reference_step, 2 * eye.reference_step, format_number(eye.reference_error), least)
-                        : "the picture as it is: nothing in it is sampled along rays; " + least;
+                              eye.reference_step, 2 * eye.reference_step, format_number(eye.reference_error), minimum)
+                        : "the image itself, because nothing in it is sampled along rays; " + minimum;
   curve.discretization_error = eye.discretization_error;
   if (!eye.discretization_error_converged) curve.discretization_error_name += ", at least";
   curve.discretization_error_method = eye.discretization_error_method;

@@ -58,10 +58,10 @@ Result<std::vector<Curve>> measure_resolution(Workload& subject) {
   RenderWorkload& eye = *subject.rendering;
   const std::uint32_t width = eye.packet.width, height = eye.packet.height;
   Curve curve = make_rendering_curve(
-      subject, "resolution", "How many samples the picture has",
+      subject, "resolution", "Samples per pixel",
       fmt::format(
-          "A picture of {}x{} from several samples a pixel; beside them from fewer pixels, scaled up, which are never chosen: how large a "
-          "picture is, is for you to say (--size).",
+          "An image of {}x{} with several samples per pixel; for comparison, enlarged images of fewer pixels, which are never chosen: "
+          "--size sets the size of the image.",
           width, height));
   curve.work_name = "samples";
   const render::RenderSettings settings = eye.has_raycast ? render::exact_level(1) : render::RenderSettings{};
@@ -71,27 +71,26 @@ Result<std::vector<Curve>> measure_resolution(Workload& subject) {
   const render::Image8 truth = resized(four, width, height);
   const double apart = render::measure_error(resized(three, width, height), truth).rmse;
   curve.reference_error = std::max(apart, render::kMinReportedRmse);
-  curve.reference_error_name = apart > render::kMinReportedRmse ? "what the reference can tell" : "what rounding to 8 bits hides";
+  curve.reference_error_name = apart > render::kMinReportedRmse ? "the error of the reference" : "the rounding error of 8 bits";
   curve.reference = fmt::format(
-      "the picture of 4 x 4 samples a pixel, by the same rays; it differs from that of 3 x 3 by {}/255; smaller errors than {}/255{} "
-      "cannot "
-      "be told",
+      "the image of 4 x 4 samples per pixel, with the same rays; it differs from that of 3 x 3 by {}/255; errors below {}/255{} cannot be "
+      "resolved",
       format_number(apart), format_number(curve.reference_error),
-      apart > render::kMinReportedRmse ? "" : ", which rounding to 8 bits hides,");
+      apart > render::kMinReportedRmse ? "" : ", the rounding error of 8 bits,");
   curve.discretization_error = kNotMeasured;
   curve.discretization_error_name = Curve().discretization_error_name;
-  curve.discretization_error_method = "The data's own error is in all of them alike.";
+  curve.discretization_error_method = "The discretization error is the same for all settings.";
   std::vector<render::FramePacket> packets;
   struct Try {
     double factor;
     const char *words, *write;
     bool offered = true;
   };
-  for (const Try& t : {Try{0.25, "a quarter of the pixels each way", "", false},
-                       {0.5, "half of the pixels each way", "", false},
-                       {1, "a sample a pixel", "--antialias 1"},
-                       {2, "2 x 2 samples a pixel", "--antialias 2"},
-                       {3, "3 x 3 samples a pixel", "--antialias 3"}}) {
+  for (const Try& t : {Try{0.25, "a quarter of the pixels along each axis", "", false},
+                       {0.5, "half of the pixels along each axis", "", false},
+                       {1, "1 sample per pixel", "--antialias 1"},
+                       {2, "2 x 2 samples per pixel", "--antialias 2"},
+                       {3, "3 x 3 samples per pixel", "--antialias 3"}}) {
     packets.push_back(sized(eye.packet, t.factor));
     CATENA_TRY(const render::Image8 picture, render_image(*eye.renderer, packets.back(), settings));
     const render::ImageError error = render::measure_error(resized(picture, width, height), truth);

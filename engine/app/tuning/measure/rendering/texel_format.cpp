@@ -10,14 +10,14 @@ namespace catena::app::tuning {
 
 Result<std::vector<Curve>> measure_texel_format(Workload& subject) {
   if (!draws_grids(subject.rendering->packet)) {
-    subject.skipped.emplace_back("Texels: no grid is drawn.");
+    subject.skipped.emplace_back("Texels: no grid is rendered.");
     return std::vector<Curve>{};
   }
   Curve curve =
-      make_rendering_curve(subject, "texels", "How the grids are kept on the device",
-                           "Exact rays with steps of a quarter of a voxel, so that what differs is how a voxel is kept: in 16 bits (a half "
-                           "float) or 32, in one block or in bricks without the empty ones. No option asks for it: volumes take 16 bits, "
-                           "surfaces and slices 32, --quality reference 32, a plan what is cheaper at its error.");
+      make_rendering_curve(subject, "texels", "Texel format of the grids",
+                           "Exact rays with steps of a quarter of a voxel, so that only the storage of a voxel differs: in 16 bits (half "
+                           "float) or 32 bits, in one block or in bricks without the empty ones. No option selects the format: volumes use "
+                           "16 bits, surfaces and slices 32, --quality reference 32, the tuning the cheaper format for its target.");
   curve.bytes_name = "bytes on the device";
   curve.cost = CostKind::bytes;
   std::vector<CandidateSetting> tried;

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-namespace access_test {
+namespace access_control_test {
 
 using catena::http::AccessControl;
 
-TEST(AccessControl, ANameThatWasNotGivenIsRefused) {
+TEST(AccessControl, AnUnknownHostNameIsRefused) {
   const AccessControl access({"gpu.lab", "Big-Machine"});
   for (const char* good :
        {"localhost", "localhost:8642", "LOCALHOST:1", "127.0.0.1:8642", "192.168.1.7", "[::1]:8642", "gpu.lab:80", "big-machine"})
@@ -18,7 +18,7 @@ TEST(AccessControl, ANameThatWasNotGivenIsRefused) {
   EXPECT_FALSE(access.allows_host(std::string(100000, 'a')));
 }
 
-TEST(AccessControl, ASocketComesFromThisServersOwnPage) {
+TEST(AccessControl, ASocketNeedsTheServersOwnOrigin) {
   EXPECT_TRUE(AccessControl::allows_origin("http://127.0.0.1:8642", "127.0.0.1:8642"));
   for (const char* bad : {"", "null", "http://evil.example", "http://127.0.0.1:8643", "http://localhost:8642", "https://127.0.0.1:8642",
                           "http://127.0.0.1:8642.evil.example", "http://127.0.0.1:8642/"})
@@ -26,7 +26,7 @@ TEST(AccessControl, ASocketComesFromThisServersOwnPage) {
   EXPECT_FALSE(AccessControl::allows_origin("http://", ""));
 }
 
-TEST(AccessControl, TheTokenAndTheCookieAreSecretsOfTheirOwn) {
+TEST(AccessControl, TheTokenAndTheCookieAreDifferentSecrets) {
   const AccessControl access({}), other({});
   EXPECT_EQ(access.token().size(), 32u);
   EXPECT_NE(access.token(), other.token());
@@ -48,4 +48,4 @@ TEST(AccessControl, TheTokenAndTheCookieAreSecretsOfTheirOwn) {
     EXPECT_FALSE(access.has_cookie(bad, "localhost:9000")) << bad;
 }
 
-}  // namespace access_test
+}  // namespace access_control_test

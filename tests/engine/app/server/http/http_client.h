@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A client for tests: requests and WebSockets by hand, good and bad ones. Everything waits at most some seconds.
+/// A client for tests: valid and invalid requests and WebSocket messages. All calls have a timeout.
 #pragma once
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
@@ -23,7 +23,7 @@ inline constexpr std::chrono::seconds kClientTimeout{20};
 
 inline asio::ip::tcp::endpoint make_endpoint(int port) { return {asio::ip::make_address("127.0.0.1"), static_cast<unsigned short>(port)}; }
 
-/// What comes back for these very bytes, until the other side closes.
+/// Sends the bytes unchanged, and returns the response until the server closes the connection.
 inline std::string send_raw_request(int port, const std::string& bytes) {
   asio::io_context io;
   asio::ip::tcp::socket socket(io);
@@ -48,10 +48,10 @@ inline std::string make_request(const std::string& target, const Headers& header
   return text + "\r\n";
 }
 
-/// 403 of "HTTP/1.1 403 Forbidden ..."; 0: there was no answer.
+/// The status code, as 403 of "HTTP/1.1 403 Forbidden ..."; 0 without a response.
 inline int parse_status(const std::string& answer) { return answer.starts_with("HTTP/1.1 ") ? std::stoi(answer.substr(9)) : 0; }
 
-/// The value of a header; empty: there is none.
+/// The value of a header; empty if there is none.
 inline std::string find_header(const std::string& answer, const std::string& name) {
   const auto at = answer.find("\r\n" + name + ": ");
   if (at == std::string::npos || at > answer.find("\r\n\r\n")) return {};
@@ -59,7 +59,7 @@ inline std::string find_header(const std::string& answer, const std::string& nam
   return answer.substr(begin, answer.find("\r\n", begin) - begin);
 }
 
-/// The cookie that the page's address is exchanged for: "catena_8642=...".
+/// The cookie that the server sets for the page's address: "catena_8642=...".
 inline std::string fetch_cookie(int port, const std::string& url) {
   const std::string host = "127.0.0.1:" + std::to_string(port);
   const std::string cookie = find_header(send_raw_request(port, make_request(url.substr(url.find("/?")), {{"Host", host}})), "Set-Cookie");
@@ -71,13 +71,13 @@ struct ReceivedMessage {
   std::string bytes;
 };
 
-/// A WebSocket.
+/// A WebSocket connection.
 class WebSocketClient {
  public:
   struct Identity {
     std::string cookie, origin, target = "/socket", host{};
   };
-  /// `is_open()` says whether it was let in, `status()` what was answered otherwise.
+  /// Connects; is_open() tells whether the server accepted, and status() is the response's status code otherwise.
   WebSocketClient(int port, const Identity& as) : socket_(io_) {
     const std::string host = as.host.empty() ? "127.0.0.1:" + std::to_string(port) : as.host;
     socket_.set_option(beast::websocket::stream_base::decorator([as](beast::websocket::request_type& request) {
@@ -99,9 +99,9 @@ class WebSocketClient {
     socket_.async_write(asio::buffer(words), [this](beast::error_code error, std::size_t) { open_ = open_ && !error; });
     run();
   }
-  /// "One more picture has been shown."
+  /// Acknowledges that one more image was shown.
   void acknowledge_frame() { send(std::string(4, '\0'), false); }
-  /// The next message; none: the other side has closed.
+  /// The next message; none if the connection is closed.
   std::optional<ReceivedMessage> read() {
     beast::flat_buffer buffer;
     bool there = false;
@@ -110,7 +110,7 @@ class WebSocketClient {
     if (!there) open_ = false;
     return there ? std::optional(ReceivedMessage{socket_.got_text(), beast::buffers_to_string(buffer.data())}) : std::nullopt;
   }
-  /// Bytes as they are, past the protocol.
+  /// Sends the bytes unchanged, without the WebSocket protocol.
   void send_raw(const std::string& bytes) {
     beast::error_code ignored;
     asio::write(beast::get_lowest_layer(socket_).socket(), asio::buffer(bytes), ignored);

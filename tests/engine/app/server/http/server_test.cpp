@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The server against a client of its own: who is let in, what comes through, and what a hostile one can do.
+/// The server with a test client: access, messages, and hostile clients.
 #include "engine/app/server/http/server.h"
 
 #include <gtest/gtest.h>
@@ -36,21 +36,21 @@ struct Rig {
   std::unique_ptr<test::WebSocketClient> page() const {
     return std::make_unique<test::WebSocketClient>(port, test::WebSocketClient::Identity{cookie, "http://" + host});
   }
-  /// Until so many news are there, or nothing comes any more.
+  /// Waits for a number of events, and returns them; fewer if no more arrive.
   std::vector<ViewerEvent> news(std::size_t count) const {
     std::vector<ViewerEvent> all;
     for (int i = 0; i < 400 && all.size() < count; ++i)
       for (ViewerEvent& one : server->wait_for_events(0.05)) all.push_back(std::move(one));
     return all;
   }
-  /// Its next message is a picture, of which this is the text.
+  /// The text of the page's next message, which is an image; empty if it is not.
   static std::string picture(test::WebSocketClient& page) {
     const auto message = page.read();
     return message && !message->is_text ? message->bytes : "";
   }
 };
 
-TEST(Server, ShowsThePageToWhoWasInvited) {
+TEST(Server, ServesThePageWithATokenOrCookie) {
   const Rig rig;
   const std::string url = rig.server->url(), invited = url.substr(url.find("/?"));
   EXPECT_EQ(test::parse_status(rig.ask("/", {{"Host", rig.host}})), 403);
@@ -59,7 +59,7 @@ TEST(Server, ShowsThePageToWhoWasInvited) {
   EXPECT_EQ(test::parse_status(page), 200);
   EXPECT_EQ(test::find_header(page, "Referrer-Policy"), "no-referrer");
   EXPECT_EQ(test::find_header(page, "Cache-Control"), "no-store");
-  // scripts run by a word that is another one each time
+  // Scripts need a nonce that differs in each response.
   const std::string rules = test::find_header(page, "Content-Security-Policy"),
                     again = rig.ask("/", {{"Host", rig.host}, {"Cookie", rig.cookie}});
   ASSERT_NE(rules.find("script-src 'nonce-"), std::string::npos);
@@ -72,7 +72,7 @@ TEST(Server, ShowsThePageToWhoWasInvited) {
   EXPECT_EQ(page.find(rig.server->url().substr(url.size() - 32)), std::string::npos) << "the token goes nowhere";
 }
 
-TEST(Server, RefusesStrangers) {
+TEST(Server, RefusesUnknownHostsOriginsAndCookies) {
   const Rig rig;
   EXPECT_EQ(test::parse_status(rig.ask("/", {{"Host", "evil.example"}, {"Cookie", rig.cookie}})), 403) << "a name that was rebound";
   EXPECT_EQ(test::parse_status(rig.ask("/", {{"Cookie", rig.cookie}})), 403);
@@ -90,7 +90,7 @@ TEST(Server, RefusesStrangers) {
   EXPECT_EQ(status({rig.cookie, "http://" + rig.host}), 101);
 }
 
-TEST(Server, WordsAndPicturesComeThrough) {
+TEST(Server, TextAndImagesAreDelivered) {
   const Rig rig;
   auto one = rig.page(), two = rig.page();
   ASSERT_TRUE(one->is_open() && two->is_open());
@@ -112,11 +112,11 @@ TEST(Server, WordsAndPicturesComeThrough) {
   EXPECT_EQ(news[0].kind, ViewerEvent::Kind::disconnected);
 }
 
-TEST(Server, ASlowReaderMissesPicturesAndCostsNoMemory) {
+TEST(Server, ASlowReaderSkipsImages) {
   const Rig rig;
   auto slow = rig.page(), quick = rig.page();
   ASSERT_EQ(rig.news(2).size(), 2u);
-  // what is under way is not taken back; of what waits only the newest stays
+  // Images in transit are delivered; of waiting images, only the newest is kept.
   for (int i = 0; i < 300; ++i) {
     rig.server->send(kAllViewers, Slot::frame, std::to_string(i) + std::string(200000, ' '));
     if (i >= 2) continue;
@@ -127,14 +127,14 @@ TEST(Server, ASlowReaderMissesPicturesAndCostsNoMemory) {
   EXPECT_EQ(std::stoi(Rig::picture(*slow)), 1);
   slow->acknowledge_frame();
   EXPECT_EQ(std::stoi(Rig::picture(*slow)), 299);
-  // another viewer goes on beside it
+  // The other viewer gets its images independently.
   for (int last = -1; last != 299;) {
     last = std::stoi(Rig::picture(*quick));
     quick->acknowledge_frame();
   }
 }
 
-TEST(Server, WhatIsNoMessageEndsTheConnection) {
+TEST(Server, AnInvalidMessageEndsTheConnection) {
   const Rig rig;
   auto good = rig.page();
   ASSERT_EQ(rig.news(1).size(), 1u);
@@ -162,22 +162,22 @@ TEST(Server, WhatIsNoMessageEndsTheConnection) {
   EXPECT_EQ(rig.news(1).at(0).text, "still here");
 }
 
-TEST(Server, AFloodWaitsInTheNetwork) {
+TEST(Server, AFloodOfMessagesIsNotBuffered) {
   const Rig rig;
   auto page = rig.page();
   ASSERT_EQ(rig.news(1).size(), 1u);
   constexpr std::size_t kCount = 500;
   for (std::size_t i = 0; i < kCount; ++i) page->send(std::to_string(i));
-  // nobody has taken any: no more than these were read
+  // Until the events are taken, a bounded number of messages is read.
   std::vector<ViewerEvent> all;
-  std::size_t most = 0;
+  std::size_t max_events = 0;
   while (all.size() < kCount) {
     auto some = rig.server->wait_for_events(5);
     if (some.empty()) break;
-    most = std::max(most, some.size());
+    max_events = std::max(max_events, some.size());
     for (ViewerEvent& one : some) all.push_back(std::move(one));
   }
-  EXPECT_LE(most, 2 * kMaxPendingMessages);
+  EXPECT_LE(max_events, 2 * kMaxPendingMessages);
   ASSERT_EQ(all.size(), kCount);
   for (std::size_t i = 0; i < kCount; ++i) ASSERT_EQ(all[i].text, std::to_string(i));
 }
@@ -201,7 +201,7 @@ TEST(Server, RequestsAreBounded) {
   EXPECT_EQ(test::parse_status(rig.ask("/", {{"Host", rig.host}, {"Cookie", rig.cookie}})), 200);
 }
 
-TEST(Server, OneFileIsOfferedToWhoHasTheCookie) {
+TEST(Server, TheOfferedFileNeedsTheCookie) {
   const Rig rig;
   const test::TemporaryFolder folder;
   std::string bytes;
@@ -218,7 +218,7 @@ TEST(Server, OneFileIsOfferedToWhoHasTheCookie) {
   EXPECT_TRUE(answer.substr(answer.find("\r\n\r\n") + 4) == bytes);
   EXPECT_EQ(test::parse_status(ask("/a.bin", false)), 404);
   EXPECT_EQ(test::parse_status(ask("/../a.bin")), 404);
-  // it has gone, or is offered no more
+  // The file is removed, then no longer offered.
   std::filesystem::remove(folder / "a");
   EXPECT_EQ(test::parse_status(ask("/a.bin")), 404);
   rig.server->offer_file("", "");
@@ -226,7 +226,7 @@ TEST(Server, OneFileIsOfferedToWhoHasTheCookie) {
   EXPECT_EQ(test::parse_status(ask("/")), 200);
 }
 
-TEST(Server, SaysWhereItCannotListen) {
+TEST(Server, AnUnusableAddressIsAnError) {
   const Rig rig;
   ServerOptions taken;
   taken.port = rig.server->port();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Stands before ITK's NRRD reader in a second catena-read-vtk: it answers with x and y of all axes turned round. In the space
-/// left-anterior-superior that is what an ITK that turns y to the back, as its documentation has it, would answer; ITK 5.2 turns x.
+/// Replaces ITK's NRRD reader in a second catena-read-vtk, with x and y of all axes negated. In the space left-anterior-superior this
+/// is the result of an ITK that negates y, as its documentation states; ITK 5.2 negates x.
 #include <dlfcn.h>
 #include <itkMetaDataObject.h>
 #include <itkNrrdImageIO.h>
@@ -17,6 +17,6 @@ void itk::NrrdImageIO::ReadImageInformation() {
     SetDirection(a, direction);
     if (a < 2) SetOrigin(a, -GetOrigin(a));
   }
-  // so that a test sees that it was asked
+  // A mark by which the test sees that this reader was used.
   EncapsulateMetaData<std::string>(GetMetaDataDictionary(), "NRRD_space units[0]", "km");
 }
