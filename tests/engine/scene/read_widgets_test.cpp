@@ -117,7 +117,7 @@ TEST(ReadWidgets, ErrorsNameTheLine) {
            {R"({"name": "a", "type": "seed", "position": [0, 0, 1e999]})", "s.json:2"},
            {R"({"name": "a", "type": "seed", "position": [0, 0, 0], "snap": 1})", "snap"},
            {R"({"name": "a", "type": "seed", "position": [0, 0, 0]}, {"name": "a", "type": "seed", "position": [0, 0, 0]})",
-            "second widget"},
+            "already used for a widget"},
            {"{" + cut + R"(, "snap": 0.2, "release": 0.2})", "a distance greater than \"snap\" was expected"},
            {"{" + cut + R"(, "radius": 0})", "radius"},
            {"{" + cut + R"(, "step": -1})", "step"},
