@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Writes the tables and plots of docs/benchmarks from data/*.csv.   make.py [--check]
 
-A page is written by hand but for the block between "<!-- benchmarks: NAME -->" and "<!-- end -->", which holds the rows of data/NAME.csv: a
-section for each measurement, a row for each case, a column for each statistic, and one number in a cell. The block of index.md holds the
-list of pages and data/machines.csv. --check writes nothing and exits with 1 if a page or a plot differs from what the tables give.
+A page is written by hand, except the block between "<!-- benchmarks: NAME -->" and "<!-- end -->". The block contains the rows of
+data/NAME.csv: a section for each measurement, a row for each case, a column for each statistic, and one number per cell. The block of
+index.md contains the list of pages and data/machines.csv. --check writes nothing and exits with 1 if a page or a plot is not current.
 """
 import csv
 import math
@@ -15,18 +15,19 @@ from xml.sax.saxutils import escape
 
 HERE = Path(__file__).resolve().parent
 PAGES = ["haptics", "servo", "vortex_cores", "headset", "images", "peers", "gpu", "tuning", "library"]
-# file, table, measurement, part of the case, statistics, title, label of the axis, scale
+# file, table, measurement, text that the case contains, statistics, title, axis label, scale
 PLOTS = [
     ("haptics.svg", "haptics", "Time of a tick", "", ["median", "p99.9"], "Time of a tick", "time, us", "linear"),
-    ("vortex_cores.svg", "vortex_cores", "Distance of the lines from the core, root mean square", "linear cells; 2 % noise",
+    ("vortex_cores.svg", "vortex_cores", "Root-mean-square distance of the lines from the core", "linear cells; 2 % noise",
      ["sujudi-haimes", "parallel-vectors", "vorticity"], "Distance from the core, linear cells, 2 % noise", "distance, voxels", "log"),
-    ("headset.svg", "headset", "Controller sampled slower than the servo, hand at most 0.65 mm a tick", "", ["mean lag"],
-     "Lag of a controller by its rate of sampling", "mean lag, ms", "linear"),
-    ("images.svg", "images", "Time of an image of a sparse grid, shaded", "", ["error=2", "exact rays"], "Sparse grids", "time, ms", "log"),
+    ("headset.svg", "headset", "Controller with a sampling rate below that of the servo, hand motion of at most 0.65 mm per tick", "",
+     ["mean lag"], "Controller lag by sampling rate", "mean lag, ms", "linear"),
+    ("images.svg", "images", "Time of an image of a sparse grid, shaded", "", ["error=2", "exact rays"],
+     "Time of an image of a sparse grid", "time, ms", "log"),
     ("peers.svg", "peers", "Processor time of an image at an error of 2", "", ["Catena", "OSPRay 3.1", "VTK 9.1, GPU mapper on llvmpipe"],
-     "Volumes at an error of 2, two cores", "processor time of an image, ms", "log"),
+     "Processor time at an error of 2, two cores", "processor time of an image, ms", "log"),
     ("gpu.svg", "gpu", "Wall time of an image at an error of 2", "", ["Catena", "VTK 9.1, GPU mapper"],
-     "Volumes at an error of 2, NVIDIA H200", "wall time of an image, ms", "log"),
+     "Wall time at an error of 2, NVIDIA H200", "wall time of an image, ms", "log"),
 ]
 COLORS = ["#2b6cb0", "#dd6b20", "#718096"]
 
@@ -37,7 +38,7 @@ def read(name):
 
 
 def check(name, rows):
-    """Each value is one number, or its bound says "never"; its machine is known; no number is stated twice."""
+    """Ends the program unless each value is one number or has the bound "never", each machine is known, and no row is repeated."""
     machines, seen = {m["id"] for m in read("machines")}, set()
     for row in rows:
         key = (row["measurement"], row["case"], row["statistic"])
@@ -52,7 +53,7 @@ def number(row):
 
 
 def table(rows):
-    """Cases by statistics, units in the heads of the columns; one row a number where most cells would be empty or units differ."""
+    """Table of cases and statistics with units in the column headings; one row per number if most cells would be empty or units differ."""
     cases, statistics = (list(dict.fromkeys(row[key] for row in rows)) for key in ("case", "statistic"))
     units = {(row["statistic"], row["unit"]) for row in rows}
     if len(units) > len(statistics) or 3 * len(rows) < 2 * len(cases) * len(statistics):
@@ -75,10 +76,10 @@ def sections(name, rows):
             out += [f"![{title}]({file})", ""] if (at, which) == (name, measurement) else []
         out += [*table(mine), ""]
         for command in dict.fromkeys(row["command"] for row in mine):
-            out += ["```sh", command, "```", ""] if command else ["No command repeats this measurement.", ""]
+            out += ["```sh", command, "```", ""] if command else ["There is no command that repeats this measurement.", ""]
         where = ", ".join(dict.fromkeys(f"`{row['machine']}`" + (f" ({row['driver']})" if row["driver"] else "") for row in mine))
         when = ", ".join(dict.fromkeys(f"{row['date']} (`{row['commit']}`)" for row in sorted(mine, key=lambda row: row["date"])))
-        out += [f"Machine {where}; recorded {when}.", ""]
+        out += [f"Machine: {where}. Recorded: {when}.", ""]
     return out[:-1]
 
 
@@ -93,7 +94,7 @@ def contents():
 
 
 def plot(rows, measurement, part, series, title, label, scale):
-    """Horizontal bars with their numbers. A pale bar is a bound ("< 18" ends at 18); what was never reached has no bar."""
+    """Horizontal bars with numbers. A pale bar is a bound ("< 18" ends at 18); a value with the bound "never" has no bar."""
     rows = [row for row in rows if row["measurement"] == measurement and part in row["case"] and row["statistic"] in series]
     cases, at = list(dict.fromkeys(row["case"] for row in rows)), {(row["case"], row["statistic"]): row for row in rows}
     values = [float(row["value"]) for row in rows if row["value"]]
