@@ -13,13 +13,6 @@ function(catena_precompile TARGET)
   target_precompile_headers(${TARGET} REUSE_FROM catena_precompiled)
 endfunction()
 
-# A module of many files without inner loops: lightly optimized, which takes two thirds of the time to build, with headers of its own
-# precompiled.
-function(catena_precompile_cold TARGET)
-  target_compile_options(${TARGET} PRIVATE $<$<CONFIG:Release>:-O1>)
-  target_precompile_headers(${TARGET} PRIVATE ${catena_common_headers} ${ARGN})
-endfunction()
-
 # OpenVDB's headers define static members of templates, of which the library and the program must share one: they may not be hidden, and the
 # precompiled headers are made for hidden symbols.
 function(catena_prepare_openvdb TARGET)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Skipped cases that nobody expects. Where CATENA_EXPECTED_SKIPS names a file (`.ci/run` sets it), a case that is skipped and matches none
-/// of its lines is printed as "unexpected skip", which makes its ctest entry fail. A line is a pattern of `Suite.Case`, as fnmatch takes
-/// it; text after a space is the reason.
+/// Report of unexpected skips. If CATENA_EXPECTED_SKIPS names a file (set by `.ci/run`), each skipped case that matches no line of the file
+/// is printed as "unexpected skip", and its ctest entry fails. A line is an fnmatch pattern of `Suite.Case`, a space, and the reason.
 #include <fnmatch.h>
 #include <gtest/gtest.h>
 
