@@ -8,19 +8,22 @@
 #include "tests/engine/geometry/flow/advection_reference.h"
 #include "tests/engine/geometry/flow/lambda_field.h"
 
-namespace catena::acceptance {
-namespace advection_acceptance_test {
+namespace catena::acceptance::advection_acceptance_test {
 
 using catena::test::analytic_vector;
 using catena::test::lambda_field;
 using flow::Method;
 
+ChainRig circle_by(const std::string& method) {
+  return ChainRig(make_program(R"({"fields": {"v": {"analytic": "circle"}}, "chain": [{"name": "c", "type": "streamline", "field": "v",
+                               "seed": [0.05, 0, 0], "method": ")" +
+                               method + R"("}]})"));
+}
+
 /// Drift in mm after one lap of the circle of R = 50 mm at 1 kHz.
 double drift_of_a_lap(const std::string& method, double speed) {
   const double radius = 0.05, step = speed * 1e-3;
-  ChainRig chain(make_program(R"({"fields": {"v": {"analytic": "circle"}}, "chain": [{"name": "c", "type": "streamline", "field": "v",
-                               "seed": [0.05, 0, 0], "method": ")" +
-                              method + R"("}]})"));
+  ChainRig chain = circle_by(method);
   double worst = 0;
   const int ticks = static_cast<int>(std::ceil(2 * M_PI * radius / step));
   for (int i = 0; i <= ticks; ++i) {
@@ -33,18 +36,12 @@ double drift_of_a_lap(const std::string& method, double speed) {
 }
 
 TEST(AdvectionDrift, CircleDriftPerLap) {
-  const double euler = drift_of_a_lap("euler", 0.2), linear = drift_of_a_lap("linear", 0.2), rk3 = drift_of_a_lap("rk3", 0.2),
-               rkf34 = drift_of_a_lap("rkf34", 0.2), dp54 = drift_of_a_lap("dp54", 0.2);
-  record_result("Euler, 0.2 m/s, mm a lap", euler);
-  record_result("Eqs. 1-2 as printed, 0.2 m/s, mm a lap", linear);
-  record_result("RK3, 0.2 m/s, mm a lap", rk3);
-  record_result("RKF3(4), 0.2 m/s, mm a lap", rkf34);
-  record_result("DP5(4), 0.2 m/s, mm a lap", dp54);
+  const double euler = drift_of_a_lap("euler", 0.2), linear = drift_of_a_lap("linear", 0.2);
+  record_results("0.2 m/s, mm a lap, ", {{"Euler", euler}, {"Eqs. 1-2 as printed", linear}});
   EXPECT_NEAR(euler, 0.63, 0.02);
   EXPECT_NEAR(linear, 0.63, 0.02);
-  EXPECT_LE(rk3, 2e-6);
-  EXPECT_LE(rkf34, 5e-7);
-  EXPECT_LE(dp54, 5e-7);
+  for (const auto& [method, bound] : {std::pair{"rk3", 2e-6}, {"rkf34", 5e-7}, {"dp54", 5e-7}})
+    expect_at_most(std::string("0.2 m/s, mm a lap, ") + method, drift_of_a_lap(method, 0.2), bound);
 }
 
 TEST(AdvectionDrift, EulerDriftsByPiTimesTheStep) {
@@ -58,9 +55,7 @@ TEST(AdvectionDrift, EulerDriftsByPiTimesTheStep) {
 // paper, figure 2: under a still hand with 1 mm of tremor Euler drifts away, the paper's method does not
 TEST(AdvectionDrift, NoDriftUnderAMinuteOfTremor) {
   for (const char* method : {"euler", "rkf34"}) {
-    ChainRig chain(make_program(std::string(R"({"fields": {"v": {"analytic": "circle"}}, "chain": [{"name": "c", "type": "streamline",
-                               "field": "v", "seed": [0.05, 0, 0], "method": ")") +
-                                method + R"("}]})"));
+    ChainRig chain = circle_by(method);
     double worst = 0;
     for (int i = 0; i < 60000; ++i) {
       const double angle = 1e-3 / 0.05 * std::sin(2 * M_PI * 9 * 1e-3 * i);
@@ -114,10 +109,8 @@ TEST(AdvectionReversibility, ForwardAndBackwardOnAbc) {
       *worst = std::max(*worst, norm(back - p));
     }
   }
-  record_result("RKF3(4), tolerance 1e-9, worst of 500", rkf34);
-  record_result("DP5(4), tolerance 1e-9, worst of 500", dp54);
-  EXPECT_LE(rkf34, 1e-6);
-  EXPECT_LE(dp54, 2e-8);
+  expect_at_most("RKF3(4), tolerance 1e-9, worst of 500", rkf34, 1e-6);
+  expect_at_most("DP5(4), tolerance 1e-9, worst of 500", dp54, 2e-8);
 }
 
 /// Hill's vortex with `nodes` per axis on [-1.2, 1.2]^3, followed over length 3.2 from (0.5, 0, 0). By the symmetry of the vortex the
@@ -136,11 +129,7 @@ void expect_grid_floor(int nodes, double floor) {
   for (int i = 0; i <= 3200; ++i) selected = std::max(selected, hill_streamline_distance((*curve)->position(1e-3 * i), 0.5L));
 
   // a hand that leads the proxy along the line, integrated online
-  haptics::tests::Fields fields;
-  fields.named["v"].vector = grid;
-  ChainRig chain(make_program({haptics::tests::build(R"({"name": "a", "type": "streamline", "field": "v", "seed": [0.5, 0, 0],
-                                                      "follow": "online"})",
-                                                     fields)}));
+  ChainRig chain(make_program({streamline(grid, seed, R"(, "follow": "online")")}));
   double online = 0;
   for (int i = 0; i <= 1600; ++i) {
     chain.step_to((*curve)->position(2e-3 * i));
@@ -158,5 +147,4 @@ TEST(GridDiscretizationError, GridFloorOfHillsVortex64) { expect_grid_floor(64, 
 TEST(GridDiscretizationError, GridFloorOfHillsVortex128) { expect_grid_floor(128, 7.1e-5); }
 TEST(GridDiscretizationError, GridFloorOfHillsVortex256) { expect_grid_floor(256, 1.8e-5); }
 
-}  // namespace advection_acceptance_test
-}  // namespace catena::acceptance
+}  // namespace catena::acceptance::advection_acceptance_test

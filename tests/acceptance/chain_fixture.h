@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// A whole chain driven in the tick, from a scene's text or from given constraints.
 #pragma once
+#include "engine/scene/to_json.h"
 #include "haptics/build/build_program.h"
 #include "haptics/chain/tick.h"
 #include "tests/haptics/constraints/constraint_fixture.h"
@@ -11,6 +12,13 @@ using catena::LinkStatus;
 using haptics::ChainScratch;
 using haptics::ChainState;
 using haptics::HapticProgram;
+
+/// A streamline link of a field through a seed; `more`: further keys.
+inline haptics::tests::ConstraintPtr streamline(field::VectorFieldPtr field, const Vec3& seed, const std::string& more = "") {
+  haptics::tests::Fields fields;
+  fields.named["v"].vector = std::move(field);
+  return haptics::tests::build(R"({"name": "a", "type": "streamline", "field": "v", "seed": )" + scene::to_json(seed) + more + "}", fields);
+}
 
 inline std::shared_ptr<const HapticProgram> make_program(const std::string& scene_text) {
   auto scene = scene::parse_scene(scene_text, "scene.json");

@@ -6,8 +6,7 @@
 #include "tests/acceptance/chain_fixture.h"
 #include "tests/support/closed_loop.h"
 
-namespace catena::acceptance {
-namespace coupling_safety_test {
+namespace catena::acceptance::coupling_safety_test {
 
 using haptics::SimulatedDeviceParameters;
 using test::ClosedLoop;
@@ -115,14 +114,12 @@ TEST(CouplingSafety, EachModeSwitchUnderLoadIsAccounted) {
   EXPECT_LT(before, 20 * 4 * 0.5 * 4000 * 1e-4) << "no more than the switches could";
 }
 
-constexpr const char* kChain = R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
+std::string chain_scene(int stiffness) {
+  return R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
   "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.05, 0, 0]},
             {"name": "surface", "type": "isosurface", "field": "s", "level": 0.045, "free": "below"}],
-  "coupling": {"stiffness": STIFF, "max_force": 8, "ramp_s": 0.02}})";
-
-std::string chain_scene(int stiffness) {
-  std::string text = kChain;
-  return text.replace(text.find("STIFF"), 5, std::to_string(stiffness));
+  "coupling": {"stiffness": )" +
+         std::to_string(stiffness) + R"(, "max_force": 8, "ramp_s": 0.02}})";
 }
 
 /// A trembling hand that follows the circle, 1 cm inside and 3 mm above it: maximum energies and forces.
@@ -178,5 +175,4 @@ TEST(CouplingSafety, IsRepeatableBitForBit) {
   EXPECT_EQ(a.min_energy_j, b.min_energy_j);
 }
 
-}  // namespace coupling_safety_test
-}  // namespace catena::acceptance
+}  // namespace catena::acceptance::coupling_safety_test

@@ -2,12 +2,11 @@
 // Endurance: no allocation in a million ticks of a chain, and only finite outputs in ten million hostile ticks over every constraint type
 // of the conformance table, on valid fields, fields with NaN, and fields scaled to the limits of doubles.
 #include "engine/base/memory_limit.h"
-#include "tests/acceptance/adversarial_probe.h"
+#include "tests/acceptance/chain_fixture.h"
 #include "tests/acceptance/reference_numerics.h"
 #include "tests/haptics/constraints/examples.h"
 
-namespace catena::acceptance {
-namespace endurance_test {
+namespace catena::acceptance::endurance_test {
 
 using haptics::tests::all_examples;
 using haptics::tests::ConstraintPtr;
@@ -65,9 +64,7 @@ Fields scaled_fields(double scale) {
   Fields made = haptics::tests::fields();
   for (auto& [name, any] : made.named) {
     if (!any.vector || !field::is_analytic(name)) continue;
-    field::AnalyticParameters parameters;
-    parameters.scale = scale;
-    any.vector = field::make_analytic(name, parameters)->vector;
+    any.vector = catena::test::analytic_vector(name, scale);
   }
   return made;
 }
@@ -129,12 +126,89 @@ std::string state_of(const HapticProgram& program, const HapticState& out) {
   std::string text;
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     const LinkReport& link = out.links[i];
-    char line[300];
-    std::snprintf(line, sizeof line, "[%s at %g %g %g, gap %g, weight %g, share %g %g %g]", to_string(link.status), link.proxy.x,
-                  link.proxy.y, link.proxy.z, link.gap, link.weight, link.force_n.x, link.force_n.y, link.force_n.z);
-    text += line;
+    text += fmt::format("[{} at {}, gap {}, weight {}, share {}]", to_string(link.status), scene::to_json(link.proxy), link.gap,
+                        link.weight, scene::to_json(link.force_n));
   }
   return text;
+}
+
+/// A hostile hand: jumps, rests, 1e300, denormals, non-finite probes, random buttons, clocks that stop or run backwards.
+class AdversarialProbe {
+ public:
+  explicit AdversarialProbe(std::uint64_t seed) : random_(seed) {}
+  haptics::ProbeSample next() {
+    if (ticks_left_-- <= 0) {
+      behavior_ = static_cast<int>(random_.uniform(0, 9));
+      ticks_left_ = static_cast<int>(random_.uniform(1, behavior_ < 4 ? 120 : 25));
+    }
+    Vec3 p = position_;
+    const double inf = std::numeric_limits<double>::infinity();
+    static constexpr double odd[] = {0.0, -0.0, 5e-324, -1e-310, 1e-300, 0.5,   1.0,    -2.0,
+                                     2.0, 1e6,  -1e9,   1e154,   -1e160, 1e300, -1e300, 1.7e308};
+    const auto from_odd = [&] { return odd[static_cast<std::size_t>(random_.uniform(0, 16))]; };
+    switch (behavior_) {
+      case 0:  // a smooth motion
+      case 1:
+        velocity_ = velocity_ * 0.95 + random_.box(2e-4);
+        p = norm(position_ + velocity_) < 2.2 ? position_ + velocity_ : Vec3(0.3, 0.2, 0.1);
+        break;
+      case 2:  // a trembling motion
+        p = position_ + random_.box(1e-9);
+        break;
+      case 3:  // at rest
+        break;
+      case 4:  // jumps
+        p = random_.box(2.5);
+        break;
+      case 5:  // extreme numbers
+        p = {from_odd(), from_odd(), from_odd()};
+        break;
+      case 6:  // far away
+        p = random_.unit() * (random_.uniform(0, 1) < 0.5 ? 1e3 : 1e280);
+        break;
+      case 7:  // pushes on one axis
+        p = position_ + Vec3(0, 0, random_.uniform(-0.05, 0.05));
+        break;
+      default:  // not finite
+        p = {random_.uniform(0, 1) < 0.5 ? inf : position_.x, random_.uniform(0, 1) < 0.5 ? -inf : position_.y,
+             std::numeric_limits<double>::quiet_NaN()};
+    }
+    if (is_finite(p)) position_ = norm(p) < 10 ? p : Vec3(0.4, -0.3, 0.2);
+    if (random_.uniform(0, 1) < 0.01) buttons_ = static_cast<std::uint32_t>(random_.engine());
+    const double clock = random_.uniform(0, 1);
+    t_s_ = clock < 0.97    ? t_s_ + 1e-3
+           : clock < 0.98  ? t_s_
+           : clock < 0.99  ? t_s_ - random_.uniform(0, 3)
+           : clock < 0.995 ? t_s_ + 1e-320
+                           : t_s_ + 1e6;
+    const bool broken_clock = random_.uniform(0, 1) < 1e-3;
+    return {broken_clock ? -inf : t_s_, p, buttons_};
+  }
+
+ private:
+  Random random_;
+  Vec3 position_{0.3, 0.2, 0.1}, velocity_{0.0};
+  int behavior_ = 0, ticks_left_ = 0;
+  std::uint32_t buttons_ = 0;
+  double t_s_ = 0;
+};
+
+/// Checks the invariants after a tick: the first violated one, or null.
+inline const char* find_violation(const HapticProgram& program, const haptics::ProbeSample& probe, const HapticState& out) {
+  const bool bad = !is_finite(probe.position) || !std::isfinite(probe.t_s);
+  if (!is_finite(out.force_n)) return "force";
+  if (!(norm(out.force_n) <= program.coupling.max_force_n * (1 + 1e-12))) return "force above its limit";
+  if (bad && max_abs(out.force_n) != 0) return "force of a bad probe";
+  for (std::size_t i = 0; i < program.links.size(); ++i) {
+    const LinkReport& link = out.links[i];
+    if (!is_finite(link.proxy)) return "proxy";
+    if (std::isnan(link.gap) || std::isnan(link.force_n.x) || std::isnan(link.force_n.y) || std::isnan(link.force_n.z)) return "share";
+    if (!(link.residual >= 0) || !std::isfinite(link.residual)) return "residual";
+    if (!(link.weight >= 0 && link.weight <= 1)) return "weight";
+    if (link.evaluations < 0 || link.evaluations > haptics::kMaxEvaluations) return "evaluations";
+    if (bad != (link.status == LinkStatus::bad_probe)) return "status";
+  }
+  return nullptr;
 }
 
 class Endurance : public testing::TestWithParam<int> {};
@@ -169,9 +243,7 @@ TEST_P(Endurance, HostileTicksKeepTheStateValid) {
     }
     ASSERT_EQ(guard.count(), 0u);
   }
-  record_result("hostile ticks", done);
-  record_result("chains", programs);
-  record_result("constraints", static_cast<double>(constraints().size()));
+  record_results("", {{"hostile ticks", done}, {"chains", programs}, {"constraints", static_cast<double>(constraints().size())}});
 }
 
 INSTANTIATE_TEST_SUITE_P(Hostile, Endurance, testing::Range(0, kParts));
@@ -197,9 +269,7 @@ TEST(EnduranceNoAllocation, NoAllocationInAMillionTicksOfAChain) {
     for (std::size_t link = 0; link < 5; ++link) budget += chain.status(link) == LinkStatus::budget;
   }
   EXPECT_EQ(guard.count(), 0u);
-  record_result("ticks", kQuietTicks);
-  record_result("BUDGET among them", budget);
+  record_results("", {{"ticks", kQuietTicks}, {"BUDGET among them", budget}});
 }
 
-}  // namespace endurance_test
-}  // namespace catena::acceptance
+}  // namespace catena::acceptance::endurance_test

@@ -4,8 +4,7 @@
 #include "tests/acceptance/reference_numerics.h"
 #include "tests/haptics/constraints/constraint_fixture.h"
 
-namespace catena::acceptance {
-namespace isosurface_acceptance_test {
+namespace catena::acceptance::isosurface_acceptance_test {
 
 using catena::LinkStatus;
 using haptics::bitwise_equal;
@@ -15,6 +14,10 @@ using haptics::tests::isosurface;
 using haptics::tests::Quantiles;
 using haptics::tests::Random;
 using haptics::tests::Rig;
+
+void record_quantiles(const std::string& who, Quantiles& spread) {
+  record_results(who, {{" p50", spread.at_quantile(0.5)}, {" p99", spread.at_quantile(0.99)}, {" max", spread.at_quantile(1)}});
+}
 
 struct Slope {
   Real value;
@@ -77,7 +80,8 @@ TEST(IsosurfaceProjection, FormulasReachTheLocalClosestPointWithinATick) {
     double off = 0, tangential = 0;
     int failures = 0, starts = 0, above_32 = 0, no_minimum = 0;
     Quantiles cold, jump, hand;
-    const auto count = [&](const Rig& rig, const Vec3& probe, Quantiles& spread) {
+    const auto count = [&](Rig& rig, const Vec3& probe, Quantiles& spread) {
+      rig.tick(probe);
       const Judged j = judge(f, probe, rig.state.proxy);
       ++starts;
       off = std::max(off, j.off_level);
@@ -89,49 +93,34 @@ TEST(IsosurfaceProjection, FormulasReachTheLocalClosestPointWithinATick) {
     };
     for (int i = 0; i < 8000; ++i) {
       Rig rig(constraint);
-      const Vec3 probe = random.box(2);
-      rig.tick(probe);
-      count(rig, probe, cold);
+      count(rig, random.box(2), cold);
     }
     Rig rig(constraint);
     rig.tick({0.8, 0.3, 0.2});
-    for (int i = 0; i < 8000; ++i) {
-      const Vec3 probe = random.box(2);
-      rig.tick(probe);
-      count(rig, probe, jump);
-    }
+    for (int i = 0; i < 8000; ++i) count(rig, random.box(2), jump);
     Vec3 probe(0.9, 0.3, 0.4), velocity(0.0);
     Rig still(constraint);
     still.tick(probe);
     for (int i = 0; i < 8000; ++i) {
       velocity = direction(velocity + 2e-4 * random.unit()) * 8e-4;
       probe = norm(probe + velocity) > 1.6 ? 0.99 * probe : probe + velocity;
-      still.tick(probe);
       count(still, probe, hand);
     }
     const std::string who = std::string(f.name) + ": ";
-    record_result(who + "failures of " + std::to_string(starts), failures);
-    record_result(who + "off the level / L", off);
-    record_result(who + "tangential residual / L", tangential);
-    record_result(who + "not a minimum", no_minimum);
-    record_result(who + "evaluations, cold p50", cold.at_quantile(0.5));
-    record_result(who + "evaluations, cold p99", cold.at_quantile(0.99));
-    record_result(who + "evaluations, cold max", cold.at_quantile(1));
-    record_result(who + "evaluations, jump p99", jump.at_quantile(0.99));
-    record_result(who + "evaluations, jump max", jump.at_quantile(1));
-    record_result(who + "evaluations, hand p50", hand.at_quantile(0.5));
-    record_result(who + "evaluations, hand max", hand.at_quantile(1));
-    record_result(who + "ticks above 32 evaluations", above_32);
-    EXPECT_EQ(failures, 0) << f.name;
-    EXPECT_EQ(no_minimum, 0) << f.name;
-    EXPECT_LE(above_32, starts / 1000) << f.name;  // for jumps across a torus
+    expect_at_most(who + "failures of " + std::to_string(starts), failures, 0);
+    expect_at_most(who + "not a minimum", no_minimum, 0);
+    expect_at_most(who + "ticks above 32 evaluations", above_32, starts / 1000);  // for jumps across a torus
+    record_results(who, {{"off the level / L", off}, {"tangential residual / L", tangential}});
+    record_quantiles(who + "evaluations, cold", cold);
+    record_quantiles(who + "evaluations, jump", jump);
+    record_quantiles(who + "evaluations, hand", hand);
     EXPECT_LE(hand.at_quantile(0.99), 8) << f.name;
   }
 }
 
 TEST(IsosurfaceProjection, TheProxyRestsWhileTheProbeRests) {
   for (const bool grid : {false, true}) {
-    const field::ScalarFieldPtr f = grid ? field::ScalarFieldPtr(haptics::tests::sampled_field("sphere", 41, 3)) : analytic_field("sphere");
+    const auto f = grid ? haptics::tests::sampled_field("sphere", 41, 3) : analytic_field("sphere");
     for (const double d : {0.1, 0.3, 0.7, 0.999, 1.001, 1.9, 2.1, 2.5, 4.0, 7.0, 12.0, 20.0}) {
       Rig rig(isosurface(f, 1));
       rig.tick({0.3, -0.9, 0.6});
@@ -285,17 +274,11 @@ void expect_on_samples(const Formula& f, int nodes) {
     count(hand, probe);
   }
   const std::string who = std::string(f.name) + " " + std::to_string(nodes) + "^3: ";
-  record_result(who + "walks", walks);
-  record_result(who + "off the level / L", off);
-  record_result(who + "descent left / L", worst);
-  record_result(who + "walks out of budget", budget);
-  record_result(who + "walks that end above 1e-6 L", wrong);
-  record_result(who + "evaluations p50", evaluations.at_quantile(0.5));
-  record_result(who + "evaluations p99", evaluations.at_quantile(0.99));
-  record_result(who + "evaluations max", evaluations.at_quantile(1));
+  record_results(who, {{"walks", walks}, {"off the level / L", off}, {"descent left / L", worst}, {"walks out of budget", budget}});
+  record_quantiles(who + "evaluations", evaluations);
+  expect_at_most(who + "walks that end above 1e-6 L", wrong, 0);
   EXPECT_EQ(failures, 0) << who;
   EXPECT_LE(budget + wrong, walks / 1000) << who;
-  EXPECT_EQ(wrong, 0) << who;
 }
 
 TEST(IsosurfaceProjection, SampledSphereReachesTheLocalClosestPoint) {
@@ -308,5 +291,4 @@ TEST(IsosurfaceProjection, SampledTorusReachesTheLocalClosestPoint) {
 }
 TEST(IsosurfaceProjection, SampledGaussianReachesTheLocalClosestPoint) { expect_on_samples(kFormulas[2], 48); }
 
-}  // namespace isosurface_acceptance_test
-}  // namespace catena::acceptance
+}  // namespace catena::acceptance::isosurface_acceptance_test

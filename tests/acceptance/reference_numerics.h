@@ -78,8 +78,6 @@ Real3 dormand_prince(const Rate& u, Real3 p, Real s, Real tolerance, Real3& last
 }
 inline Real3 operator-(const Real3& a) { return {-a.x, -a.y, -a.z}; }
 
-// ---- closed forms ----
-
 inline Real3 abc_flow(const Real3& p) {
   const Real a = std::sqrt(3.0L), b = std::sqrt(2.0L), c = 1;
   return {a * std::sin(p.z) + c * std::cos(p.y), b * std::sin(p.x) + a * std::cos(p.z), c * std::sin(p.y) + b * std::cos(p.x)};
@@ -108,6 +106,17 @@ inline void record_result(const std::string& what, double value) {
   std::string key;
   for (const char c : what) key += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
   testing::Test::RecordProperty(key, text);
+}
+
+/// Records a figure, and expects that it is at most `bound`.
+inline void expect_at_most(const std::string& what, double value, double bound) {
+  record_result(what, value);
+  EXPECT_LE(value, bound) << what;
+}
+
+/// Records figures whose names begin with `who`.
+inline void record_results(const std::string& who, std::initializer_list<std::pair<const char*, double>> figures) {
+  for (const auto& [what, value] : figures) record_result(who + what, value);
 }
 
 }  // namespace catena::acceptance

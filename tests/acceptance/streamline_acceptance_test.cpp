@@ -6,8 +6,7 @@
 #include "tests/acceptance/reference_numerics.h"
 #include "tests/engine/geometry/flow/lambda_field.h"
 
-namespace catena::acceptance {
-namespace streamline_acceptance_test {
+namespace catena::acceptance::streamline_acceptance_test {
 
 using catena::test::analytic_vector;
 using catena::test::lambda_field;
@@ -52,12 +51,9 @@ TEST(StreamlineProjection, NoDistanceIncreaseFromRandomStarts) {
     }
   }
   record_result("starts", runs);
-  record_result("distance increases", increases);
-  record_result("most evaluations a tick (cap 257)", max_evaluations);
-  record_result("starts still under way after 8 ticks", under_way);
-  EXPECT_EQ(increases, 0);
-  EXPECT_LE(max_evaluations, kMaxEvaluations);
-  EXPECT_LE(under_way, runs / 100);
+  expect_at_most("distance increases", increases, 0);
+  expect_at_most("most evaluations a tick (cap 257)", max_evaluations, kMaxEvaluations);
+  expect_at_most("starts still under way after 8 ticks", under_way, runs / 100);
 }
 
 TEST(StreamlineProjection, ACircleFromTwentyDegreesOff) {
@@ -80,14 +76,10 @@ TEST(StreamlineProjection, ACircleFromTwentyDegreesOff) {
     EXPECT_LE(paper.state.residual, 1e-9) << d;
     most_paper = std::max(most_paper, paper.state.evaluations);
   }
-  record_result("tangential residual, d = 0.2-6 R, one tick", worst);
-  record_result("distance from the closed form / R, DP5(4)", worst_place);
-  record_result("evaluations, DP5(4)", max_evaluations);
-  record_result("evaluations, RKF3(4) at tolerance 1e-9", most_paper);
-  EXPECT_LE(worst, 1e-9);
-  EXPECT_LE(worst_place, 1e-7);
-  EXPECT_LE(max_evaluations, 8 * 2 * 6);
-  EXPECT_LE(most_paper, kMaxEvaluations);
+  expect_at_most("tangential residual, d = 0.2-6 R, one tick", worst, 1e-9);
+  expect_at_most("distance from the closed form / R, DP5(4)", worst_place, 1e-7);
+  expect_at_most("evaluations, DP5(4)", max_evaluations, 8 * 2 * 6);
+  expect_at_most("evaluations, RKF3(4) at tolerance 1e-9", most_paper, kMaxEvaluations);
 }
 
 TEST(StreamlineProjection, TypicalEvaluationsPerTick) {
@@ -109,10 +101,8 @@ TEST(StreamlineProjection, TypicalEvaluationsPerTick) {
     }
     const std::string who = std::string(flow::to_string(method)) + ", " + std::to_string(farness) + " x 0.2 L/s, evaluations ";
     record_result(who + "p50", spread.at_quantile(0.5));
-    record_result(who + "p99", spread.at_quantile(0.99));
-    record_result(who + "max", spread.at_quantile(1));
-    EXPECT_LE(spread.at_quantile(0.99), 80);
-    EXPECT_LE(spread.at_quantile(1), kMaxEvaluations);
+    expect_at_most(who + "p99", spread.at_quantile(0.99), 80);
+    expect_at_most(who + "max", spread.at_quantile(1), kMaxEvaluations);
   }
 }
 
@@ -146,8 +136,6 @@ TEST(PublishedEquation3, Equation3AsPrintedFailsAtTwoAndAHalfRadii) {
   EXPECT_LE(norm(rig.state.proxy - on_circle(1, 20)), 1e-7);
 }
 
-// ---- selected lines ----
-
 /// Twenty forward and backward sweeps over the curve: the same proxy at the same probe, bit for bit.
 struct Sweeps {
   double hysteresis = 0;
@@ -175,39 +163,31 @@ Sweeps sweep(const flow::CurvePtr& curve, double from, double to, double step, c
 }
 
 TEST(SelectedStreamline, MatchesClosedForms) {
-  const auto circle = flow::trace({analytic_vector("circle").get()}, {0.9, 0, 0});
-  double error = 0;
-  for (int i = 0; i < 20000; ++i) error = std::max(error, std::fabs(norm((*circle)->position(6 * i / 20000.0)) - 0.9));
-  record_result("circle, error / L", error / 4);
-  record_result("circle, knots", static_cast<double>((*circle)->knots().size()));
-  EXPECT_LE(error / 4, 1e-9);
-
-  const auto hill = flow::trace({analytic_vector("hill").get()}, {0.5, 0, 0});
-  error = 0;
-  for (int i = 0; i < 20000; ++i) error = std::max(error, hill_streamline_distance((*hill)->position(3.2 * i / 20000.0), 0.5L));
-  record_result("Hill, error / L", error / 4);
-  EXPECT_LE(error / 4, 1e-9);
-
-  const auto helix = flow::trace({analytic_vector("helix").get()}, {0.8, 0, 0});
-  error = 0;
+  const auto position = [](const char* name, const Vec3& seed) {
+    return [curve = *flow::trace({analytic_vector(name).get()}, seed)](double s) { return curve->position(s); };
+  };
+  const auto circle = position("circle", {0.9, 0, 0}), hill = position("hill", {0.5, 0, 0}), helix = position("helix", {0.8, 0, 0});
+  double off_circle = 0, off_hill = 0, off_helix = 0, off_abc = 0;
+  for (int i = 0; i < 20000; ++i) {
+    off_circle = std::max(off_circle, std::fabs(norm(circle(6 * i / 20000.0)) - 0.9));
+    off_hill = std::max(off_hill, hill_streamline_distance(hill(3.2 * i / 20000.0), 0.5L));
+  }
   const double speed = std::sqrt(1.6 * 1.6 + 0.25);
   for (int i = -20000; i < 20000; ++i) {
     const double s = 8 * i / 20000.0, t = s / speed;
-    error = std::max(error, norm((*helix)->position(s) - Vec3(0.8 * std::cos(2 * t), 0.8 * std::sin(2 * t), 0.5 * t)));
+    off_helix = std::max(off_helix, norm(helix(s) - Vec3(0.8 * std::cos(2 * t), 0.8 * std::sin(2 * t), 0.5 * t)));
   }
-  record_result("helix over 16, error / L", error / 4);
-  EXPECT_LE(error / 4, 1e-9);
-
   const Vec3 seed(0.3, -0.7, 0.4);
-  const auto chaotic = flow::trace({analytic_vector("abc").get()}, seed);
-  error = 0;
+  const auto chaotic = position("abc", seed);
   Real3 p(seed);
   for (int i = 1; i <= 400; ++i) {
     p = integrate_rk4([](const Real3& q) { return unit_direction(abc_flow(q)); }, p, 0.01L, 20);
-    error = std::max(error, norm((*chaotic)->position(0.01 * i) - p.rounded()));
+    off_abc = std::max(off_abc, norm(chaotic(0.01 * i) - p.rounded()));
   }
-  record_result("ABC over L, error / L", error / 4);
-  EXPECT_LE(error / 4, 1e-9);
+  expect_at_most("circle, error / L", off_circle / 4, 1e-9);
+  expect_at_most("Hill, error / L", off_hill / 4, 1e-9);
+  expect_at_most("helix over 16, error / L", off_helix / 4, 1e-9);
+  expect_at_most("ABC over L, error / L", off_abc / 4, 1e-9);
 }
 
 TEST(SelectedStreamline, HasNoHysteresisAndVisitsFewKnotsPerTick) {
@@ -229,15 +209,11 @@ TEST(SelectedStreamline, HasNoHysteresisAndVisitsFewKnotsPerTick) {
       const double step = part * 1e-3 * c.field->domain_length();
       const Sweeps sweeps = sweep(*curve, c.from, c.to, step, Vec3(0.01, -0.015, 0.02));
       const std::string who = std::string(c.name) + " at " + (part > 0.1 ? "0.2" : "0.05") + " L/s: ";
-      record_result(who + "hysteresis over 20 sweeps", sweeps.hysteresis);
-      record_result(who + "knots a tick", sweeps.knots);
-      EXPECT_EQ(sweeps.hysteresis, 0);
-      EXPECT_LE(sweeps.knots, 8);
+      expect_at_most(who + "hysteresis over 20 sweeps", sweeps.hysteresis, 0);
+      expect_at_most(who + "knots a tick", sweeps.knots, 8);
     }
   }
 }
-
-// ---- critical points ----
 
 struct Zero {
   std::string name;
@@ -246,15 +222,13 @@ struct Zero {
 };
 
 std::vector<Zero> zeros_with_straight_ways() {
-  std::vector<Zero> out;
-  out.push_back({"attracting node", lambda_field([](const Vec3& p) { return Vec3(-p.x, -2 * p.y, -3 * p.z); }), {0.9, 0, 0}});
-  out.push_back({"repelling node", analytic_vector("node"), {0.5, 0.4, -0.3}});
-  out.push_back({"star node", lambda_field([](const Vec3& p) { return -p; }), {0.2, 0.7, 0.5}});
-  out.push_back({"saddle, stable", analytic_vector("saddle"), {0, 0.8, 0}});
-  out.push_back({"saddle, unstable", analytic_vector("saddle"), {0.8, 0, 0}});
-  out.push_back({"saddle in space", lambda_field([](const Vec3& p) { return Vec3(2 * p.x, -p.y, -3 * p.z); }), {0, 0, 0.6}});
-  out.push_back({"slow zero", lambda_field([](const Vec3& p) { return -dot(p, p) * p; }), {0.4, -0.3, 0.2}});
-  return out;
+  return {{"attracting node", lambda_field([](const Vec3& p) { return Vec3(-p.x, -2 * p.y, -3 * p.z); }), {0.9, 0, 0}},
+          {"repelling node", analytic_vector("node"), {0.5, 0.4, -0.3}},
+          {"star node", lambda_field([](const Vec3& p) { return -p; }), {0.2, 0.7, 0.5}},
+          {"saddle, stable", analytic_vector("saddle"), {0, 0.8, 0}},
+          {"saddle, unstable", analytic_vector("saddle"), {0.8, 0, 0}},
+          {"saddle in space", lambda_field([](const Vec3& p) { return Vec3(2 * p.x, -p.y, -3 * p.z); }), {0, 0, 0.6}},
+          {"slow zero", lambda_field([](const Vec3& p) { return -dot(p, p) * p; }), {0.4, -0.3, 0.2}}};
 }
 
 TEST(CriticalPoints, StraightPathsStopOnTheZeroAndLeaveIt) {
@@ -262,13 +236,11 @@ TEST(CriticalPoints, StraightPathsStopOnTheZeroAndLeaveIt) {
   int slowest = 0;
   for (const Zero& zero : zeros_with_straight_ways())
     for (const Method method : {Method::rk2, Method::rk4, Method::rkf34, Method::dp54}) {
+      SCOPED_TRACE(zero.name + " " + flow::to_string(method));
       Rig rig = online(zero.field, zero.seed, method);
       int ticks = 0;
-      while (ticks < 6 && rig.state.status != LinkStatus::critical) {
-        rig.tick(-0.6 * zero.seed);
-        ++ticks;
-      }
-      EXPECT_EQ(rig.state.status, LinkStatus::critical) << zero.name << " " << flow::to_string(method);
+      for (; ticks < 6 && rig.state.status != LinkStatus::critical; ++ticks) rig.tick(-0.6 * zero.seed);
+      EXPECT_EQ(rig.state.status, LinkStatus::critical);
       slowest = std::max(slowest, ticks);
       worst = std::max(worst, norm(rig.state.proxy) / 4);
       const Vec3 held = rig.state.proxy;
@@ -280,12 +252,9 @@ TEST(CriticalPoints, StraightPathsStopOnTheZeroAndLeaveIt) {
       EXPECT_EQ(rig.state.status, LinkStatus::ok) << zero.name << " " << flow::to_string(method);
       back = std::max(back, norm(rig.state.proxy - 0.4 * zero.seed) / 4);
     }
-  record_result("distance from the zero / L", worst);
-  record_result("ticks", slowest);
-  record_result("after the hand turned back, distance from its place on the way / L", back);
-  EXPECT_LE(worst, 1e-6);
-  EXPECT_LE(slowest, 6);
-  EXPECT_LE(back, 1e-6);
+  expect_at_most("distance from the zero / L", worst, 1e-6);
+  expect_at_most("ticks", slowest, 6);
+  expect_at_most("after the hand turned back, distance from its place on the way / L", back, 1e-6);
 }
 
 TEST(CriticalPoints, SelectedLinesEndOnTheZero) {
@@ -320,11 +289,8 @@ TEST(CriticalPoints, CurvedManifoldsAreReachedWhenDragged) {
       EXPECT_EQ(rig.state.status, LinkStatus::ok) << bend;
       back = std::max(back, std::fabs(rig.state.proxy.x - bend * rig.state.proxy.y * rig.state.proxy.y / 3) / 4);
     }
-  record_result("curved manifold, distance from the zero / L", worst);
-  record_result("after the hand turned back, distance from the manifold / L", back);
-  EXPECT_LE(worst, 1e-4);
-  EXPECT_LE(back, 1e-6);
+  expect_at_most("curved manifold, distance from the zero / L", worst, 1e-4);
+  expect_at_most("after the hand turned back, distance from the manifold / L", back, 1e-6);
 }
 
-}  // namespace streamline_acceptance_test
-}  // namespace catena::acceptance
+}  // namespace catena::acceptance::streamline_acceptance_test

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -56,14 +57,26 @@ inline Link make_link(const json::Node& node, const BuildContext& context) {
 
 inline Link make_link(const std::string& text) { return make_link(*json::parse(text, "bench"), make_context_256()); }
 
+inline constexpr const char* kCurve = R"({"name": "curve", "type": "streamline", "field": "hill", "seed": [0.5, 0, 0]})";
+inline constexpr const char* kSurface = R"({"name": "surface", "type": "isosurface", "field": "torus", "level": 0.5})";
+
+/// A streamline and an isosurface.
+inline HapticProgram make_pair_program(const char* curve = kCurve) {
+  HapticProgram program;
+  program.epoch = 1;
+  program.links = {make_link(curve), make_link(kSurface)};
+  return program;
+}
+
 /// A hand with tremor at about 0.2 units/s around `centre`, for 20 s at 1 kHz.
-inline std::vector<ProbeSample> probe_path(const Vec3& centre = Vec3(0.6, 0, 0), double radius = 0.2) {
+inline std::vector<ProbeSample> probe_path(const Vec3& centre = Vec3(0.6, 0, 0), double radius = 0.2, double turns_rad_per_s = 0.4,
+                                           double height = 0.3) {
   std::vector<ProbeSample> path;
   for (int k = 0; k < 20000; ++k) {
-    const double t = 1e-3 * k, a = 0.4 * t, r = radius * (0.6 + 0.4 * std::sin(0.37 * a));
+    const double t = 1e-3 * k, a = turns_rad_per_s * t, r = radius * (0.6 + 0.4 * std::sin(0.37 * a));
     path.push_back({t,
                     centre + Vec3(r * std::cos(a) + 0.002 * std::sin(60 * t), r * std::sin(1.1 * a),
-                                  0.3 * std::sin(0.7 * a) + 0.002 * std::cos(57 * t)),
+                                  height * std::sin(0.7 * a) + 0.002 * std::cos(57 * t)),
                     0});
   }
   return path;
@@ -107,15 +120,21 @@ inline void run_chain(benchmark::State& state, const HapticProgram& program, con
     }
     return true;
   });
-  for (std::size_t i = 0; i < evaluations.size(); ++i) {
-    std::vector<int>& e = evaluations[i];
-    std::sort(e.begin(), e.end());
-    const std::string& name = program.links[i].name;
-    state.counters[name + "_e50"] = e[e.size() / 2];
-    state.counters[name + "_e99"] = e[e.size() * 99 / 100];
-    state.counters[name + "_emax"] = e.back();
-  }
+  for (std::size_t i = 0; i < evaluations.size(); ++i)
+    for (const auto& [name, part] : {std::pair{"_e50", 0.5}, {"_e99", 0.99}, {"_emax", 1.0}})
+      state.counters[program.links[i].name + name] = quantile(evaluations[i], part);
   state.counters["over_budget"] = over_budget;
+}
+
+struct NamedBenchmark {
+  const char* name;
+  std::function<void(benchmark::State&)> run;
+};
+
+/// Registers benchmarks of one iteration.
+inline bool register_benchmarks(const std::vector<NamedBenchmark>& all) {
+  for (const NamedBenchmark& one : all) benchmark::RegisterBenchmark(one.name, one.run)->Unit(benchmark::kMillisecond)->Iterations(1);
+  return true;
 }
 
 }  // namespace catena::bench

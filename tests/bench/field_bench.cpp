@@ -63,26 +63,18 @@ void fetch_all(benchmark::State& state, const Grid& grid, const std::vector<Vec3
                                                       benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void scalar_walk(benchmark::State& state) { fetch_all(state, scalar_grid(), walk(0.05)); }
-void scalar_stride(benchmark::State& state) { fetch_all(state, scalar_grid(), walk(1)); }
-void scalar_random(benchmark::State& state) { fetch_all(state, scalar_grid(), scattered()); }
-void vector_walk(benchmark::State& state) { fetch_all(state, vector_grid(), walk(0.05)); }
-void vector_random(benchmark::State& state) { fetch_all(state, vector_grid(), scattered()); }
-void cubic_scalar_walk(benchmark::State& state) { fetch_all(state, cubic_scalar_grid(), walk(0.05)); }
-void cubic_scalar_stride(benchmark::State& state) { fetch_all(state, cubic_scalar_grid(), walk(1)); }
-void cubic_scalar_random(benchmark::State& state) { fetch_all(state, cubic_scalar_grid(), scattered()); }
-void cubic_vector_walk(benchmark::State& state) { fetch_all(state, cubic_vector_grid(), walk(0.05)); }
-void cubic_vector_random(benchmark::State& state) { fetch_all(state, cubic_vector_grid(), scattered()); }
+/// The fields are sampled on first use.
+template <class Grid>
+bool add(const char* name, const Grid& (*grid)(), std::vector<Vec3> points) {
+  benchmark::RegisterBenchmark(name, [=](benchmark::State& state) { fetch_all(state, grid(), points); });
+  return true;
+}
 
-BENCHMARK(scalar_walk);
-BENCHMARK(scalar_stride);
-BENCHMARK(scalar_random);
-BENCHMARK(vector_walk);
-BENCHMARK(vector_random);
-BENCHMARK(cubic_scalar_walk);
-BENCHMARK(cubic_scalar_stride);
-BENCHMARK(cubic_scalar_random);
-BENCHMARK(cubic_vector_walk);
-BENCHMARK(cubic_vector_random);
+[[maybe_unused]] const bool registered =
+    add("scalar_walk", scalar_grid, walk(0.05)) && add("scalar_stride", scalar_grid, walk(1)) &&
+    add("scalar_random", scalar_grid, scattered()) && add("vector_walk", vector_grid, walk(0.05)) &&
+    add("vector_random", vector_grid, scattered()) && add("cubic_scalar_walk", cubic_scalar_grid, walk(0.05)) &&
+    add("cubic_scalar_stride", cubic_scalar_grid, walk(1)) && add("cubic_scalar_random", cubic_scalar_grid, scattered()) &&
+    add("cubic_vector_walk", cubic_vector_grid, walk(0.05)) && add("cubic_vector_random", cubic_vector_grid, scattered());
 
 }  // namespace field_bench

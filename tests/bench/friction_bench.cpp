@@ -35,30 +35,17 @@ HapticProgram program_of(const Data& data, int only = -1) {
 }
 
 /// A hand with tremor at about 0.2 units/s, in and out of the surface.
-std::vector<ProbeSample> path_of(const Data& data) {
-  std::vector<ProbeSample> path;
-  for (int k = 0; k < 20000; ++k) {
-    const double t = 1e-3 * k, a = 0.6 * t, r = data.radius * (0.6 + 0.4 * std::sin(0.37 * a));
-    path.push_back({t,
-                    data.centre + Vec3(r * std::cos(a) + 0.002 * std::sin(60 * t), r * std::sin(1.1 * a),
-                                       0.15 * std::sin(0.7 * a) + 0.002 * std::cos(57 * t)),
-                    0});
-  }
-  return path;
+std::vector<ProbeSample> path_of(const Data& data) { return probe_path(data.centre, data.radius, 0.6, 0.15); }
+
+auto run(const Data& data, int only = -1) {
+  return [&data, only](benchmark::State& state) { run_chain(state, program_of(data, only), path_of(data)); };
 }
 
-void run(benchmark::State& state, const Data& data, int only = -1) { run_chain(state, program_of(data, only), path_of(data)); }
-
-void AnisotropicFrictionSphereCircle256(benchmark::State& state) { run(state, kSphere); }
-void AnisotropicFrictionTorusHill256(benchmark::State& state) { run(state, kTorus); }
-void IsosurfaceAloneTorus256(benchmark::State& state) { run(state, kTorus, 0); }
-void IsosurfaceAndDirectionTorusHill256(benchmark::State& state) { run(state, kTorus, 1); }
-void IsosurfaceAndModulatedTorusHill256(benchmark::State& state) { run(state, kTorus, 2); }
-BENCHMARK(AnisotropicFrictionSphereCircle256)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK(AnisotropicFrictionTorusHill256)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK(IsosurfaceAloneTorus256)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK(IsosurfaceAndDirectionTorusHill256)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK(IsosurfaceAndModulatedTorusHill256)->Unit(benchmark::kMillisecond)->Iterations(1);
+[[maybe_unused]] const bool registered = register_benchmarks({{"AnisotropicFrictionSphereCircle256", run(kSphere)},
+                                                              {"AnisotropicFrictionTorusHill256", run(kTorus)},
+                                                              {"IsosurfaceAloneTorus256", run(kTorus, 0)},
+                                                              {"IsosurfaceAndDirectionTorusHill256", run(kTorus, 1)},
+                                                              {"IsosurfaceAndModulatedTorusHill256", run(kTorus, 2)}});
 
 /// The lower bound: the cost of one sample of value and gradient on the same walk.
 void FetchOnTheWalkTorus256(benchmark::State& state) {

@@ -4,7 +4,6 @@
 /// One JSON line: medians over an orbit of VIEWS images, wall and process CPU milliseconds (two threads: half of the CPU time is the
 /// ideal wall time); `level_ms`: one-time cost of a new level. DEPTH_FILE: view depth at azimuth 30, raw float32, row 0 at the top.
 #include <fmt/core.h>
-#include <sys/resource.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -22,18 +21,16 @@ namespace {
 
 using namespace catena;
 
-constexpr double kPi = 3.14159265358979323846;
+double cpu_ms() { return 1e-6 * double(process_cpu_ns()); }
 
-double cpu_ms() {
-  rusage use{};
-  ::getrusage(RUSAGE_SELF, &use);
-  const auto ms = [](const timeval& t) { return 1e3 * double(t.tv_sec) + 1e-3 * double(t.tv_usec); };
-  return ms(use.ru_utime) + ms(use.ru_stime);
+[[noreturn]] void fail(int code, const std::string& message) {
+  fmt::print(stderr, "{}\n", message);
+  std::exit(code);
 }
 
 /// The camera of the comparison, as in VTK.
 render::View view_at(double azimuth_deg, int n) {
-  const double a = azimuth_deg * kPi / 180, e = 20 * kPi / 180, centre = (n - 1) / 2.0, distance = 2.7 * n;
+  const double a = azimuth_deg * M_PI / 180, e = 20 * M_PI / 180, centre = (n - 1) / 2.0, distance = 2.7 * n;
   render::View view;
   view.target = Vec3(centre);
   view.position = view.target + distance * Vec3(std::sin(a) * std::cos(e), -std::cos(a) * std::cos(e), std::sin(e));
@@ -46,9 +43,8 @@ std::vector<float> values_of(const std::string& raw, int n) {
   std::vector<float> values(std::size_t(n) * n * n);
   std::ifstream in(raw, std::ios::binary);
   in.read(reinterpret_cast<char*>(values.data()), std::streamsize(values.size() * sizeof(float)));
-  if (in) return values;
-  fmt::print(stderr, "{}: expected {}^3 floats\n", raw, n);
-  std::exit(2);
+  if (!in) fail(2, fmt::format("{}: expected {}^3 floats", raw, n));
+  return values;
 }
 
 render::RenderSettings settings_of(const std::string& mode) {
@@ -61,20 +57,14 @@ render::RenderSettings settings_of(const std::string& mode) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 4) {
-    fmt::print(stderr, "usage: isosurface_table RAW N LEVEL [VIEWS [DEPTH_FILE [MODE]]]\n");
-    return 2;
-  }
+  if (argc < 4) fail(2, "usage: isosurface_table RAW N LEVEL [VIEWS [DEPTH_FILE [MODE]]]");
   const std::string raw = argv[1];
   const int n = std::atoi(argv[2]);
   const double level = std::atof(argv[3]);
   const int views = argc > 4 ? std::atoi(argv[4]) : 10;
   const render::RenderSettings settings = settings_of(argc > 6 ? argv[6] : "exact");
   auto renderer = render::Renderer::create({});
-  if (!renderer) {
-    fmt::print(stderr, "{}\n", renderer.error().message);
-    return 1;
-  }
+  if (!renderer) fail(1, renderer.error().message);
   render::IsosurfaceItem item;
   item.grid = field::make_scalar_grid("density", {}, {n, n, n}, values_of(raw, n));
   item.color = {0.8f, 0.8f, 0.9f};
@@ -83,10 +73,7 @@ int main(int argc, char** argv) {
   const auto draw = [&](double azimuth, double at_level) {
     packet.isosurfaces[0].level = at_level;
     packet.view = view_at(azimuth, n);
-    const auto drawn = (*renderer)->draw(packet, settings);
-    if (drawn) return;
-    fmt::print(stderr, "{}\n", drawn.error().message);
-    std::exit(1);
+    if (const auto drawn = (*renderer)->draw(packet, settings); !drawn) fail(1, drawn.error().message);
   };
   draw(0, level);
   draw(3, level);

@@ -15,9 +15,6 @@ namespace log_bench {
 using namespace catena;
 using namespace catena::bench;
 
-constexpr const char* kCurve = R"({"name": "curve", "type": "streamline", "field": "hill", "seed": [0.5, 0, 0]})";
-constexpr const char* kSurface = R"({"name": "surface", "type": "isosurface", "field": "torus", "level": 0.5})";
-
 std::unique_ptr<log::LogWriter> open_log(const HapticProgram& program) {
   auto writer = log::LogWriter::open("log_bench.catlog", {});
   CATENA_ASSERT(static_cast<bool>(writer));
@@ -26,9 +23,7 @@ std::unique_ptr<log::LogWriter> open_log(const HapticProgram& program) {
 }
 
 void LogPutBesideTheTick(benchmark::State& state) {
-  HapticProgram program;
-  program.epoch = 1;
-  program.links = {make_link(kCurve), make_link(kSurface)};
+  const HapticProgram program = make_pair_program();
   const std::vector<ProbeSample> path = probe_path();
   std::vector<double> tick_ns, put_ns;
   log::LogStatus status;
@@ -60,9 +55,7 @@ void LogPutBesideTheTick(benchmark::State& state) {
 BENCHMARK(LogPutBesideTheTick)->Unit(benchmark::kMillisecond);
 
 void LogOfAServoAt4kHz(benchmark::State& state) {
-  auto program = std::make_shared<HapticProgram>();
-  program->epoch = 1;
-  program->links = {make_link(kCurve), make_link(kSurface)};
+  const auto program = std::make_shared<HapticProgram>(make_pair_program());
   std::vector<RecordedPath::Sample> samples;
   for (const ProbeSample& p : probe_path()) samples.push_back({p.t_s, p.position, p.buttons});
   log::LogStatus status;

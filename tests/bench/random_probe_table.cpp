@@ -14,6 +14,7 @@
 
 #include "engine/base/clock.h"
 #include "engine/base/json.h"
+#include "engine/base/numbers.h"
 #include "engine/field/grid/grid.h"
 #include "haptics/chain/begin_link.h"
 #include "haptics/constraints/registry.h"
@@ -103,12 +104,6 @@ struct Link {
   }
 };
 
-double quantile_of(std::vector<float>& values, double part) {
-  const auto at = static_cast<std::size_t>(part * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
-  return static_cast<double>(values[at]);
-}
-
 void measure(const Case& c, const std::string& free, std::size_t ticks, double load_ns) {
   const auto constraint = link_on(c, free);
   std::vector<float> fastest(ticks, 1e30f), times(ticks);
@@ -126,8 +121,8 @@ void measure(const Case& c, const std::string& free, std::size_t ticks, double l
       evaluations = std::max(evaluations, link.state.evaluations);
       work = std::max(work, link.state.work());
     }
-    worst_999 = std::max(worst_999, quantile_of(times, 0.999));
-    worst = std::max(worst, quantile_of(times, 1));
+    worst_999 = std::max<double>(worst_999, quantile(times, 0.999));
+    worst = std::max<double>(worst, quantile(times, 1));
   }
 
   // jumps, then rests
@@ -154,8 +149,8 @@ void measure(const Case& c, const std::string& free, std::size_t ticks, double l
       "rest within 20: {:.4f}  99.9 "
       "%: {:.0f} "
       "ticks\n",
-      c.name, free, quantile_of(fastest, 0.5), quantile_of(fastest, 0.99), quantile_of(fastest, 0.999), quantile_of(fastest, 1),
-      1e3 * worst_999 / load_ns, 1e3 * worst / load_ns, evaluations, work, static_cast<double>(within) / kThrows, quantile_of(rest, 0.999));
+      c.name, free, quantile(fastest, 0.5), quantile(fastest, 0.99), quantile(fastest, 0.999), quantile(fastest, 1),
+      1e3 * worst_999 / load_ns, 1e3 * worst / load_ns, evaluations, work, static_cast<double>(within) / kThrows, quantile(rest, 0.999));
   std::fflush(stdout);
 }
 

@@ -80,20 +80,16 @@ scene::Scene scene_of(const Case& c, const std::string& folder, int level = 0) {
   return scene;
 }
 
-void row(const std::string& field, const std::string& target, const std::string& setting, double stated_error, double error,
-         double stated_time, double time, double cost, const std::string& cheapest) {
-  fmt::print("{},{},\"{}\",{:.3g},{:.3g},{:.2f},{:.3g},{:.3g},{:.2f},{:.2f},\"{}\"\n", field, target, setting, stated_error, error,
-             error / stated_error, stated_time, time, time / stated_time, cost, cheapest);
+/// Prints the row of a chosen point. `time`: observed time; the cheapest point has an error of at most `goal`.
+void row(const std::string& field, const std::string& target, const tuning::Point& chosen, double stated_error, double stated_time,
+         double time, const std::vector<tuning::Point>& sweep, double goal) {
+  const tuning::Point* best = nullptr;
+  for (const tuning::Point& point : sweep)
+    if (point.error <= goal && (best == nullptr || point.time.median < best->time.median)) best = &point;
+  fmt::print("{},{},\"{}\",{:.3g},{:.3g},{:.2f},{:.3g},{:.3g},{:.2f},{:.2f},\"{}\"\n", field, target, chosen.setting, stated_error,
+             chosen.error, chosen.error / stated_error, stated_time, time, time / stated_time,
+             best == nullptr ? NAN : chosen.time.median / best->time.median, best == nullptr ? "none" : best->setting);
   std::fflush(stdout);
-}
-
-/// The chosen point and the cheapest of the sweep with an error of at most `error`; their times are measured alternating, after the sweep.
-int cheapest_within(const std::vector<tuning::Point>& sweep, double error) {
-  int best = -1;
-  for (std::size_t i = 0; i < sweep.size(); ++i)
-    if (sweep[i].error <= error && (best < 0 || sweep[i].time.median < sweep[static_cast<std::size_t>(best)].time.median))
-      best = static_cast<int>(i);
-  return best;
 }
 
 std::vector<render::RenderSettings> all_settings(bool fast, bool shaded) {
@@ -166,14 +162,11 @@ void eye_rows(const Case& c, scene::Scene& scene, std::vector<scene::Scene>& coa
   for (std::size_t k = 0; k < plans.size(); ++k) {
     const tuning::Point& chosen = times.points[swept + k];
     const double goal = std::max({resolvable, wanted[k].max_image_error.value_or(chosen.error)});
-    const int best = cheapest_within(times.points, goal);
     row(c.name,
         wanted[k].max_image_error
             ? fmt::format("error={:.3g}{}", *wanted[k].max_image_error, *wanted[k].max_image_error < resolvable ? " (floor)" : "")
             : fmt::format("time={:.3g}", *wanted[k].max_image_ms),
-        chosen.setting, plans[k].expected_error(), chosen.error, plans[k].expected_ms(), chosen.time.median,
-        best < 0 ? NAN : chosen.time.median / times.points[static_cast<std::size_t>(best)].time.median,
-        best < 0 ? "none" : times.points[static_cast<std::size_t>(best)].setting);
+        chosen, plans[k].expected_error(), plans[k].expected_ms(), chosen.time.median, times.points, goal);
   }
 }
 
@@ -242,13 +235,10 @@ void hand_rows(const Case& c, scene::Scene scene) {
   for (std::size_t k = 0; k < plans.size(); ++k) {
     const tuning::Point& chosen = times.points[swept + k];
     const double goal = std::max(resolvable, wanted[k].max_proxy_error.value_or(chosen.error));
-    const int best = cheapest_within(times.points, goal);
     row(c.name,
         wanted[k].max_proxy_error ? fmt::format("max_proxy_error={:.3g}", *wanted[k].max_proxy_error)
                                   : fmt::format("max_tick_us={:.3g}", *wanted[k].max_tick_us),
-        chosen.setting, std::max(plans[k].error_anywhere(), 1e-300), chosen.error, plans[k].expected_us(), 1e-3 * chosen.time.median,
-        best < 0 ? NAN : chosen.time.median / times.points[static_cast<std::size_t>(best)].time.median,
-        best < 0 ? "none" : times.points[static_cast<std::size_t>(best)].setting);
+        chosen, std::max(plans[k].error_anywhere(), 1e-300), plans[k].expected_us(), 1e-3 * chosen.time.median, times.points, goal);
   }
 }
 

@@ -8,9 +8,6 @@
 #include <fmt/core.h>
 
 #include <cstdlib>
-#include <functional>
-#include <string>
-#include <vector>
 
 #include "engine/base/random.h"
 #include "engine/geometry/flow/vortex_cores.h"

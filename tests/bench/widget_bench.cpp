@@ -9,9 +9,7 @@ using namespace catena;
 using namespace catena::bench;
 
 HapticProgram program_with(int planes, const Vec3& centre) {
-  HapticProgram program;
-  program.links = {make_link(R"({"name": "curve", "type": "streamline", "field": "hill", "seed": [0.5, 0, 0]})"),
-                   make_link(R"({"name": "surface", "type": "isosurface", "field": "torus", "level": 0.5})")};
+  HapticProgram program = make_pair_program();
   for (int i = 0; i < planes; ++i) {
     widget::Spec plane;
     plane.radius = 0.2;
@@ -27,13 +25,11 @@ HapticProgram program_with(int planes, const Vec3& centre) {
   return program;
 }
 
-void TickWithoutWidgets(benchmark::State& state) { run_chain(state, program_with(0, Vec3(0.0))); }
-void TickCuttingPlaneAway(benchmark::State& state) { run_chain(state, program_with(1, Vec3(0.0, 0.0, 50.0))); }
-void TickCuttingPlaneExplored(benchmark::State& state) { run_chain(state, program_with(1, Vec3(-3.0, 0.0, 0.0))); }
-void TickEightCuttingPlanes(benchmark::State& state) { run_chain(state, program_with(8, Vec3(-3.0, 0.0, 0.0))); }
-BENCHMARK(TickWithoutWidgets)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK(TickCuttingPlaneAway)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK(TickCuttingPlaneExplored)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK(TickEightCuttingPlanes)->Unit(benchmark::kMillisecond)->Iterations(1);
+[[maybe_unused]] const bool registered = register_benchmarks({
+    {"TickWithoutWidgets", [](benchmark::State& state) { run_chain(state, program_with(0, Vec3(0.0))); }},
+    {"TickCuttingPlaneAway", [](benchmark::State& state) { run_chain(state, program_with(1, Vec3(0.0, 0.0, 50.0))); }},
+    {"TickCuttingPlaneExplored", [](benchmark::State& state) { run_chain(state, program_with(1, Vec3(-3.0, 0.0, 0.0))); }},
+    {"TickEightCuttingPlanes", [](benchmark::State& state) { run_chain(state, program_with(8, Vec3(-3.0, 0.0, 0.0))); }},
+});
 
 }  // namespace widget_bench

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// The state_hash of each replay equals the committed constant in every preset, with and without the thread.
 /// The scenes use only + - * / sqrt (sampled grids, circle, sphere); a commit that changes behaviour must update the constants.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <set>
@@ -20,8 +21,8 @@ using namespace catena::haptics;
 
 struct Recorded {
   const char* name;
-  const char* scene;
   std::uint64_t hash;
+  const char* scene;
   bool presses = false;
 };
 
@@ -39,61 +40,54 @@ std::vector<ProbeSample> probe_path(bool presses) {
   return path;
 }
 
-constexpr const char* kCircle = R"({"fields": {"v": {"analytic": "circle"}},
-  "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0]}], "coupling": {"stiffness": 300, "damping": 1.5, "max_force": 6}})";
-constexpr const char* kCircleOnline = R"({"fields": {"v": {"analytic": "circle"}},
-  "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0], "follow": "online"}]})";
-constexpr const char* kSphere = R"({"fields": {"s": {"analytic": "sphere"}},
-  "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.5, "free": "above", "release": 0.3}]})";
-constexpr const char* kChain = R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
+const Recorded kRecorded[] = {
+    {"circle", 0x9b0462b529f38796, R"({"fields": {"v": {"analytic": "circle"}},
+  "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0]}], "coupling": {"stiffness": 300, "damping": 1.5, "max_force": 6}})"},
+    {"circle_online", 0x67d1ceac0b0241de, R"({"fields": {"v": {"analytic": "circle"}},
+  "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0], "follow": "online"}]})"},
+    {"sphere", 0x4a5465667050ae74, R"({"fields": {"s": {"analytic": "sphere"}},
+  "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.5, "free": "above", "release": 0.3}]})"},
+    {"chain", 0x0765d772fb8a76fa, R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
   "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1]},
             {"name": "surface", "type": "isosurface", "field": "s", "level": 0.45, "active_when": {"button": 1}},
             {"name": "floor", "type": "plane", "point": [0, 0, 0.05], "normal": [0, 0, 1], "free": "above"},
-            {"name": "pin", "type": "point", "position": [0.1, 0.2, 0.3], "stiffness": 20}], "coupling": {"ramp_s": 0.02}})";
-constexpr const char* kGrids = R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
-  "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0.02, 0.03]},
-            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.55, "free": "below", "release": 0.2}]})";
-constexpr const char* kGridOnline = R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
-  "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.4},
-            {"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0.02, 0.03], "method": "rk4"}]})";
-
-constexpr const char* kShapes = R"({"fields": {},
+            {"name": "pin", "type": "point", "position": [0.1, 0.2, 0.3], "stiffness": 20}], "coupling": {"ramp_s": 0.02}})"},
+    {"shapes", 0x421d00521f36a7bf, R"({"fields": {},
   "chain": [{"name": "path", "type": "polyline", "points": [[0.7, 0, 0], [0, 0.7, 0.1], [-0.7, 0, 0], [0, -0.6, 0]], "closed": true},
             {"name": "rail", "type": "segment", "from": [-0.5, -0.4, 0], "to": [0.6, 0.5, 0.2], "snap": 0.2, "release": 0.35},
             {"name": "axis", "type": "line", "point": [0, 0, 0.1], "direction": [1, 1, 0], "stiffness": 90, "release": 0.5},
             {"name": "ball", "type": "sphere", "center": [0.1, 0, 0], "radius": 0.4, "free": "above"},
-            {"name": "case", "type": "box", "center": [0, 0, 0], "size": [0.9, 0.8, 0.7], "free": "below", "release": 0.3}]})";
-constexpr const char* kFriction = R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
+            {"name": "case", "type": "box", "center": [0, 0, 0], "size": [0.9, 0.8, 0.7], "free": "below", "release": 0.3}]})"},
+    {"friction", 0xef3f6de4e6c46cdd, R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
   "chain": [{"name": "drag", "type": "drag", "threshold": 0.02},
             {"name": "along", "type": "friction", "field": "v", "threshold": 0.05},
             {"name": "rough", "type": "texture", "threshold": 0.01, "amplitude": 0.8, "wavelength": 0.07},
-            {"name": "oil", "type": "viscosity", "time": 0.004}], "coupling": {"stiffness": 250, "damping": 0.5}})";
-constexpr const char* kAnisotropic = R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
+            {"name": "oil", "type": "viscosity", "time": 0.004}], "coupling": {"stiffness": 250, "damping": 0.5}})"},
+    {"anisotropic", 0xd20422e0f3ddfe54, R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
   "chain": [{"name": "skin", "type": "anisotropic_friction", "surface": "s", "level": 0.5, "field": "v", "threshold": 0.03,
-             "tau_min": 0.002, "tau_max": 0.04, "free": "above", "release": 0.4}]})";
-constexpr const char* kDriven = R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
+             "tau_min": 0.002, "tau_max": 0.04, "free": "above", "release": 0.4}]})"},
+    {"driven", 0x09d34e4fa123460e, R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
   "chain": [{"name": "pull", "type": "gradient_force", "field": "s", "displacement": 0.05, "direction": "up_gradient"},
             {"name": "core", "type": "vortex_core", "field": "v", "radius": 0.2, "search_radius": 0.6,
              "stiffness": {"field": "s", "map": [[0.2, 100], [0.8, 400]]}},
-            {"name": "drag", "type": "drag", "threshold": {"field": "v", "normalise": true, "map": [[0, 0.001], [1, 0.03]]}}]})";
-constexpr const char* kModes = R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
+            {"name": "drag", "type": "drag", "threshold": {"field": "v", "normalise": true, "map": [[0, 0.001], [1, 0.03]]}}]})"},
+    {"modes", 0x502ca93c491c41f4, R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
   "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1], "snap": 0.1, "release": 0.25,
              "release_cue": {"type": "vibration", "amplitude": 0.3, "frequency": 130}},
             {"name": "surface", "type": "isosurface", "field": "s", "level": 0.45, "release": 0.3, "release_cue": {"type": "detent"}},
             {"name": "floor", "type": "plane", "point": [0, 0, 0.05], "normal": [0, 0, 1], "active_when": {"force_above": 20, "force_below": 5}}],
   "modes": [{"name": "swapped", "links": ["surface", "curve"], "active_when": {"button": 1, "toggle": true}}],
-  "coupling": {"ramp_s": 0.05, "max_force": 100}})";
-constexpr const char* kMesh = R"({"fields": {}, "meshes": [{"name": "wedge", "file": "wedge.obj", "scale": 2.6}],
-  "chain": [{"name": "touch", "type": "mesh", "mesh": "wedge", "free": "above", "release": 0.3}]})";
-constexpr const char* kPipe = R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
+  "coupling": {"ramp_s": 0.05, "max_force": 100}})"},
+    {"mesh", 0x38bd92e22a245e8a, R"({"fields": {}, "meshes": [{"name": "wedge", "file": "wedge.obj", "scale": 2.6}],
+  "chain": [{"name": "touch", "type": "mesh", "mesh": "wedge", "free": "above", "release": 0.3}]})"},
+    {"pipe", 0xecb1973a8733ff12, R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
   "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.55, "release": 0.25},
-            {"name": "floor", "type": "plane", "point": [0, 0, 0.05], "normal": [0, 1, 4]}], "coupling": {"method": "pipe"}})";
-constexpr const char* kBalance = R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
+            {"name": "floor", "type": "plane", "point": [0, 0, 0.05], "normal": [0, 1, 4]}], "coupling": {"method": "pipe"}})"},
+    {"balance", 0x0192ae194d20fbed, R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
   "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1], "stiffness": 50},
-            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.55}], "coupling": {"method": "balance"}})";
-
-// Two corners of the path are on the plane, two near the sphere; the path's buttons grab.
-constexpr const char* kWidgets = R"({"fields": {},
+            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.55}], "coupling": {"method": "balance"}})"},
+    // two corners of the path are on the plane, two near the sphere; the path's buttons grab
+    {"widgets", 0x43483bd5a65f0332, R"({"fields": {},
   "chain": [{"name": "floor", "type": "plane", "point": [0, 0, -0.3], "normal": [0, 1, 4]}],
   "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0.1, 0], "orientation": [0.8, 0, 0.6, 0], "radius": 0.45,
                "snap": 0.1, "release": 0.2, "grab_distance": 0.04, "step": 0.05},
@@ -101,37 +95,21 @@ constexpr const char* kWidgets = R"({"fields": {},
               {"name": "rake", "type": "rake", "from": [-0.6, 0.2, -0.1], "to": [0.45, 0.05, 0.1]},
               {"name": "level", "type": "cutting_plane", "center": [0, 0, 0.1], "normal": [0, 0, 1], "radius": 0.05, "snap": 0.05,
                "release": 0.1, "grab_distance": 0.02, "step": 0.03}],
-  "coupling": {"ramp_s": 0.05, "max_force": 100}})";
-
-const Recorded kRecorded[] = {
-    {"circle", kCircle, 0x9b0462b529f38796},
-    {"circle_online", kCircleOnline, 0x67d1ceac0b0241de},
-    {"sphere", kSphere, 0x4a5465667050ae74},
-    {"chain", kChain, 0x0765d772fb8a76fa},
-    {"shapes", kShapes, 0x421d00521f36a7bf},
-    {"friction", kFriction, 0xef3f6de4e6c46cdd},
-    {"anisotropic", kAnisotropic, 0xd20422e0f3ddfe54},
-    {"driven", kDriven, 0x09d34e4fa123460e},
-    {"modes", kModes, 0x502ca93c491c41f4},
-    {"mesh", kMesh, 0x38bd92e22a245e8a},
-    {"pipe", kPipe, 0xecb1973a8733ff12},
-    {"balance", kBalance, 0x0192ae194d20fbed},
-    {"widgets", kWidgets, 0x43483bd5a65f0332, true},
-    {"grids", kGrids, 0xbba92f721691bc6e},
-    {"grid_online", kGridOnline, 0x2d0fb7de732746be},
+  "coupling": {"ramp_s": 0.05, "max_force": 100}})",
+     true},
+    {"grids", 0xbba92f721691bc6e, R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
+  "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0.02, 0.03]},
+            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.55, "free": "below", "release": 0.2}]})"},
+    {"grid_online", 0x2d0fb7de732746be, R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
+  "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.4},
+            {"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0.02, 0.03], "method": "rk4"}]})"},
 };
 
-std::string fmt_hash(std::uint64_t hash) {
-  std::string text(16, '0');
-  for (std::size_t i = 16; i-- > 0; hash >>= 4) text[i] = "0123456789abcdef"[hash & 15];
-  return text;
-}
+std::string fmt_hash(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 std::shared_ptr<const HapticProgram> program_of(const Recorded& recorded, const test::TemporaryFolder& folder) {
   for (const char* name : {"circle", "sphere"}) {
-    const auto run =
-        test::run_catena({"generate", name, "-o", folder / (std::string(name) + ".vdb"), "--resolution", "33", "--box", "-1", "1"});
-    EXPECT_EQ(run.exit_code, 0) << run.err;
+    test::expect_run({"generate", name, "-o", folder / (std::string(name) + ".vdb"), "--resolution", "33", "--box", "-1", "1"});
   }
   test::write_file(folder / "wedge.obj",
                    "v -0.4 -0.4 -0.3\nv 0.4 -0.4 -0.3\nv 0 0.5 -0.3\nv 0 0 0.4\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
@@ -149,7 +127,8 @@ class ReplayHash : public testing::TestWithParam<Recorded> {};
 // Checks that the widgets' replay grabs and moves them.
 TEST(WidgetReplay, GrabsAndMovesWidgets) {
   const test::TemporaryFolder folder;
-  const auto program = program_of({"widgets", kWidgets, 0}, folder);
+  const auto widgets = std::ranges::find_if(kRecorded, &Recorded::presses);
+  const auto program = program_of(*widgets, folder);
   std::set<WidgetMode> plane, others;
   replay(*program, probe_path(true), [&](const HapticState& state) {
     plane.insert(state.widgets[0].mode);
@@ -186,12 +165,9 @@ TEST_P(ReplayHash, MatchesTheProgramsHash) {
   test::write_file(folder / "scene.json", GetParam().scene);
   std::string csv = "t,x,y,z,buttons\n";
   for (const ProbeSample& p : probe_path(GetParam().presses))
-    csv += to_text(p.t_s) + "," + to_text(p.position.x) + "," + to_text(p.position.y) + "," + to_text(p.position.z) + "," +
-           std::to_string(p.buttons) + "\n";
+    csv += fmt::format("{},{},{},{},{}\n", to_text(p.t_s), to_text(p.position.x), to_text(p.position.y), to_text(p.position.z), p.buttons);
   test::write_file(folder / "p.csv", csv);
-  const auto run = test::run_catena(
-      {"replay", folder / "scene.json", "--probe", folder / "p.csv", "-o", folder / "t.csv", "--stats", folder / "s.json"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  test::expect_run({"replay", folder / "scene.json", "--probe", folder / "p.csv", "-o", folder / "t.csv", "--stats", folder / "s.json"});
   EXPECT_NE(test::read_file(folder / "s.json").find(fmt_hash(GetParam().hash)), std::string::npos);
 }
 

@@ -60,16 +60,11 @@ Outcome extract_beads(const scene::Scene& scene, render::FramePacket& packet) {
   return Done{};
 }
 
-void register_beads() {
-  static const bool once = [] {
-    scene::register_drawable(scene::make_drawable<Bead>(beads_part, "beads", "bead", "beads", "bead"));
-    render::register_extraction({"beads", nullptr, extract_beads, nullptr});
-    return true;
-  }();
-  static_cast<void>(once);
-}
-
-const bool registered = (register_beads(), true);
+const bool registered = [] {
+  scene::register_drawable(scene::make_drawable<Bead>(beads_part, "beads", "bead", "beads", "bead"));
+  render::register_extraction({"beads", nullptr, extract_beads, nullptr});
+  return true;
+}();
 
 TEST(CustomDrawable, IsReadDrawnPickedAndCounted) {
   ASSERT_TRUE(registered);

@@ -17,8 +17,6 @@
 
 #include <atomic>
 #include <cerrno>
-#include <cstdarg>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

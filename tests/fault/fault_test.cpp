@@ -2,11 +2,7 @@
 /// Every command on a tiny file with one injected fault (tests/fault/fault_injection.cpp): no signal ends it; exit code 0, 1 or 2; for
 /// codes other than 0 one line that begins "catena: ", no output and no partial files. A sample by default; all faults:
 ///   CATENA_FAULT_FIRST=10000 CATENA_FAULT_EVERY=100 build/release/test_fault
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -14,11 +10,11 @@
 #include <set>
 #include <sstream>
 
+#include "tests/support/nifti_file.h"
 #include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
-namespace catena {
-namespace fault_test {
+namespace catena::fault_test {
 
 long setting(const char* variable, long otherwise) {
   const char* wanted = std::getenv(variable);
@@ -35,14 +31,13 @@ struct Command {
 class FaultInjection : public testing::Test {
  protected:
   void SetUp() override {
-    const auto make = [&](std::vector<std::string> words) {
-      const auto run = test::run_catena(words);
-      ASSERT_EQ(run.exit_code, 0) << run.err;
-    };
-    make({"generate", "sphere", "-o", path("s.vdb"), "--resolution", "8"});
-    make({"generate", "circle", "-o", path("v.vdb"), "--resolution", "8"});
+    test::expect_run({"generate", "sphere", "-o", path("s.vdb"), "--resolution", "8"});
+    test::expect_run({"generate", "circle", "-o", path("v.vdb"), "--resolution", "8"});
     test::write_file(path("r.raw"), std::string(4 * 6 * 6 * 6, '\x3f'));
-    test::write_file(path("n.nii"), nifti());
+    test::NiftiFile nifti({4, 4, 4}, 16, 32);
+    nifti.put(112, 1.f);
+    for (int k = 0; k < 64; ++k) nifti.append(static_cast<float>(k));
+    test::write_file(path("n.nii"), nifti.bytes());
     test::write_file(path("wedge.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
     test::write_file(path("s.json"), R"({"fields": {"s": {"file": "s.vdb"}, "v": {"file": "v.vdb"},
       "r": {"file": "r.raw", "shape": [6, 6, 6], "type": "float32"}},
@@ -53,26 +48,10 @@ class FaultInjection : public testing::Test {
       "isosurfaces": [{"field": "s", "level": 0.8}]})");
     test::write_file(path("p.csv"), "t,x,y,z\n0,0.1,0,0\n0.001,0.2,0,0\n0.002,0.3,0.1,0\n");
     test::write_file(path("seeds.csv"), "x,y,z\n0.5,0,0\n");
-    make({"feel", path("s.json"), "--seconds", "0.05", "--record", path("l.catlog"), "--realtime", "off"});
+    test::expect_run({"feel", path("s.json"), "--seconds", "0.05", "--record", path("l.catlog"), "--realtime", "off"});
     for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) inputs_.insert(entry.path().filename());
   }
   std::string path(const std::string& name) const { return folder_ / name; }
-
-  static std::string nifti() {
-    std::string bytes(352 + 4 * 4 * 4 * 4, '\0');
-    const auto put = [&](std::size_t at, auto value) { std::memcpy(bytes.data() + at, &value, sizeof value); };
-    put(0, std::int32_t{348});
-    const std::int16_t dim[8] = {3, 4, 4, 4, 1, 1, 1, 1};
-    std::memcpy(bytes.data() + 40, dim, sizeof dim);
-    put(70, std::int16_t{16});
-    put(72, std::int16_t{32});
-    for (std::size_t k = 0; k < 4; ++k) put(76 + 4 * k, 1.f);
-    put(108, 352.f);
-    put(112, 1.f);
-    std::memcpy(bytes.data() + 344, "n+1", 4);
-    for (std::size_t k = 0; k < 64; ++k) put(352 + 4 * k, static_cast<float>(k));
-    return bytes;
-  }
 
   std::vector<Command> commands() const {
     return {
@@ -101,31 +80,15 @@ class FaultInjection : public testing::Test {
     std::string err;
   };
   Ended run(const Command& command, const std::string& fault) {
-    std::vector<std::string> words{test::program_path()};
+    // set by env for the program only
+    std::vector<std::string> words{"LD_PRELOAD=" + test::binary_dir() + "/libcatena_faults.so", "CATENA_FAULT=" + fault,
+                                   "CATENA_FAULT_COUNT=" + (reports_ / "count"), test::program_path()};
     words.insert(words.end(), command.words.begin(), command.words.end());
-    std::vector<std::string> own{"LD_PRELOAD=" + test::binary_dir() + "/libcatena_faults.so", "CATENA_FAULT=" + fault,
-                                 "CATENA_FAULT_COUNT=" + (reports_ / "count")};
-    std::vector<char*> arguments, environment;
-    for (std::string& word : words) arguments.push_back(word.data());
-    for (std::string& variable : own) environment.push_back(variable.data());
-    for (char** e = environ; *e != nullptr; ++e) environment.push_back(*e);
-    arguments.push_back(nullptr);
-    environment.push_back(nullptr);
     std::filesystem::remove(reports_ / "count");
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, 1, (reports_ / "out").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    posix_spawn_file_actions_addopen(&actions, 2, (reports_ / "err").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    pid_t child = 0;
-    EXPECT_EQ(posix_spawn(&child, words[0].c_str(), &actions, nullptr, arguments.data(), environment.data()), 0);
-    posix_spawn_file_actions_destroy(&actions);
-    int status = 0;
-    EXPECT_EQ(waitpid(child, &status, 0), child);
+    const auto ended = test::run_program("/usr/bin/env", words);
     const bool was_counted = test::exists(reports_ / "count");
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
-            was_counted ? std::strtol(test::read_file(reports_ / "count").c_str(), nullptr, 10) : -1,
-            own_lines(test::read_file(reports_ / "err"))};
+    return {ended.exit_code, was_counted ? std::strtol(test::read_file(reports_ / "count").c_str(), nullptr, 10) : -1,
+            own_lines(ended.err)};
   }
   /// The program's lines, without the NIfTI library's "** nifti_strdup: failed to alloc", which it prints at any verbosity.
   static std::string own_lines(const std::string& text) {
@@ -140,9 +103,8 @@ class FaultInjection : public testing::Test {
   void judge(const Command& command, const std::string& fault, const Ended& ended) {
     ++(ended.code == 0 ? survived_ : refused_);
     std::string found;
-    std::set<std::string> outputs(command.outputs.begin(), command.outputs.end());
-    bool all = true;
-    for (const std::string& output : outputs) all = all && test::exists(path(output));
+    const std::set<std::string> outputs(command.outputs.begin(), command.outputs.end());
+    const bool all = std::ranges::all_of(outputs, [&](const std::string& output) { return test::exists(path(output)); });
     if (ended.code < 0 || ended.code > 2) found += " ended with " + std::to_string(ended.code) + ";";
     if (ended.code != 0 && (std::count(ended.err.begin(), ended.err.end(), '\n') != 1 || !ended.err.starts_with("catena: ")))
       found += " does not say one sentence;";
@@ -201,5 +163,4 @@ TEST_F(FaultInjection, InterruptedSystemCalls) {
   std::printf("%ld signals\n", interrupted);
 }
 
-}  // namespace fault_test
-}  // namespace catena
+}  // namespace catena::fault_test

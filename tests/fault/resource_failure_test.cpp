@@ -18,14 +18,13 @@
 #include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
-namespace catena {
-namespace resource_failure_test {
+namespace catena::resource_failure_test {
 
 constexpr uid_t kNobody = 65534;
 
 struct Command {
-  std::vector<std::string> words;  ///< arguments; "FOLDER" stands for the output folder
-  std::string output;              ///< output file in that folder
+  std::vector<std::string> words;  ///< arguments
+  std::string output;              ///< output file in the output folder
   bool keeps = false;              ///< true: data written before a failure is kept (a recording, a study's data)
 };
 
@@ -43,9 +42,13 @@ bool limit(__rlimit_resource what, rlim_t process_limit) {
   return setrlimit(what, &both) == 0;
 }
 
-bool small_disk(const std::string& outputs) {
-  if (unshare(CLONE_NEWNS) != 0 || mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0) return false;
-  if (mount("none", outputs.c_str(), "tmpfs", 0, "size=4k,mode=777") != 0) return false;
+bool mount_small_disk(const std::string& at, unsigned long flags = 0) {
+  return unshare(CLONE_NEWNS) == 0 && mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+         mount("none", at.c_str(), "tmpfs", flags, "size=4k,mode=777") == 0;
+}
+
+bool full_disk(const std::string& outputs) {
+  if (!mount_small_disk(outputs)) return false;
   // its only page is used
   const int file = open((outputs + "/full").c_str(), O_WRONLY | O_CREAT, 0600);
   const char page[4096]{};
@@ -54,30 +57,24 @@ bool small_disk(const std::string& outputs) {
   return full;
 }
 
-bool read_only(const std::string& outputs) {
-  return unshare(CLONE_NEWNS) == 0 && mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
-         mount("none", outputs.c_str(), "tmpfs", MS_RDONLY, "size=4k,mode=777") == 0;
-}
-
-bool no_proc(const std::string&) {
-  return unshare(CLONE_NEWNS) == 0 && mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
-         mount("none", "/proc", "tmpfs", 0, "size=4k") == 0;
+template <rlim_t processes>
+bool few_processes(const std::string&) {
+  return limit(RLIMIT_NPROC, processes) && setuid(kNobody) == 0;
 }
 
 const std::vector<Cause>& causes() {
   static const std::vector<Cause> all{
-      {"a full disk", small_disk, "No space left on device", true},
-      {"a read-only disk", read_only, "Read-only file system", true},
+      {"a full disk", full_disk, "No space left on device", true},
+      {"a read-only disk", [](const std::string& outputs) { return mount_small_disk(outputs, MS_RDONLY); }, "Read-only file system", true},
       {"ulimit -f 0", [](const std::string&) { return limit(RLIMIT_FSIZE, 0); }, "ulimit -f", true},
       {"ulimit -f 8", [](const std::string&) { return limit(RLIMIT_FSIZE, 8192); }, "ulimit -f", false},
       {"ulimit -v 300 MiB", [](const std::string&) { return limit(RLIMIT_AS, 300u << 20); }, "ulimit -v", false, "ulimit -u"},
       {"ulimit -v 600 MiB", [](const std::string&) { return limit(RLIMIT_AS, 600u << 20); }, "ulimit -v", false, "ulimit -u"},
       {"ulimit -n 6", [](const std::string&) { return limit(RLIMIT_NOFILE, 6); }, "", false},
-      {"one process", [](const std::string&) { return limit(RLIMIT_NPROC, 1) && setuid(kNobody) == 0; }, "ulimit -u", false, "ulimit -v"},
-      {"two processes", [](const std::string&) { return limit(RLIMIT_NPROC, 2) && setuid(kNobody) == 0; }, "ulimit -u", false, "ulimit -v"},
-      {"three processes", [](const std::string&) { return limit(RLIMIT_NPROC, 3) && setuid(kNobody) == 0; }, "ulimit -u", false,
-       "ulimit -v"},
-      {"no /proc", no_proc, "", false},
+      {"one process", few_processes<1>, "ulimit -u", false, "ulimit -v"},
+      {"two processes", few_processes<2>, "ulimit -u", false, "ulimit -v"},
+      {"three processes", few_processes<3>, "ulimit -u", false, "ulimit -v"},
+      {"no /proc", [](const std::string&) { return mount_small_disk("/proc"); }, "", false},
       {"standard output is full", [](const std::string&) { return dup2(open("/dev/full", O_WRONLY), STDOUT_FILENO) >= 0; },
        "standard output cannot be written", false},
   };
@@ -89,13 +86,9 @@ class ResourceFailure : public testing::Test {
   void SetUp() override {
     std::filesystem::create_directory(outputs_);
     for (const std::string& folder : {folder_.path(), outputs_}) chmod(folder.c_str(), 0777);
-    const auto make = [&](std::vector<std::string> words) {
-      const auto run = test::run_catena(words);
-      ASSERT_EQ(run.exit_code, 0) << run.err;
-    };
-    make({"generate", "sphere", "-o", folder_ / "s.vdb", "--resolution", "12"});
-    make({"generate", "circle", "-o", folder_ / "v.vdb", "--resolution", "12"});
-    make({"import", folder_ / "s.vdb", "-o", folder_ / "s.vti"});
+    test::expect_run({"generate", "sphere", "-o", folder_ / "s.vdb", "--resolution", "12"});
+    test::expect_run({"generate", "circle", "-o", folder_ / "v.vdb", "--resolution", "12"});
+    test::expect_run({"import", folder_ / "s.vdb", "-o", folder_ / "s.vti"});
     test::write_file(folder_ / "s.json", R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
       "chain": [{"name": "a", "type": "streamline", "field": "v", "seed": [1, 0, 0]}],
       "isosurfaces": [{"field": "s", "level": 1}]})");
@@ -108,8 +101,8 @@ class ResourceFailure : public testing::Test {
       "conditions": [{"name": "a", "chain": {"t": [{"name": "l", "type": "streamline", "field": "flow", "seed": "$start"}]}},
                      {"name": "b", "chain": {"t": [{"name": "h", "type": "drag", "threshold": 0.012}]}}]})");
     for (const char* shard : {"1/2", "2/2"})
-      make({"study", "simulate", folder_ / "study.json", "--shard", shard, "-o", folder_ / ("data" + std::string(1, *shard))});
-    make({"feel", folder_ / "s.json", "--seconds", "0.05", "--record", folder_ / "l.catlog", "--realtime", "off"});
+      test::expect_run({"study", "simulate", folder_ / "study.json", "--shard", shard, "-o", folder_ / ("data" + std::string(1, *shard))});
+    test::expect_run({"feel", folder_ / "s.json", "--seconds", "0.05", "--record", folder_ / "l.catlog", "--realtime", "off"});
   }
 
   std::vector<Command> commands() const {
@@ -283,5 +276,4 @@ TEST_F(ResourceFailure, ATerminatingSignalIsReported) {
   }
 }
 
-}  // namespace resource_failure_test
-}  // namespace catena
+}  // namespace catena::resource_failure_test

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// Deterministic mutations of a text: bytes flipped, cut, duplicated, swapped; tokens dropped or inserted.
+/// Deterministic mutations of a text (bytes flipped, cut, duplicated, swapped; tokens dropped or inserted), and the loops of the fuzz
+/// tests.
 #pragma once
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -38,17 +41,18 @@ class FuzzInputs {
     ++count_;
     return true;
   }
+  /// Number of inputs so far.
   std::uint64_t count() const { return count_; }
-  /// Number of inputs so far, for logs of long runs.
   bool is_long_run() const { return timed_ || std::getenv("CATENA_FUZZ_INPUTS") != nullptr; }
-  Random random;
-
- private:
-  using Clock = std::chrono::steady_clock;
+  /// Value of an environment variable.
   static std::uint64_t number(const char* variable, std::uint64_t otherwise) {
     const char* text = std::getenv(variable);
     return text != nullptr ? std::strtoull(text, nullptr, 10) : otherwise;
   }
+  Random random;
+
+ private:
+  using Clock = std::chrono::steady_clock;
   std::uint64_t max_count_, count_ = 0;
   bool timed_ = false;
   Clock::time_point deadline_;
@@ -89,6 +93,42 @@ inline std::string mutate(std::string text, Random& random) {
     }
   }
   return text;
+}
+
+/// Expects an error message of one line that begins with the file's name, is shorter than `max_size` and says what was `expected`.
+inline void expect_error_line(const std::string& message, const std::string& begin, const std::string& input, std::size_t max_size = 500,
+                              const char* expected = "expected") {
+  EXPECT_TRUE(message.starts_with(begin)) << message << "\nfor\n" << input;
+  EXPECT_EQ(message.find_first_of("\r\n"), std::string::npos) << message << "\nfor\n" << input;
+  EXPECT_NE(message.find(expected), std::string::npos) << message;
+  EXPECT_LT(message.size(), max_size) << message;
+}
+
+/// Calls accepts(text) for every truncation and every byte flip of `whole`; truncations to fewer than `refused` bytes must be refused.
+template <class Accepts>
+void truncate_and_flip(const std::string& whole, const Accepts& accepts, std::size_t refused = 0) {
+  for (std::size_t n = 0; n < whole.size(); ++n) {
+    const bool is_accepted = accepts(whole.substr(0, n));
+    EXPECT_FALSE(is_accepted && n < refused) << n;
+    std::string flipped = whole;
+    flipped[n] = static_cast<char>(flipped[n] ^ 0x81);
+    accepts(flipped);
+  }
+}
+
+struct FuzzCounts {
+  std::uint64_t accepted, inputs;
+};
+
+/// Sums accepts(random, n) over the inputs n = 1, 2, ... until a check fails; the sum must be between 0 and `most` per input, exclusive.
+template <class Accepts>
+FuzzCounts fuzz(std::uint64_t max_count, std::uint64_t seed, const Accepts& accepts, double most = 1) {
+  FuzzInputs inputs(max_count, seed);
+  std::uint64_t accepted = 0;
+  while (inputs.next() && !testing::Test::HasFailure()) accepted += static_cast<std::uint64_t>(accepts(inputs.random, inputs.count()));
+  EXPECT_GT(accepted, 0u);
+  EXPECT_LT(static_cast<double>(accepted), most * static_cast<double>(inputs.count()));
+  return {accepted, inputs.count()};
 }
 
 }  // namespace catena::test

@@ -2,6 +2,7 @@
 /// Deterministic mutations of a binary file: bits and bytes changed, extreme numbers, parts cut, duplicated and exchanged.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -10,22 +11,9 @@
 
 namespace catena::test {
 
-inline constexpr std::uint64_t kExtremeNumbers[] = {0,
-                                                    1,
-                                                    2,
-                                                    0x7f,
-                                                    0x80,
-                                                    0xff,
-                                                    0x7fff,
-                                                    0xffff,
-                                                    0x7fffffff,
-                                                    0x80000000,
-                                                    0xffffffff,
-                                                    0x100000000,
-                                                    0x7fffffffffffffff,
-                                                    0x8000000000000000,
-                                                    0xffffffffffffffff,
-                                                    0x7ff8000000000000};
+inline constexpr auto kExtremeNumbers =
+    std::to_array<std::uint64_t>({0, 1, 2, 0x7f, 0x80, 0xff, 0x7fff, 0xffff, 0x7fffffff, 0x80000000, 0xffffffff, 0x100000000,
+                                  0x7fffffffffffffff, 0x8000000000000000, 0xffffffffffffffff, 0x7ff8000000000000});
 
 /// Applies one to `max_changes` changes within bytes [first, last).
 inline std::string mutate_bytes(std::string bytes, Random& random, std::size_t max_changes = 3, std::size_t first = 0,

@@ -8,8 +8,7 @@
 #include "tests/fuzz/mutate_bytes.h"
 #include "tests/support/support.h"
 
-namespace catena {
-namespace plugin_fuzz_test {
+namespace catena::plugin_fuzz_test {
 
 namespace plugin = haptics::plugin;
 
@@ -22,8 +21,7 @@ const std::string& seed() {
 bool check(const std::string& bytes) {
   const auto file = plugin::read_file(bytes);
   if (!file) {
-    EXPECT_EQ(file.error().message.find('\n'), std::string::npos);
-    EXPECT_NE(file.error().message.find("was expected"), std::string::npos);
+    test::expect_error_line(file.error().message, "", {}, std::string::npos, "was expected");
     return false;
   }
   EXPECT_LT(std::strlen(file->abi_stamp.headers), sizeof file->abi_stamp.headers);
@@ -31,10 +29,9 @@ bool check(const std::string& bytes) {
   return true;
 }
 
-TEST(PluginFuzz, TheSeedIsValid) { EXPECT_TRUE(check(seed())); }
-
 TEST(PluginFuzz, AFileForAnotherProcessorIsRefused) {
   std::string bytes = seed();
+  EXPECT_TRUE(check(bytes));
   bytes[18] = static_cast<char>(bytes[18] + 1);  // e_machine
   EXPECT_FALSE(check(bytes));
 }
@@ -56,15 +53,10 @@ TEST(PluginFuzz, Mutations) {
   std::uint64_t sections = 0;
   ASSERT_GT(seed().size(), 64u);
   std::memcpy(&sections, seed().data() + 40, sizeof sections);
-  test::FuzzInputs inputs(5000, 23);
-  std::uint64_t read = 0;
-  while (inputs.next() && !HasFailure()) {
-    const bool head = inputs.count() % 3 == 0;
-    read += check(test::mutate_bytes(seed(), inputs.random, 3, head ? 0 : sections, head ? 64 : seed().size())) ? 1 : 0;
-  }
-  EXPECT_GT(read, 0u);
-  EXPECT_LT(read, inputs.count());
+  test::fuzz(5000, 23, [&](test::Random& random, std::uint64_t n) {
+    const bool head = n % 3 == 0;
+    return check(test::mutate_bytes(seed(), random, 3, head ? 0 : sections, head ? 64 : seed().size()));
+  });
 }
 
-}  // namespace plugin_fuzz_test
-}  // namespace catena
+}  // namespace catena::plugin_fuzz_test

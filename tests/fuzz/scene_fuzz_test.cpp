@@ -6,10 +6,8 @@
 #include "engine/scene/scene.h"
 #include "haptics/build/build_program.h"
 #include "tests/fuzz/mutate.h"
-#include "tests/support/support.h"
 
-namespace catena {
-namespace scene_fuzz_test {
+namespace catena::scene_fuzz_test {
 
 const std::string kScene = R"({ // a scene that touches every reader
   "fields": {"density": {"analytic": "sphere", "scale": 1.5, "resolution": 4, "box": [-1, 1]}, "swirl": {"analytic": "circle"},
@@ -77,12 +75,11 @@ bool check(const std::string& text, bool extract) {
     const auto program = haptics::build_program(*scene);
     if (!program) message = program.error().message;
   }
-  if (message.empty()) return true;
-  EXPECT_TRUE(message.starts_with("scene.json:")) << message << "\nfor\n" << text;
-  EXPECT_EQ(message.find_first_of("\r\n"), std::string::npos) << message << "\nfor\n" << text;
-  EXPECT_LT(message.size(), 1000u) << message;
-  return false;
+  if (!message.empty()) test::expect_error_line(message, "scene.json:", text, 1000, "");
+  return message.empty();
 }
+
+bool is_read(const std::string& text) { return check(text, false); }
 
 TEST(SceneFuzz, TheSeedsAreValid) {
   for (const std::string& seed : {kScene, kHand, kWidgets}) {
@@ -93,24 +90,10 @@ TEST(SceneFuzz, TheSeedsAreValid) {
   }
 }
 
-TEST(SceneFuzz, EveryTruncation) {
-  for (std::size_t n = 0; n < kScene.size(); ++n) EXPECT_FALSE(check(kScene.substr(0, n), false)) << n;
-}
-
-TEST(SceneFuzz, EveryByteFlip) {
-  for (std::size_t n = 0; n < kScene.size(); ++n) {
-    std::string text = kScene;
-    text[n] = static_cast<char>(text[n] ^ 0x81);
-    check(text, false);
-  }
-}
+TEST(SceneFuzz, EveryTruncationAndEveryByteFlip) { test::truncate_and_flip(kScene, is_read, kScene.size()); }
 
 TEST(SceneFuzz, Mutations) {
-  test::FuzzInputs inputs(20000, 1);
-  std::uint64_t read = 0;
-  while (inputs.next() && !HasFailure()) read += check(test::mutate(kScene, inputs.random), false) ? 1 : 0;
-  EXPECT_GT(read, 0u);
-  EXPECT_LT(read, inputs.count());
+  test::fuzz(20000, 1, [](test::Random& random, std::uint64_t) { return is_read(test::mutate(kScene, random)); });
 }
 
 TEST(SceneFuzz, MutatedChainsAreExtracted) {
@@ -121,7 +104,7 @@ TEST(SceneFuzz, MutatedChainsAreExtracted) {
 /// Also resolves, drives and measures the widgets: each result is a value or an error in one line.
 bool drive(const std::string& text) {
   auto scene = scene::parse_scene(text, "scene.json");
-  if (!scene) return check(text, false);
+  if (!scene) return is_read(text);
   std::string message;
   if (const auto changes = scene::propagate_widgets(*scene); !changes) message = changes.error().message;
   std::vector<scene::Entity> rulers;
@@ -131,33 +114,24 @@ bool drive(const std::string& text) {
   if (message.empty())
     for (const scene::Entity e : rulers)
       if (const auto measured = scene::resolve_ruler(*scene, e); !measured) message = measured.error().message;
-  if (message.empty()) return true;
-  EXPECT_TRUE(message.starts_with("scene.json:")) << message << "\nfor\n" << text;
-  EXPECT_EQ(message.find_first_of("\r\n"), std::string::npos) << message;
-  EXPECT_LT(message.size(), 1000u) << message;
-  return false;
+  if (!message.empty()) test::expect_error_line(message, "scene.json:", text, 1000, "");
+  return message.empty();
 }
 
 TEST(SceneFuzz, EveryTruncationOfWidgets) {
-  for (std::size_t n = 0; n < kWidgets.size(); ++n) EXPECT_FALSE(check(kWidgets.substr(0, n), false)) << n;
+  for (std::size_t n = 0; n < kWidgets.size(); ++n) EXPECT_FALSE(is_read(kWidgets.substr(0, n))) << n;
 }
 
 TEST(SceneFuzz, MutatedWidgetsAreDriven) {
   ASSERT_TRUE(drive(kWidgets));
-  test::FuzzInputs inputs(2000, 3);
-  std::uint64_t driven = 0;
-  while (inputs.next() && !HasFailure()) driven += drive(test::mutate(kWidgets, inputs.random)) ? 1 : 0;
-  EXPECT_GT(driven, 0u);
-  EXPECT_LT(driven, inputs.count());
+  test::fuzz(2000, 3, [](test::Random& random, std::uint64_t) { return drive(test::mutate(kWidgets, random)); });
 }
 
 TEST(SceneFuzz, DeepAndLongTexts) {
-  EXPECT_FALSE(check(std::string(1000000, '['), false));
-  EXPECT_FALSE(check("{\"chain\": " + std::string(100000, '{') + "}", false));
-  EXPECT_FALSE(check("{\"" + std::string(1000000, 'k') + "\": 1}", false));
-  EXPECT_FALSE(check(std::string(1000000, '\n') + "{", false));
-  EXPECT_FALSE(check("{\"quality\": " + std::string(100000, '9') + "}", false));
+  for (const std::string& text :
+       {std::string(1000000, '['), "{\"chain\": " + std::string(100000, '{') + "}", "{\"" + std::string(1000000, 'k') + "\": 1}",
+        std::string(1000000, '\n') + "{", "{\"quality\": " + std::string(100000, '9') + "}"})
+    EXPECT_FALSE(is_read(text)) << text.substr(0, 20);
 }
 
-}  // namespace scene_fuzz_test
-}  // namespace catena
+}  // namespace catena::scene_fuzz_test

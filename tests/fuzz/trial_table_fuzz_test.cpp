@@ -8,8 +8,7 @@
 #include "engine/study/trial_table.h"
 #include "tests/fuzz/mutate.h"
 
-namespace catena {
-namespace trial_table_fuzz_test {
+namespace catena::trial_table_fuzz_test {
 
 const std::string kRows =
     study::table_header() +
@@ -27,16 +26,10 @@ const std::string kAsked = R"("compare": [{"tasks": ["trace", "other"]}], "findi
  {"claim": "p", "test": "tasks", "tasks": ["trace", "other"]}, {"claim": "p", "test": "largest", "tasks": ["trace"]},
  {"claim": "p", "test": "rejections", "rejected": 3, "trials": 9}, {"claim": "p", "test": "untestable", "reason": "w"}]})";
 
-void check_message(const std::string& message, const char* file, const std::string& text) {
-  EXPECT_TRUE(message.starts_with(file)) << message << "\nfor\n" << text;
-  EXPECT_EQ(message.find_first_of("\r\n"), std::string::npos) << message << "\nfor\n" << text;
-  EXPECT_LT(message.size(), 600u) << message;
-}
-
 bool check(const std::string& text) {
   const auto rows = study::parse_rows(text, "t.csv");
   if (!rows) {
-    check_message(rows.error().message, "t.csv:", text);
+    test::expect_error_line(rows.error().message, "t.csv:", text, 600, "");
     return false;
   }
   std::string again = study::table_header();
@@ -52,7 +45,7 @@ bool check(const std::string& text) {
 bool check_inquiry(const std::string& text) {
   const auto study = study::parse_study(text, "s.json");
   if (!study) {
-    check_message(study.error().message, "s.json:", text);
+    test::expect_error_line(study.error().message, "s.json:", text, 600, "");
     return false;
   }
   const auto inquiry = study::read_analysis_plan(*study);
@@ -67,34 +60,18 @@ TEST(TrialTableFuzz, TheSeedsAreValid) {
   EXPECT_TRUE(check_inquiry(kStudy + kAsked));
 }
 
-TEST(TrialTableFuzz, EveryTruncationAndEveryByteFlip) {
-  for (std::size_t n = 0; n < kRows.size(); ++n) {
-    check(kRows.substr(0, n));
-    std::string text = kRows;
-    text[n] = static_cast<char>(text[n] ^ 0x81);
-    check(text);
-  }
-}
+TEST(TrialTableFuzz, EveryTruncationAndEveryByteFlip) { test::truncate_and_flip(kRows, check); }
 
 TEST(TrialTableFuzz, Mutations) {
-  test::FuzzInputs inputs(10000, 29);
-  std::uint64_t read = 0;
   const std::string header = study::table_header(), rows = kRows.substr(header.size());
-  while (inputs.next() && !HasFailure()) {
-    // mostly in the rows, because a broken header hides them
-    const std::string text = inputs.random.below(8) == 0 ? test::mutate(kRows, inputs.random) : header + test::mutate(rows, inputs.random);
-    read += check(text) ? 1 : 0;
-  }
-  EXPECT_GT(read, 0u);
-  EXPECT_LT(read, inputs.count());
+  // mostly in the rows, because a broken header hides them
+  test::fuzz(10000, 29, [&](test::Random& random, std::uint64_t) {
+    return check(random.below(8) == 0 ? test::mutate(kRows, random) : header + test::mutate(rows, random));
+  });
 }
 
 TEST(TrialTableFuzz, MutationsOfQueries) {
-  test::FuzzInputs inputs(2000, 30);
-  std::uint64_t read = 0;
-  while (inputs.next() && !HasFailure()) read += check_inquiry(kStudy + test::mutate(kAsked, inputs.random)) ? 1 : 0;
-  EXPECT_GT(read, 0u);
-  EXPECT_LT(read, inputs.count());
+  test::fuzz(2000, 30, [](test::Random& random, std::uint64_t) { return check_inquiry(kStudy + test::mutate(kAsked, random)); });
 }
 
 TEST(TrialTableFuzz, LongTexts) {
@@ -104,5 +81,4 @@ TEST(TrialTableFuzz, LongTexts) {
   EXPECT_TRUE(check(study::table_header() + std::string(100000, '\n')));
 }
 
-}  // namespace trial_table_fuzz_test
-}  // namespace catena
+}  // namespace catena::trial_table_fuzz_test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rows of the command line: numbers at the limits of doubles in scenes, tables and options, and a dense grid of 512^3.
 #include <algorithm>
+#include <sstream>
 
 #include "tests/limits/limits_table.h"
 #include "tests/limits/render_fixture.h"
@@ -13,9 +14,7 @@ namespace command_line_limits_test {
 std::string ran(const test::TemporaryFolder& folder, const test::ProgramResult& run) {
   const bool wrote = test::exists(folder / "out.csv") || test::exists(folder / "out.png");
   if (run.exit_code == 0) return wrote ? "done" : "done, without an output";
-  std::string message = run.err;
-  for (auto at = message.find(folder.path()); at != std::string::npos; at = message.find(folder.path()))
-    message.erase(at, folder.path().size() + 1);
+  std::string message = without_folder(run.err, folder);
   if (message.ends_with('\n')) message.pop_back();
   return fmt::format("exit code {}: {}{}", run.exit_code, message, wrote ? ", and an output" : "");
 }
@@ -45,12 +44,16 @@ std::string replay(const std::string& scene, const std::string& rows = {}) {
   if (!rows.empty()) files.probe = "t,x,y,z\n" + rows;
   return run(files, {"replay", "S", "--probe", "P", "-o", "O"});
 }
-std::string trace(const std::string& seed, const std::vector<std::string>& more = {}) {
+/// `option`: an option that is 1e-300.
+std::string trace(const std::string& seed, const std::string& option = {}) {
   Files files;
   files.seeds = "x,y,z\n" + seed + "\n";
   std::vector<std::string> arguments{"trace", "S", "--field", "v", "--seeds", "Z", "-o", "O"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
+  if (!option.empty()) arguments.insert(arguments.end(), {option, "1e-300"});
   return run(files, arguments);
+}
+std::string feel(const std::string& rate) {
+  return run({}, {"feel", "S", "--device", "simulated", "--forces", "on", "--realtime", "off", "--rate", rate, "--seconds", "0.1"});
 }
 std::string sphere_of(const std::string& radius) {
   return R"({"chain": [{"name": "a", "type": "sphere", "center": [0, 0, 0],
@@ -58,43 +61,16 @@ std::string sphere_of(const std::string& radius) {
          radius + "}]}";
 }
 
-std::string twenty_kilohertz() { return run({}, {"feel", "S", "--device", "simulated", "--rate", "20000", "--seconds", "0.1"}); }
-std::string slow_and_fast_servos() {
-  Findings found;
-  for (const char* rate : {"100", "10000"})
-    found.add(std::string(rate) + " Hz: " +
-              run({}, {"feel", "S", "--device", "simulated", "--forces", "on", "--realtime", "off", "--rate", rate, "--seconds", "0.1"}));
-  return found;
-}
-std::string too_small() { return replay(sphere_of("9e-31")); }
-std::string too_large() { return replay(sphere_of("1.1e30")); }
-std::string beyond_doubles() { return replay(sphere_of("1e309")); }
-std::string smallest_and_largest() { return Findings().add(replay(sphere_of("1e-30"))).add(replay(sphere_of("1e30"))); }
-std::string nan_in_a_path() { return replay({}, "0,0.5,0,0\n0.001,nan,0,0\n"); }
-std::string infinity_in_a_path() { return replay({}, "0,0.5,0,0\n0.001,0,-inf,0\n"); }
-std::string path_beyond_doubles() { return replay({}, "0,0.5,0,1e309\n"); }
-std::string path_at_the_ends_of_doubles() { return replay({}, "0,1.7e308,0,0\n0.001,-1e308,1e-320,0\n0.002,5e-324,0,0\n0.003,0.5,0,0\n"); }
-
 std::string times_at_the_ends_of_doubles() {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", Files().scene);
   test::write_file(folder / "p.csv", "t,x,y,z\n0,0,0,0\n1e-320,0.5,0,0\n1e-310,0.6,0,0\n1,0.5,0,0\n1e300,0.5,0,0\n1.7e308,0.4,0,0\n");
   const auto result = test::run_catena({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "out.csv"});
-  std::size_t longest = 0, at = 0;
-  const std::string text = result.out + result.err;
-  while (at < text.size()) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    longest = std::max(longest, end - at);
-    at = end + 1;
-  }
+  std::size_t longest = 0;
+  std::istringstream text(result.out + result.err);
+  for (std::string line; std::getline(text, line);) longest = std::max(longest, line.size());
   return Findings().add(ran(folder, result)).at_most("bytes in the longest line of output", static_cast<double>(longest), 200);
 }
-
-std::string far_seed() { return trace("1e300,0,0"); }
-std::string denormal_seed() { return trace("1e-320,1e-310,0"); }
-std::string nan_seed() { return trace("nan,0,0"); }
-std::string no_length() { return trace("0.5,0,0", {"--length", "1e-300"}); }
-std::string no_tolerance() { return trace("0.5,0,0", {"--tolerance", "1e-300"}); }
 
 std::string nine_translucent_surfaces() {
   std::string surfaces;
@@ -157,14 +133,10 @@ std::string full_under_the_hand() {
   if (test::exists(folder / "out.csv")) std::remove((folder / "out.csv").c_str());
   return text;
 }
-std::string full_without_room() {
-  const auto& folder = dense();
-  return ran(folder, test::run_catena({"render", folder / "s.json", "-o", folder / "out.png", "--size", "64x48", "--memory", "300"}));
-}
-std::string full_under_the_eye() {
+std::string full_under_the_eye(const std::string& megabytes) {
   const auto& folder = dense();
   test::use_lavapipe();
-  return ran(folder, test::run_catena({"render", folder / "s.json", "-o", folder / "out.png", "--size", "64x48", "--memory", "700"}));
+  return ran(folder, test::run_catena({"render", folder / "s.json", "-o", folder / "out.png", "--size", "64x48", "--memory", megabytes}));
 }
 
 }  // namespace command_line_limits_test
@@ -172,46 +144,54 @@ std::string full_under_the_eye() {
 Group command_rows() {
   using namespace command_line_limits_test;
   const std::string exit = "exit code 2: catena: ";
-  std::vector<Row> rows{
-      {"TwentyKilohertz", "Haptic rate of 20 kHz",
-       exit + "--rate: \"20000\" is out of range; a finite number from 100 to 10000 was expected (see catena feel --help)",
-       twenty_kilohertz},
-      {"SlowAndFastServos", "Haptic rates of 100 Hz and 10 kHz", "100 Hz: done, without an output; 10000 Hz: done, without an output",
-       slow_and_fast_servos},
-      {"TooSmall", "The number 9e-31 in a scene",
-       exit + "s.json:2: 9e-31 is too small; 0 or a number of magnitude 1e-30 to 1e30 was expected", too_small},
-      {"TooLarge", "1.1e30", exit + "s.json:2: 1.1e+30 is too large; 0 or a number of magnitude 1e-30 to 1e30 was expected", too_large},
-      {"BeyondDoubles", "1e309", exit + "s.json:2: '1e309' is not a number; a finite number was expected", beyond_doubles},
-      {"SmallestAndLargest", "Sphere links with radii 1e-30 and 1e30, for a workspace of size 1", "done; done", smallest_and_largest},
-      {"NanInAPath", "Probe path with NaN", exit + "p.csv:3: \"nan\" in column \"x\"; a finite number was expected", nan_in_a_path},
-      {"InfinityInAPath", "Probe path with -inf", exit + "p.csv:3: \"-inf\" in column \"y\"; a finite number was expected",
-       infinity_in_a_path},
-      {"PathBeyondDoubles", "Probe path with 1e309", exit + "p.csv:2: \"1e309\" in column \"z\"; a finite number was expected",
-       path_beyond_doubles},
-      {"PathAtTheEndsOfDoubles", "Probe path with 1.7e308 and 5e-324", "done", path_at_the_ends_of_doubles},
-      {"TimesAtTheEndsOfDoubles", "Probe path with times from 1e-320 to 1.7e308 s", "done; bytes in the longest line of output at most 200",
-       times_at_the_ends_of_doubles},
-      {"FarSeed", "`trace` from a seed 1e300 units away", "done", far_seed},
-      {"DenormalSeed", "`trace` from a seed 1e-320 beside the axis of a vortex ring", "done", denormal_seed},
-      {"NanSeed", "`trace` from a seed with NaN", exit + "z.csv:2: \"nan\" in column \"x\"; a finite number was expected", nan_seed},
-      {"NoLength", "`trace` with `--length 1e-300`", exit + "z.csv:2: seed (0.5, 0, 0): the line has no length in either direction",
-       no_length},
-      {"NineTranslucentSurfaces", "Nine translucent isosurfaces",
-       exit + "s.json: the scene has 9 translucent isosurfaces, expected at most 8", nine_translucent_surfaces},
-      {"NotesOfData", "Note about 64-bit data with 0.1 and 1e300, in `replay`",
-       "d.raw: values of type float64 were rounded to 32-bit floats", notes_of_data},
-      {"VoxelsBeyondPictures", "Image of voxels of 1e30",
-       exit + "s.json:1: field \"d\": extends to 7e+30 from the origin, too far to be rendered; at most 1e+30 was expected",
-       voxels_beyond_pictures},
-      {"NoTolerance", "`trace` with `--tolerance 1e-300`", "done", no_tolerance},
-  };
-  rows.push_back({"FullUnderTheHand", "`replay` on 512^3 voxels of noise, with 700000 KB of address space", "done", full_under_the_hand});
-  rows.push_back({"FullWithoutRoom", "`render` of these voxels with `--memory 300`",
-                  exit + "s.json:1: field \"d\": d.raw: the grid of 512 x 512 x 512 voxels needs 576 MB of memory, expected at most 300 MB "
-                         "(--memory MB allows more)",
-                  full_without_room});
-  rows.push_back({"FullUnderTheEye", "The same with `--memory 700`", "done", full_under_the_eye});
-  return {"Command line", rows};
+  return {
+      "Command line",
+      {
+          {"TwentyKilohertz", "Haptic rate of 20 kHz",
+           exit + "--rate: \"20000\" is out of range; a finite number from 100 to 10000 was expected (see catena feel --help)",
+           [] { return feel("20000"); }},
+          {"SlowAndFastServos", "Haptic rates of 100 Hz and 10 kHz", "100 Hz: done, without an output; 10000 Hz: done, without an output",
+           [] { return Findings().add("100 Hz: " + feel("100")).add("10000 Hz: " + feel("10000")); }},
+          {"TooSmall", "The number 9e-31 in a scene",
+           exit + "s.json:2: 9e-31 is too small; 0 or a number of magnitude 1e-30 to 1e30 was expected",
+           [] { return replay(sphere_of("9e-31")); }},
+          {"TooLarge", "1.1e30", exit + "s.json:2: 1.1e+30 is too large; 0 or a number of magnitude 1e-30 to 1e30 was expected",
+           [] { return replay(sphere_of("1.1e30")); }},
+          {"BeyondDoubles", "1e309", exit + "s.json:2: '1e309' is not a number; a finite number was expected",
+           [] { return replay(sphere_of("1e309")); }},
+          {"SmallestAndLargest", "Sphere links with radii 1e-30 and 1e30, for a workspace of size 1", "done; done",
+           [] { return Findings().add(replay(sphere_of("1e-30"))).add(replay(sphere_of("1e30"))); }},
+          {"NanInAPath", "Probe path with NaN", exit + "p.csv:3: \"nan\" in column \"x\"; a finite number was expected",
+           [] { return replay({}, "0,0.5,0,0\n0.001,nan,0,0\n"); }},
+          {"InfinityInAPath", "Probe path with -inf", exit + "p.csv:3: \"-inf\" in column \"y\"; a finite number was expected",
+           [] { return replay({}, "0,0.5,0,0\n0.001,0,-inf,0\n"); }},
+          {"PathBeyondDoubles", "Probe path with 1e309", exit + "p.csv:2: \"1e309\" in column \"z\"; a finite number was expected",
+           [] { return replay({}, "0,0.5,0,1e309\n"); }},
+          {"PathAtTheEndsOfDoubles", "Probe path with 1.7e308 and 5e-324", "done",
+           [] { return replay({}, "0,1.7e308,0,0\n0.001,-1e308,1e-320,0\n0.002,5e-324,0,0\n0.003,0.5,0,0\n"); }},
+          {"TimesAtTheEndsOfDoubles", "Probe path with times from 1e-320 to 1.7e308 s",
+           "done; bytes in the longest line of output at most 200", times_at_the_ends_of_doubles},
+          {"FarSeed", "`trace` from a seed 1e300 units away", "done", [] { return trace("1e300,0,0"); }},
+          {"DenormalSeed", "`trace` from a seed 1e-320 beside the axis of a vortex ring", "done", [] { return trace("1e-320,1e-310,0"); }},
+          {"NanSeed", "`trace` from a seed with NaN", exit + "z.csv:2: \"nan\" in column \"x\"; a finite number was expected",
+           [] { return trace("nan,0,0"); }},
+          {"NoLength", "`trace` with `--length 1e-300`", exit + "z.csv:2: seed (0.5, 0, 0): the line has no length in either direction",
+           [] { return trace("0.5,0,0", "--length"); }},
+          {"NineTranslucentSurfaces", "Nine translucent isosurfaces",
+           exit + "s.json: the scene has 9 translucent isosurfaces, expected at most 8", nine_translucent_surfaces},
+          {"NotesOfData", "Note about 64-bit data with 0.1 and 1e300, in `replay`",
+           "d.raw: values of type float64 were rounded to 32-bit floats", notes_of_data},
+          {"VoxelsBeyondPictures", "Image of voxels of 1e30",
+           exit + "s.json:1: field \"d\": extends to 7e+30 from the origin, too far to be rendered; at most 1e+30 was expected",
+           voxels_beyond_pictures},
+          {"NoTolerance", "`trace` with `--tolerance 1e-300`", "done", [] { return trace("0.5,0,0", "--tolerance"); }},
+          {"FullUnderTheHand", "`replay` on 512^3 voxels of noise, with 700000 KB of address space", "done", full_under_the_hand},
+          {"FullWithoutRoom", "`render` of these voxels with `--memory 300`",
+           exit + "s.json:1: field \"d\": d.raw: the grid of 512 x 512 x 512 voxels needs 576 MB of memory, expected at most 300 MB "
+                  "(--memory MB allows more)",
+           [] { return full_under_the_eye("300"); }},
+          {"FullUnderTheEye", "The same with `--memory 700`", "done", [] { return full_under_the_eye("700"); }},
+      }};
 }
 
 }  // namespace catena::extremes

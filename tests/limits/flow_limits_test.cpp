@@ -27,20 +27,18 @@ std::string onto_a_limit_cycle() {
   Findings found;
   double off = 0;
   for (const Vec3& seed : {Vec3(0.2, 0, 0), Vec3(0, 1.7, 0.5)}) {
-    const auto curve = flow::trace({field.get()}, seed);
-    if (!curve) return curve.error().message;
-    found.add(stop_names(**curve));
-    off = std::max(off, off_the_cycle((*curve)->knots().back().p));
+    const auto curve = trace(field, seed);
+    found.add(stop_names(*curve));
+    off = std::max(off, off_the_cycle(curve->knots().back().p));
   }
   return found.at_most("distance of the end from the cycle", off / 4, 1e-9, "L");
 }
 
 std::string along_a_limit_cycle(Velocity velocity, double proxy_bound) {
-  const auto curve = flow::trace({lambda_field(velocity).get()}, {1, 0, 0});
-  if (!curve) return curve.error().message;
+  const auto curve = trace(lambda_field(velocity), {1, 0, 0});
   double off = 0;
-  for (const flow::Knot& knot : (*curve)->knots()) off = std::max(off, off_the_cycle(knot.p));
-  Rig rig(haptics::make_selected_streamline(*curve));
+  for (const flow::Knot& knot : curve->knots()) off = std::max(off, off_the_cycle(knot.p));
+  Rig rig(haptics::make_selected_streamline(curve));
   double distance = 0;
   for (int i = 0; i < 2000; ++i) {
     const double a = 0.01 * i;
@@ -48,12 +46,10 @@ std::string along_a_limit_cycle(Velocity velocity, double proxy_bound) {
     distance = std::max(distance, norm(rig.state.proxy - Vec3(std::cos(a), std::sin(a), 0)));
   }
   return Findings()
-      .add(stop_names(**curve))
+      .add(stop_names(*curve))
       .at_most("distance from the cycle", off / 4, 1e-7, "L")
       .at_most("distance of the proxy from the closest point in three laps", distance / 4, proxy_bound, "L");
 }
-std::string along_an_attracting_cycle() { return along_a_limit_cycle(cycle, 1e-7); }
-std::string along_a_repelling_cycle() { return along_a_limit_cycle(repelling_cycle, 1e-6); }
 
 // ---- discontinuities ----
 
@@ -62,14 +58,13 @@ std::string across_a_jump(double degrees) {
   const Vec3 beyond(std::cos(degrees * M_PI / 180), std::sin(degrees * M_PI / 180), 0);
   const auto field = lambda_field([beyond](const Vec3& p) { return p.x < 0 ? Vec3(1, 0, 0) : beyond; });
   const Vec3 seed(-0.7, 0, 0);
-  const auto curve = flow::trace({field.get()}, seed);
-  if (!curve) return curve.error().message;
+  const auto curve = trace(field, seed);
   Findings found;
-  found.add(stop_names(**curve));
-  const bool passes = (*curve)->last_end() == flow::Termination::length;
+  found.add(stop_names(*curve));
+  const bool passes = curve->last_end() == flow::Termination::length;
   const auto on = [&](double s) { return s < 0.7 ? Vec3(s - 0.7, 0, 0) : (passes ? s - 0.7 : 0.0) * beyond; };
   double off = 0, distance = 0;
-  for (double s = 0; s <= std::min(1.5, (*curve)->knots().back().s); s += 0.01) off = std::max(off, norm((*curve)->position(s) - on(s)));
+  for (double s = 0; s <= std::min(1.5, curve->knots().back().s); s += 0.01) off = std::max(off, norm(curve->position(s) - on(s)));
   Rig rig = make_online_rig(field, seed);
   for (int i = 0; i <= 300; ++i) rig.tick(passes ? on(0.005 * i) : Vec3(0.005 * i - 0.7, 0, 0));
   distance = norm(rig.state.proxy - on(1.5));
@@ -77,40 +72,35 @@ std::string across_a_jump(double degrees) {
       .at_most("distance of the proxy from the end", distance / 4, 1e-6, "L")
       .add(to_string(rig.state.status));
 }
-std::string a_kink() { return across_a_jump(45); }
-std::string a_sharp_turn() { return across_a_jump(120); }
-std::string head_on() { return across_a_jump(180); }
+
+/// 33^3 voxels on [-2, 2]^3.
+auto grid_of(const std::function<Vec3(const Vec3&)>& velocity) {
+  return test::sample_vector_grid(field::Mapping::from_linear(Mat3(0.125), Vec3(-2.0)), {33, 33, 33}, velocity);
+}
 
 std::string steep_walls_of_a_grid() {
   // towards y = 0 from both sides, over one voxel
-  const auto grid = test::sample_vector_grid(field::Mapping::from_linear(Mat3(0.125), Vec3(-2.0)), {33, 33, 33}, [](const Vec3& p) {
-    return Vec3(1, p.y > 0 ? -1 : p.y < 0 ? 1 : 0, 0);
-  });
-  const auto curve = flow::trace({grid.get()}, {-1.5, 0.53, 0.1});
-  if (!curve) return curve.error().message;
+  const auto grid = grid_of([](const Vec3& p) { return Vec3(1, p.y > 0 ? -1 : p.y < 0 ? 1 : 0, 0); });
+  const auto curve = trace(grid, {-1.5, 0.53, 0.1});
   return Findings()
-      .add(stop_names(**curve))
-      .at_most("distance of its end from the sheet", std::fabs((*curve)->knots().back().p.y) / 4, 1e-9, "L");
+      .add(stop_names(*curve))
+      .at_most("distance of its end from the sheet", std::fabs(curve->knots().back().p.y) / 4, 1e-9, "L");
 }
 
 // ---- exits of the domain ----
 
 std::string out_through_a_corner() {
-  const auto grid =
-      test::sample_vector_grid(field::Mapping::from_linear(Mat3(0.125), Vec3(-2.0)), {33, 33, 33}, [](const Vec3&) { return Vec3(1.0); });
-  const auto curve = flow::trace({grid.get()}, {0.3, 0.3, 0.3});
-  if (!curve) return curve.error().message;
-  const double off = std::max(norm((*curve)->knots().back().p - Vec3(2.0)), norm((*curve)->knots().front().p - Vec3(-2.0)));
-  return Findings().add(stop_names(**curve)).at_most("distance from the corners", off / 4, 1e-12, "L");
+  const auto grid = grid_of([](const Vec3&) { return Vec3(1.0); });
+  const auto curve = trace(grid, {0.3, 0.3, 0.3});
+  const double off = std::max(norm(curve->knots().back().p - Vec3(2.0)), norm(curve->knots().front().p - Vec3(-2.0)));
+  return Findings().add(stop_names(*curve)).at_most("distance from the corners", off / 4, 1e-12, "L");
 }
 
 std::string out_and_back_at_ten_metres_a_second() {
-  const auto grid = test::sample_vector_grid(field::Mapping::from_linear(Mat3(0.125), Vec3(-2.0)), {33, 33, 33},
-                                             [](const Vec3&) { return Vec3(1, 0.2, 0); });
+  const auto grid = grid_of([](const Vec3&) { return Vec3(1, 0.2, 0); });
   const Vec3 seed(0.1, 0, 0), way = direction(Vec3(1, 0.2, 0)), wall(2, 1.9 * 0.2, 0);
-  const auto curve = flow::trace({grid.get()}, seed);
-  if (!curve) return curve.error().message;
-  Rig rigs[] = {make_online_rig(grid, seed), Rig(haptics::make_selected_streamline(*curve))};
+  const auto curve = trace(grid, seed);
+  Rig rigs[] = {make_online_rig(grid, seed), Rig(haptics::make_selected_streamline(curve))};
   double off = 0, back = 0;
   long long right = 0, asked = 0;
   for (Rig& rig : rigs) {
@@ -141,23 +131,23 @@ Group flow_rows() {
           {"AlongAnAttractingCycle", "Streamline on that cycle",
            "from LAP to LAP; distance from the cycle at most 1e-07 L; distance of the proxy from the closest point in three laps at "
            "most 1e-07 L",
-           along_an_attracting_cycle},
+           [] { return along_a_limit_cycle(cycle, 1e-7); }},
           {"AlongARepellingCycle", "Streamline on a repelling limit cycle, where errors grow 2.9e5 times per lap",
            "from LAP to LAP; distance from the cycle at most 1e-07 L; distance of the proxy from the closest point in three laps at "
            "most 1e-06 L",
-           along_a_repelling_cycle,
+           [] { return along_a_limit_cycle(repelling_cycle, 1e-6); },
            "At most 1e-07 L for the proxy, too. A lap closes over a gap of at most 1e-7 L in its last piece, which turns that piece"},
           {"AKink", "Velocity turns by 45 degrees at a plane",
            "from LENGTH to LENGTH; distance from the closed form at most 1e-06 L; distance of the proxy from the end at most 1e-06 L; OK",
-           a_kink},
+           [] { return across_a_jump(45); }},
           {"ASharpTurn", "Velocity turns by 120 degrees: the flow returns to the plane",
            "from LENGTH to CRITICAL; distance from the closed form at most 1e-06 L; distance of the proxy from the end at most 1e-06 L; "
            "CRITICAL",
-           a_sharp_turn},
+           [] { return across_a_jump(120); }},
           {"HeadOn", "Velocity reverses",
            "from LENGTH to CRITICAL; distance from the closed form at most 1e-06 L; distance of the proxy from the end at most 1e-06 L; "
            "CRITICAL",
-           head_on},
+           [] { return across_a_jump(180); }},
           {"SteepWallsOfAGrid", "Grid whose flow turns towards a sheet within one voxel on both sides",
            "from BOUNDARY to BOUNDARY; distance of its end from the sheet at most 1e-09 L", steep_walls_of_a_grid},
           {"OutThroughACorner", "Streamline through two corners of its grid",

@@ -84,10 +84,6 @@ std::string voxels_of_any_size() {
 const std::vector<World> kFar{
     {0.125, {1e7, 0, 0}}, {0.125, {1e7, -1e7, 1e7}}, {0.1, {1e7, 1e7, -1e7}}, {1e-9, {0, 0, 1e7}}, {1e9, {-1e7, 3e6, 0}}};
 
-std::string surface_far_from_the_origin() { return same_proxies({kSurface}, kFar, 1e-9); }
-std::string online_line_far_from_the_origin() { return same_proxies({kOnline}, kFar, 1e-8); }
-std::string selected_line_far_from_the_origin() { return same_proxies({kLine}, kFar, 1e-9); }
-
 std::string voxels_a_thousand_times_as_long() {
   // s = x + z / 1000 at voxels of 1/1024, 1/1024 and 1 (ratio 1:1024), exact at every node: a plane in closed form
   const Vec3 edges(0x1p-10, 0x1p-10, 1);
@@ -169,16 +165,6 @@ std::string on_surface(const std::function<double(const Vec3&)>& value, double l
                                     : "held at times");
 }
 
-std::string on_a_checkerboard() {
-  return on_surface([](const Vec3& p) { return even(p) ? 1.0 : -1.0; }, 0.25);
-}
-std::string on_a_constant() {
-  return on_surface([](const Vec3&) { return 2.5; }, 2.5);
-}
-std::string without_a_whole_cell() {
-  return on_surface([](const Vec3& p) { return even(p) ? kNan : p.x; }, 0.25);
-}
-
 std::string lines_of(const std::function<Vec3(const Vec3&)>& value) {
   const auto grid = test::sample_vector_grid(kVoxels, kSize, value);
   const auto traced = flow::trace({grid.get()}, {0.1, 0.2, 0.3});
@@ -188,58 +174,48 @@ std::string lines_of(const std::function<Vec3(const Vec3&)>& value) {
       .add("traced: " + (traced ? stop_names(**traced) : traced.error().message))
       .add(fmt::format("online: {}, {}", to_string(rig.state.status), to_string(rig.state.reason)));
 }
-std::string lines_of_nothing() {
-  return lines_of([](const Vec3&) { return Vec3(0.0); });
-}
-std::string lines_without_a_whole_cell() {
-  return lines_of([](const Vec3& p) { return even(p) ? Vec3(kNan) : Vec3(1.0); });
-}
 
 }  // namespace grid_haptics_limits_test
 
 Group world_rows() {
   using namespace grid_haptics_limits_test;
+  const std::string same = "distance of the proxies from those at the origin at most 1e-09 L; the same status in every case";
+  const std::string bounded = "finite and within the work of a tick in every case; at rest under a probe at rest in every case; ";
+  const std::string passes = "the probe passes unchanged: NO_SURFACE, or BUDGET during the search";
   return {
       "Fields under the probe",
       {
           {"VoxelsOfAnySize",
            "Streamlines (selected and online) and an isosurface of grids with voxels of 1e-100 to 1e100, compared with voxels of 0.125",
-           "distance of the proxies from those at the origin at most 1e-09 L; the same status in every case", voxels_of_any_size},
-          {"SurfaceFarFromTheOrigin", "Isosurface of a grid 1e7 voxels from the origin, along one axis and along all",
-           "distance of the proxies from those at the origin at most 1e-09 L; the same status in every case", surface_far_from_the_origin},
+           same, voxels_of_any_size},
+          {"SurfaceFarFromTheOrigin", "Isosurface of a grid 1e7 voxels from the origin, along one axis and along all", same,
+           [] { return same_proxies({kSurface}, kFar, 1e-9); }},
           {"OnlineLineFarFromTheOrigin", "Online streamline of such a grid",
            "distance of the proxies from those at the origin at most 1e-08 L; the same status in every case",
-           online_line_far_from_the_origin,
+           [] { return same_proxies({kOnline}, kFar, 1e-8); },
            "At most 1e-09 L. Every step rounds the proxy to world coordinates, and the errors add up along the line"},
-          {"SelectedLineFarFromTheOrigin", "Selected streamline of such a grid",
-           "distance of the proxies from those at the origin at most 1e-09 L; the same status in every case",
-           selected_line_far_from_the_origin},
+          {"SelectedLineFarFromTheOrigin", "Selected streamline of such a grid", same, [] { return same_proxies({kLine}, kFar, 1e-9); }},
           {"VoxelsAThousandTimesAsLong", "Isosurface of a grid with voxel edges of 1:1:1024",
            "OK in every case; distance of the proxies from the closest point at most 1e-09 of the domain's shortest edge, 0.03",
            voxels_a_thousand_times_as_long},
           {"ValuesOfAnySize", "Isosurface of a grid with values from denormal floats (2^-149) to 2^127",
            "distance of the proxies from those for values near 1 at most 1e-09 L", values_of_any_size},
-          {"OnACheckerboard", "Probe moves, jumps and rests on a checkerboard of 1 and -1, level 1/4",
-           "finite and within the work of a tick in every case; at rest under a probe at rest in every case; held always",
-           on_a_checkerboard},
-          {"OnAConstant", "The same on a constant grid, at its value",
-           "finite and within the work of a tick in every case; at rest under a probe at rest in every case; the probe passes unchanged: "
-           "NO_SURFACE, or BUDGET during the search",
-           on_a_constant},
-          {"WithoutAWholeCell", "The same on a grid with NaN in every second voxel",
-           "finite and within the work of a tick in every case; at rest under a probe at rest in every case; the probe passes unchanged: "
-           "NO_SURFACE, or BUDGET during the search",
-           without_a_whole_cell},
+          {"OnACheckerboard", "Probe moves, jumps and rests on a checkerboard of 1 and -1, level 1/4", bounded + "held always",
+           [] { return on_surface([](const Vec3& p) { return even(p) ? 1.0 : -1.0; }, 0.25); }},
+          {"OnAConstant", "The same on a constant grid, at its value", bounded + passes,
+           [] { return on_surface([](const Vec3&) { return 2.5; }, 2.5); }},
+          {"WithoutAWholeCell", "The same on a grid with NaN in every second voxel", bounded + passes,
+           [] { return on_surface([](const Vec3& p) { return even(p) ? kNan : p.x; }, 0.25); }},
           proved_elsewhere("Random NaN or infinite voxels in the grid of an isosurface", "all output is finite",
                            "IsosurfaceSemantics.InvalidVoxelsNeverReachTheOutput"),
           proved_elsewhere("Isosurface of a grid with one layer", "it is a curve", "IsosurfaceSemantics.TheSurfaceOfASliceIsACurve"),
           {"LinesOfNothing", "Streamlines of a grid of zeros",
            "traced: seed (0.1, 0.2, 0.3): field 'test' is zero at the seed, so that no line passes through it; online: CRITICAL, ZERO",
-           lines_of_nothing},
+           [] { return lines_of([](const Vec3&) { return Vec3(0.0); }); }},
           {"LinesWithoutAWholeCell", "Streamlines of a grid with NaN in every second voxel",
            "traced: seed (0.1, 0.2, 0.3) is outside the domain of field 'test' (a box from (-2, -2, -2) to (2, 2, 2) without masked and "
            "non-finite cells); online: BOUNDARY, NOT_FINITE",
-           lines_without_a_whole_cell},
+           [] { return lines_of([](const Vec3& p) { return even(p) ? Vec3(kNan) : Vec3(1.0); }); }},
           proved_elsewhere("Streamline of an analytic field with velocities of 1e-300 to 1e300", "the same proxies to 1e-9",
                            "FieldScaleAndBadValues.StreamlineProxiesAreInvariantUnderScalingOfTheField"),
           proved_elsewhere("Isosurface of an analytic field with values of 1e-300 to 1e300", "the same proxies to 1e-9",

@@ -3,19 +3,22 @@
 /// "status OK; off the line at most 1e-09 L", which must equal the row's expectation word for word. Numbers in sentences are bounds, never
 /// measured figures. docs/reference/limits.md is generated from the table. One row: build/release/test_limits --gtest_filter='*NAME*'.
 #pragma once
+#include <functional>
 #include <ostream>
 #include <string>
 #include <vector>
 
+#include "engine/base/result.h"
+
 namespace catena::extremes {
 
 struct Row {
-  std::string name;            ///< name of the test case
-  std::string input;           ///< description of the input
-  std::string expected;        ///< expected behaviour
-  std::string (*run)();        ///< returns the observed behaviour; null: tested by `proved_by`
-  std::string should = {};     ///< correct behaviour, for a known defect
-  std::string proved_by = {};  ///< `Suite.Case` of another test program
+  std::string name;                  ///< name of the test case
+  std::string input;                 ///< description of the input
+  std::string expected;              ///< expected behaviour
+  std::function<std::string()> run;  ///< returns the observed behaviour; empty: tested by `proved_by`
+  std::string should = {};           ///< correct behaviour, for a known defect
+  std::string proved_by = {};        ///< `Suite.Case` of another test program
 };
 
 /// Prints a row in the messages of a failing case.
@@ -59,5 +62,17 @@ class Findings {
  private:
   std::string text_;
 };
+
+/// Thrown to end a row; the message is its observed behaviour.
+struct RowFailure {
+  std::string message;
+};
+
+/// Returns the value, or ends the row with the error message.
+template <class T>
+T get(Result<T> result) {
+  if (!result) throw RowFailure{result.error().message};
+  return std::move(*result);
+}
 
 }  // namespace catena::extremes

@@ -46,7 +46,15 @@ std::map<std::string, std::string>& measured_results() {
 
 class LimitTable : public testing::TestWithParam<Row> {};
 
-TEST_P(LimitTable, Row) { EXPECT_EQ(measured_results()[GetParam().name] = GetParam().run(), GetParam().expected) << GetParam().input; }
+TEST_P(LimitTable, Row) {
+  std::string& result = measured_results()[GetParam().name];
+  try {
+    result = GetParam().run();
+  } catch (const RowFailure& failure) {
+    result = failure.message;
+  }
+  EXPECT_EQ(result, GetParam().expected) << GetParam().input;
+}
 
 INSTANTIATE_TEST_SUITE_P(Table, LimitTable, testing::ValuesIn(rows_to_run()), [](const auto& test) { return test.param.name; });
 

@@ -11,52 +11,42 @@
 
 #include "render/extract/extract.h"
 #include "render/passes/renderer.h"
+#include "tests/limits/limits_table.h"
 #include "tests/support/support.h"
 #include "tests/support/vulkan.h"
 
 namespace catena::extremes {
 
-/// One device for all rows. On a failure the image is empty and `error_message` is set.
-struct TestRenderer {
-  std::unique_ptr<render::Renderer> renderer;
-  std::string error_message;
+/// Removes the folder from an error message.
+inline std::string without_folder(std::string message, const test::TemporaryFolder& folder) {
+  for (auto at = message.find(folder.path()); at != std::string::npos; at = message.find(folder.path()))
+    message.erase(at, folder.path().size() + 1);
+  return message;
+}
 
-  static TestRenderer& instance() {
-    static TestRenderer eye;
-    return eye;
-  }
-
-  render::Image8 draw(const std::string& text, const test::TemporaryFolder& folder, std::uint32_t width, std::uint32_t height) {
-    error_message.clear();
-    auto scene = scene::parse_scene(text, folder / "s.json");
-    if (!scene) return on_failure(scene.error(), folder);
-    auto packet = render::make_frame(*scene, width, height);
-    if (!packet) return on_failure(packet.error(), folder);
-    const Outcome drawn = renderer->draw(*packet);
-    if (!drawn) return on_failure(drawn.error(), folder);
-    auto picture = renderer->read_back();
-    if (!picture) return on_failure(picture.error(), folder);
-    if (renderer->stats().validation_messages > 0) error_message = "the validation layer said " + renderer->validation_texts().front();
-    return *picture;
-  }
-
- private:
-  TestRenderer() {
+/// Draws a scene on the one device of all rows; an error, or a message of the validation layer, ends the row. `line_count`: number of
+/// tubes.
+inline render::Image8 draw(const std::string& text, const test::TemporaryFolder& folder, std::uint32_t width, std::uint32_t height,
+                           std::size_t* line_count = nullptr) {
+  static const std::unique_ptr<render::Renderer> renderer = [] {
     test::use_lavapipe();
     render::vk::DeviceOptions options;
     options.validation = true;
     options.device_filter = test::test_device();
-    auto made = render::Renderer::create(options);
-    CATENA_ASSERT(static_cast<bool>(made));
-    renderer = std::move(*made);
+    return get(render::Renderer::create(options));
+  }();
+  try {
+    auto scene = get(scene::parse_scene(text, folder / "s.json"));
+    const auto packet = get(render::make_frame(scene, width, height));
+    if (line_count != nullptr) *line_count = packet.tubes.size();
+    if (const Outcome drawn = renderer->draw(packet); !drawn) throw RowFailure{drawn.error().message};
+    const render::Image8 picture = get(renderer->read_back());
+    if (renderer->stats().validation_messages > 0) throw RowFailure{"the validation layer said " + renderer->validation_texts().front()};
+    return picture;
+  } catch (const RowFailure& failure) {
+    throw RowFailure{without_folder(failure.message, folder)};
   }
-  render::Image8 on_failure(const Error& error, const test::TemporaryFolder& folder) {
-    error_message = error.message;
-    for (auto at = error_message.find(folder.path()); at != std::string::npos; at = error_message.find(folder.path()))
-      error_message.erase(at, folder.path().size() + 1);
-    return {};
-  }
-};
+}
 
 template <class T>
 std::string to_bytes(const std::vector<T>& values) {
@@ -93,6 +83,20 @@ inline double count_covered(const render::Image8& picture) {
   double sum = 0;
   for (std::size_t i = 3; i < picture.rgba.size(); i += 4) sum += picture.rgba[i] / 255.0;
   return sum;
+}
+
+/// "visible" if more than `threshold` pixels are covered.
+inline std::string seen(const render::Image8& picture, double threshold = 0) {
+  return count_covered(picture) > threshold ? "visible" : "empty image";
+}
+
+/// Result of pictures that should be visible and equal.
+inline std::string same_pictures(const std::vector<render::Image8>& pictures, double covered, int more, double bound) {
+  double maximum = 0;
+  for (const render::Image8& picture : pictures) maximum = std::max(maximum, count_differing(picture, pictures[0], more));
+  return Findings()
+      .add(seen(pictures[0], covered))
+      .at_most(fmt::format("fraction of pixels that differ by more than {}/255", more), maximum, bound);
 }
 
 }  // namespace catena::extremes

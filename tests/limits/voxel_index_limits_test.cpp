@@ -38,6 +38,7 @@ void write_vdb(const std::string& path, const openvdb::Coord& first) {
   openvdb::io::File(path).write({scalars, vectors});
 }
 
+const std::string kLine = R"("type": "streamline", "field": "v", "seed": [0.8, 0.1, -0.5])";
 const openvdb::Coord kNear(0, 0, 0), kFar(10'000'000, -10'000'000, 10'000'000);
 
 std::string fields_of(const std::string& path) {
@@ -65,28 +66,19 @@ std::string under_the_hand(const std::string& link, double bound) {
   return Findings().at_most("distance of the proxies from those for indices from 0", off, bound, "L").all("the same status", same, kTicks);
 }
 
-std::string surface() { return under_the_hand(R"("type": "isosurface", "field": "s", "level": 0.9)", 1e-9); }
-std::string selected_line() { return under_the_hand(R"("type": "streamline", "field": "v", "seed": [0.8, 0.1, -0.5])", 1e-9); }
-std::string online_line() {
-  return under_the_hand(R"("type": "streamline", "field": "v", "seed": [0.8, 0.1, -0.5], "follow": "online")", 1e-9);
-}
-
 std::string under_the_eye() {
   std::vector<render::Image8> pictures;
   for (const openvdb::Coord& first : {kNear, kFar}) {
     const test::TemporaryFolder folder;
     write_vdb(folder / "a.vdb", first);
-    pictures.push_back(TestRenderer::instance().draw(fields_of("a.vdb") + R"("background": "transparent",
+    pictures.push_back(draw(fields_of("a.vdb") + R"("background": "transparent",
       "volumes": [{"field": "s", "extinction": [[1.5, 0], [3.4, 1]]}], "isosurfaces": [{"field": "s", "level": 0.9}],
       "slices": [{"field": "s", "axis": "z", "at": -1, "color": "viridis"}],
       "streamlines": [{"field": "v", "seeds": [[0.8, 0.1, -0.5]], "radius": 0.05}],
       "camera": {"position": [4, -6, 3], "target": [0, 0, 0], "fovy_deg": 36}})",
-                                                     folder, 96, 72));
-    if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
+                            folder, 96, 72));
   }
-  return Findings()
-      .add(count_covered(pictures[0]) > 500 ? "visible" : "empty image")
-      .at_most("fraction of pixels that differ by more than 24/255", count_differing(pictures[0], pictures[1], 24), 0.002);
+  return same_pictures(pictures, 500, 24, 0.002);
 }
 
 // ---- points of a table ----
@@ -105,9 +97,7 @@ const Vec3 kFarPlace(625000, -5250000, 1250000);
 
 std::string points_under_the_hand() {
   haptics::tests::Fields fields;
-  auto set = curves::parse_points(table_at(kFarPlace), "p.csv");
-  if (!set) return set.error().message;
-  fields.points["p"] = std::make_shared<const curves::PointSet>(std::move(*set));
+  fields.points["p"] = std::make_shared<const curves::PointSet>(get(curves::parse_points(table_at(kFarPlace), "p.csv")));
   double off = 0;
   for (int i = 0; i < 20; ++i) {
     haptics::tests::Rig rig(haptics::tests::build(R"({"name": "a", "type": "points", "points": "p"})", fields));
@@ -121,9 +111,7 @@ std::string curves_under_the_hand() {
   haptics::tests::Fields fields;
   test::Polylines lines(1);
   for (int i = 0; i < 20; ++i) lines[0].push_back(kFarPlace + place(i));
-  auto set = curves::parse_tck(test::tck_bytes(lines, "Float64LE"), "c.tck");
-  if (!set) return set.error().message;
-  fields.curves["c"] = std::make_shared<const curves::CurveSet>(std::move(*set));
+  fields.curves["c"] = std::make_shared<const curves::CurveSet>(get(curves::parse_tck(test::tck_bytes(lines, "Float64LE"), "c.tck")));
   double off = 0;
   for (int i = 1; i < 20; ++i) {
     haptics::tests::Rig rig(haptics::tests::build(R"({"name": "a", "type": "curves", "curves": "c"})", fields));
@@ -139,16 +127,12 @@ std::string points_under_the_eye() {
   for (const Vec3& far : {Vec3(0.0), kFarPlace}) {
     const test::TemporaryFolder folder;
     test::write_file(folder / "p.csv", table_at(far));
-    pictures.push_back(
-        TestRenderer::instance().draw(R"({"points": [{"name": "p", "file": "p.csv", "radius": 0.1}], "background": "transparent",
-      "camera": {"position": )" + triple(far + Vec3(2, -3.2, 1.5)) +
-                                          R"(, "target": )" + triple(far) + R"(, "fovy_deg": 36}})",
-                                      folder, 96, 72));
-    if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
+    pictures.push_back(draw(R"({"points": [{"name": "p", "file": "p.csv", "radius": 0.1}], "background": "transparent",
+      "camera": {"position": )" +
+                                triple(far + Vec3(2, -3.2, 1.5)) + R"(, "target": )" + triple(far) + R"(, "fovy_deg": 36}})",
+                            folder, 96, 72));
   }
-  return Findings()
-      .add(count_covered(pictures[0]) > 100 ? "visible" : "empty image")
-      .at_most("fraction of pixels that differ by more than 24/255", count_differing(pictures[0], pictures[1], 24), 0.002);
+  return same_pictures(pictures, 100, 24, 0.002);
 }
 
 }  // namespace voxel_index_limits_test
@@ -159,9 +143,10 @@ Group index_rows() {
   return {"Far indices and positions",
           {
               {"SurfaceOfFarIndices", "Isosurface of a .vdb grid whose indices start at (1e7, -1e7, 1e7), at the same world position", same,
-               surface},
-              {"SelectedLineOfFarIndices", "Selected streamline of such a grid", same, selected_line},
-              {"OnlineLineOfFarIndices", "Online streamline of such a grid", same, online_line},
+               [] { return under_the_hand(R"("type": "isosurface", "field": "s", "level": 0.9)", 1e-9); }},
+              {"SelectedLineOfFarIndices", "Selected streamline of such a grid", same, [] { return under_the_hand(kLine, 1e-9); }},
+              {"OnlineLineOfFarIndices", "Online streamline of such a grid", same,
+               [] { return under_the_hand(kLine + R"(, "follow": "online")", 1e-9); }},
               {"PicturesOfFarIndices",
                "Image of a volume, an isosurface, a slice and a streamline of such a grid; 24/255 is a tenth of a pixel",
                "visible; fraction of pixels that differ by more than 24/255 at most 0.002", under_the_eye},

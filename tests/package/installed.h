@@ -12,13 +12,20 @@
 
 namespace catena::test {
 
+/// Runs CMake; a failure shows its output.
+inline bool run_cmake(const std::vector<std::string>& arguments) {
+  const ProgramResult result = run_program(CATENA_CMAKE, arguments);
+  EXPECT_EQ(result.exit_code, 0) << "cmake " << testing::PrintToString(arguments) << "\n"
+                                 << result.out.substr(0, 8000) << result.err.substr(0, 4000);
+  return result.exit_code == 0;
+}
+
 /// The prefix with bin, lib, include and share.
 inline const std::string& install_prefix() {
   static const std::string prefix = [] {
     const std::string at = binary_dir() + "/installed";
     std::filesystem::remove_all(at);  // from an earlier build
-    const ProgramResult result = run_program(CATENA_CMAKE, {"--install", binary_dir(), "--prefix", at});
-    EXPECT_EQ(result.exit_code, 0) << result.out.substr(0, 8000) << result.err.substr(0, 4000);
+    run_cmake({"--install", binary_dir(), "--prefix", at});
     return at;
   }();
   return prefix;

@@ -11,8 +11,6 @@
 #include <vector>
 
 #include "tests/package/installed.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
 
 namespace package_test {
 
@@ -20,27 +18,22 @@ namespace fs = std::filesystem;
 namespace test = catena::test;
 
 const std::string& prefix() { return test::install_prefix(); }
+std::string library() { return prefix() + "/" + CATENA_LIBDIR + "/libcatena.so"; }
 
-std::string words_of(const std::vector<std::string>& words) {
-  std::string all;
-  for (const std::string& word : words) all += word + " ";
-  return all;
-}
-
-/// Runs CMake; a failure shows its output.
-void cmake(const std::vector<std::string>& arguments) {
-  const test::ProgramResult result = test::run_program(CATENA_CMAKE, arguments);
-  ASSERT_EQ(result.exit_code, 0) << "cmake " << words_of(arguments) << "\n" << result.out.substr(0, 8000) << result.err.substr(0, 4000);
+/// Output of a program, which must succeed.
+std::string output_of(const std::vector<std::string>& words) {
+  const test::ProgramResult result = test::run_program(words[0], {words.begin() + 1, words.end()});
+  EXPECT_EQ(result.exit_code, 0) << testing::PrintToString(words) << result.err;
+  return result.out;
 }
 
 /// Builds a project against the installation. The folder is kept, so that unchanged parts are not rebuilt.
-void build_outside(const std::string& source, const std::string& name) {
+bool build_outside(const std::string& source, const std::string& name) {
   const std::string folder = test::binary_dir() + "/outside/" + name;
   std::vector<std::string> configure{
       "--fresh", "-S", source, "-B", folder, "-G", "Ninja", "-DCMAKE_PREFIX_PATH=" + prefix(), "-DCMAKE_BUILD_TYPE=None"};
   if (std::string(CATENA_LAUNCHER).size() > 0) configure.push_back(std::string("-DCMAKE_CXX_COMPILER_LAUNCHER=") + CATENA_LAUNCHER);
-  ASSERT_NO_FATAL_FAILURE(cmake(configure));
-  cmake({"--build", folder, "--parallel", "2"});
+  return test::run_cmake(configure) && test::run_cmake({"--build", folder, "--parallel", "2"});
 }
 
 std::vector<std::string> public_headers() {
@@ -121,10 +114,7 @@ TEST_F(Package, TheLibraryExportsOnlyDeclarationsOfPublicHeaders) {
   std::set<std::string> words;
   const std::regex word("[A-Za-z_][A-Za-z0-9_]*");
   for (std::sregex_iterator it(text.begin(), text.end(), word), end; it != end; ++it) words.insert(it->str());
-  const test::ProgramResult names =
-      test::run_program("/usr/bin/nm", {"-DC", "--defined-only", prefix() + "/" + CATENA_LIBDIR + "/libcatena.so"});
-  ASSERT_EQ(names.exit_code, 0) << names.err;
-  std::istringstream in(names.out);
+  std::istringstream in(output_of({"/usr/bin/nm", "-DC", "--defined-only", library()}));
   const std::regex symbol(
       R"(\S+ (\S) (?:(?:vtable|typeinfo|typeinfo name|non-virtual thunk) (?:for|to) )?catena::((?:[a-z_]+::)*)(\w+).*)");
   int seen = 0;
@@ -141,33 +131,30 @@ TEST_F(Package, TheLibraryExportsOnlyDeclarationsOfPublicHeaders) {
 
 TEST_F(Package, TheProgramExportsTheLibrarysSymbolsToPlugins) {
   const auto names = [](const std::string& file) {
-    const test::ProgramResult listed = test::run_program("/usr/bin/nm", {"-D", "--defined-only", "--without-symbol-versions", file});
-    EXPECT_EQ(listed.exit_code, 0) << listed.err;
     std::set<std::string> found;
-    std::istringstream in(listed.out);
+    std::istringstream in(output_of({"/usr/bin/nm", "-D", "--defined-only", "--without-symbol-versions", file}));
     for (std::string address, kind, name; in >> address >> kind >> name;)
       if (name.starts_with("_Z")) found.insert(name);
     return found;
   };
-  const std::set<std::string> program = names(prefix() + "/bin/catena"), library = names(prefix() + "/" + CATENA_LIBDIR + "/libcatena.so");
-  EXPECT_GT(library.size(), 500u);
-  for (const std::string& name : library) EXPECT_TRUE(program.contains(name)) << name;
+  const std::set<std::string> of_program = names(prefix() + "/bin/catena"), of_library = names(library());
+  EXPECT_GT(of_library.size(), 500u);
+  for (const std::string& name : of_library) EXPECT_TRUE(of_program.contains(name)) << name;
 }
 
 TEST_F(Package, TheLibraryHasItsSoname) {
-  const test::ProgramResult elf = test::run_program("/usr/bin/readelf", {"-d", prefix() + "/" + CATENA_LIBDIR + "/libcatena.so"});
-  EXPECT_NE(elf.out.find("[libcatena.so." CATENA_SOVERSION "]"), std::string::npos) << elf.out;
-  for (const char* heavy : {"openvdb", "libvtk", "libITK", "glfw", "imgui"}) EXPECT_EQ(elf.out.find(heavy), std::string::npos) << heavy;
+  const std::string elf = output_of({"/usr/bin/readelf", "-d", library()});
+  EXPECT_NE(elf.find("[libcatena.so." CATENA_SOVERSION "]"), std::string::npos) << elf;
+  for (const char* heavy : {"openvdb", "libvtk", "libITK", "glfw", "imgui"}) EXPECT_EQ(elf.find(heavy), std::string::npos) << heavy;
 }
 
 TEST_F(Package, ExamplesBuildAndRunOutsideOfTheTree) {
-  ASSERT_NO_FATAL_FAILURE(build_outside(prefix() + "/" + CATENA_DOCDIR + "/docs/examples", "examples"));
+  ASSERT_TRUE(build_outside(prefix() + "/" + CATENA_DOCDIR + "/docs/examples", "examples"));
   // 500 N/m times 0.05 m per unit times 0.3 units; the proxy is on the ball of radius 0.5
   EXPECT_EQ(example("constraint").out, "probe at 0.200, proxy at 0.500, force 7.500 N\n");
   const test::ProgramResult loop = example("own_loop");
   EXPECT_EQ(loop.exit_code, 0) << loop.err;
-  EXPECT_NE(loop.out.find("line: OK"), std::string::npos) << loop.out;
-  EXPECT_NE(loop.out.find("skin: OK"), std::string::npos) << loop.out;
+  for (const char* link : {"line: OK", "skin: OK"}) EXPECT_NE(loop.out.find(link), std::string::npos) << loop.out;
   EXPECT_EQ(example("function").out.substr(0, 9), "OK: proxy");
   // at rest the hand's spring force, 100 N/m (-0.01 - z), equals the floor's
   const test::ProgramResult device = example("device");
@@ -180,8 +167,7 @@ TEST_F(Package, ExamplesBuildAndRunOutsideOfTheTree) {
 
   // a .vdb file is read by the installed helper
   const std::string vdb = folder / "hill.vdb", png = folder / "hill.png";
-  const test::ProgramResult made = test::run_program(prefix() + "/bin/catena", {"generate", "hill", "-o", vdb, "--resolution", "16"});
-  ASSERT_EQ(made.exit_code, 0) << made.err;
+  output_of({prefix() + "/bin/catena", "generate", "hill", "-o", vdb, "--resolution", "16"});
   EXPECT_FALSE(test::exists(prefix() + "/bin/catena-read"));
   const test::ProgramResult picture = example("picture", {vdb, png});
   EXPECT_EQ(picture.exit_code, 0) << picture.err;
@@ -266,7 +252,7 @@ TEST_F(Package, ProjectsCanAddTheSourceTree) {
   test::write_file(project + "/CMakeLists.txt",
                    "cmake_minimum_required(VERSION 3.25)\nproject(outer CXX)\nadd_subdirectory(catena)\nadd_executable(main main.cpp)\n"
                    "target_link_libraries(main PRIVATE catena::field catena::flow catena::haptics catena::render)\n");
-  cmake({"-S", project, "-B", folder / "build", "-G", "Ninja"});
+  test::run_cmake({"-S", project, "-B", folder / "build", "-G", "Ninja"});
 }
 
 }  // namespace package_test

@@ -7,19 +7,14 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <chrono>
-#include <filesystem>
 #include <regex>
 #include <set>
 #include <sstream>
-#include <string>
-#include <vector>
 
+#include "engine/base/clock.h"
 #include "render/image/image.h"
 #include "tests/package/installed.h"
 #include "tests/support/drive_window.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
 
 namespace tutorials_test {
 
@@ -130,15 +125,14 @@ void follow(const std::string& name, const std::string& in = "tutorials/", bool 
   const std::vector<std::string> before = has_window ? user_at_a_display(work) : std::vector<std::string>();
   int ran = 0;
   test::install_prefix();
-  const auto begin = std::chrono::steady_clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
+  const std::int64_t begin = catena::now_ns();
+  const auto seconds = [&] { return 1e-3 * catena::ms_since(begin); };
   double first = 0;
   for (std::size_t i = 0; i < page.blocks.size(); ++i) {
     const Block& block = page.blocks[i];
     if (!block.file.empty()) test::write_file(work + "/" + block.file, block.text);
-    if (block.language == "text") {
-      EXPECT_TRUE(i > 0 && page.blocks[i - 1].language == "sh") << path << ":" << block.line << ": nothing prints this";
-    }
+    const bool is_printed = block.language != "text" || (i > 0 && page.blocks[i - 1].language == "sh");
+    EXPECT_TRUE(is_printed) << path << ":" << block.line << ": nothing prints this";
     if (block.language != "sh") continue;
     const test::ProgramResult result = test::run_shell(work, block.text, before);
     ASSERT_EQ(result.exit_code, 0) << path << ":" << block.line << "\n" << result.out;

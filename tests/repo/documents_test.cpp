@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -37,6 +36,8 @@ std::vector<std::string> documents() {
 }
 
 std::string contents(const std::string& document) { return test::read_file(test::source_dir() + "/" + document); }
+
+bool in_tree(const std::string& path) { return fs::exists(test::source_dir() + "/" + path); }
 
 /// Returns the first group of each match.
 std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
@@ -74,7 +75,7 @@ TEST(Documents, EveryLinkIsValid) {
       const std::string file = link.substr(0, hash);
       const std::string to = file.empty() ? document : (fs::path(document).parent_path() / file).lexically_normal().string();
       ++checked;
-      ASSERT_TRUE(fs::exists(test::source_dir() + "/" + to)) << document << " links to " << link;
+      ASSERT_TRUE(in_tree(to)) << document << " links to " << link;
       if (hash == std::string::npos || !to.ends_with(".md")) continue;
       EXPECT_TRUE(anchors_of(to).contains(link.substr(hash + 1))) << document << " links to " << link;
     }
@@ -99,7 +100,7 @@ TEST(Documents, EveryNamedFileExists) {
     for (const std::string& path : matches(contents(document), R"(`((?:engine|haptics|render|shaders|tests|assets)/[\w./-]+)`)")) {
       if (path.find("NAME") != std::string::npos) continue;
       ++checked;
-      EXPECT_TRUE(fs::exists(test::source_dir() + "/" + path)) << document << " names " << path;
+      EXPECT_TRUE(in_tree(path)) << document << " names " << path;
     }
   EXPECT_GT(checked, 40);
 }

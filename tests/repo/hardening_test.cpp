@@ -9,8 +9,7 @@
 
 #include "tests/support/support.h"
 
-namespace catena {
-namespace hardening_test {
+namespace catena::hardening_test {
 
 /// A 64-bit ELF program of this machine, as bytes.
 class Program {
@@ -97,5 +96,4 @@ TEST(Hardening, TheProgramsAreHardened) {
   EXPECT_TRUE(checked) << "_GLIBCXX_ASSERTIONS";
 }
 
-}  // namespace hardening_test
-}  // namespace catena
+}  // namespace catena::hardening_test

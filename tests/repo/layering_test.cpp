@@ -67,51 +67,48 @@ std::string included_path(const std::string& line) {
   return open == std::string::npos || close == std::string::npos ? std::string() : line.substr(open + 1, close - open - 1);
 }
 
-std::vector<Include> all_includes(const std::string& top) {
+std::vector<Include> all_includes() {
   std::vector<Include> found;
-  for (const auto& entry : fs::recursive_directory_iterator(test::source_dir() + "/" + top)) {
-    const std::string extension = entry.path().extension().string();
-    if (extension != ".h" && extension != ".cpp") continue;
-    std::ifstream in(entry.path());
-    for (std::string line; std::getline(in, line);)
-      if (const std::string path = included_path(line); !path.empty())
-        found.push_back({fs::relative(entry.path(), test::source_dir()).string(), path});
-  }
+  for (const char* top : {"engine", "haptics", "render"})
+    for (const auto& entry : fs::recursive_directory_iterator(test::source_dir() + "/" + top)) {
+      const std::string extension = entry.path().extension().string();
+      if (extension != ".h" && extension != ".cpp") continue;
+      std::ifstream in(entry.path());
+      for (std::string line; std::getline(in, line);)
+        if (const std::string path = included_path(line); !path.empty())
+          found.push_back({fs::relative(entry.path(), test::source_dir()).string(), path});
+    }
   return found;
 }
 
-bool ours(const std::string& path) {
-  for (const char* top : {"engine/", "haptics/", "render/", "shaders/", "tests/"})
-    if (path.starts_with(top)) return true;
-  return false;
+bool begins_with_any(const std::string& path, const std::vector<std::string>& folders) {
+  return std::ranges::any_of(folders, [&](const std::string& folder) { return path.starts_with(folder); });
 }
+bool ours(const std::string& path) { return begins_with_any(path, {"engine/", "haptics/", "render/", "shaders/", "tests/"}); }
 
 TEST(Layering, EveryIncludeFollowsADeclaredEdge) {
   const Edges edges = declared_edges();
   ASSERT_GT(edges.size(), 10u);
   int checked = 0;
-  for (const char* top : {"engine", "haptics", "render"}) {
-    for (const Include& include : all_includes(top)) {
-      const std::string from = module_of(edges, include.from);
-      ASSERT_FALSE(from.empty()) << include.from << " is in no declared module";
-      if (!ours(include.to) || edges.at(from).contains("ALL")) continue;
-      const std::string to = module_of(edges, include.to);
-      EXPECT_TRUE(!to.empty() && reachable(edges, from).contains(to))
-          << include.from << " includes " << include.to << ": no edge " << from << " -> " << to;
-      ++checked;
-    }
+  for (const Include& include : all_includes()) {
+    const std::string from = module_of(edges, include.from);
+    ASSERT_FALSE(from.empty()) << include.from << " is in no declared module";
+    if (!ours(include.to) || edges.at(from).contains("ALL")) continue;
+    const std::string to = module_of(edges, include.to);
+    EXPECT_TRUE(!to.empty() && reachable(edges, from).contains(to))
+        << include.from << " includes " << include.to << ": no edge " << from << " -> " << to;
+    ++checked;
   }
   EXPECT_GT(checked, 100);
 }
 
 TEST(Layering, ProjectHeadersAreIncludedFromTheRepositoryRoot) {
-  for (const char* top : {"engine", "haptics", "render"})
-    for (const Include& include : all_includes(top)) {
-      const bool sibling = include.to.find('/') == std::string::npos &&
-                           fs::exists(fs::path(test::source_dir()) / fs::path(include.from).parent_path() / include.to);
-      EXPECT_FALSE(sibling) << include.from << " includes " << include.to << ": write the path from the repository root";
-      EXPECT_FALSE(include.to.starts_with("..")) << include.from;
-    }
+  for (const Include& include : all_includes()) {
+    const bool sibling = include.to.find('/') == std::string::npos &&
+                         fs::exists(fs::path(test::source_dir()) / fs::path(include.from).parent_path() / include.to);
+    EXPECT_FALSE(sibling) << include.from << " includes " << include.to << ": write the path from the repository root";
+    EXPECT_FALSE(include.to.starts_with("..")) << include.from;
+  }
 }
 
 TEST(Layering, OnlyTheProgramAndTheTopModulesUseBothHapticsAndRender) {
@@ -135,38 +132,30 @@ TEST(Layering, OnlyTheProgramAndTheTopModulesUseBothHapticsAndRender) {
 }
 
 TEST(Layering, HeavyLibrariesStayInTheirModules) {
+  const std::pair<std::vector<std::string>, std::vector<std::string>> places[] = {
+      // libraries, folders that may include them
+      {{"openvdb/"}, {"engine/io/vdb/"}},
+      {{"vtk", "itk", "gdcm", "zip.h", "gifti_io.h"}, {"engine/io/vtk/"}},
+      {{"nanovdb/"}, {"engine/field/", "engine/io/"}},
+      {{"nifti1_io.h"}, {"engine/io/volume/"}},
+      {{"json/"}, {"engine/base/json"}},
+      {{"tbb/"}, {"engine/base/threads"}},
+      {{"vulkan/"}, {"render/", "engine/app/viewer/"}},
+      {{"GLFW/"}, {"engine/app/viewer/"}},
+      {{"seccomp.h"}, {"engine/io/sandbox/"}},
+      {{"png.h", "turbojpeg.h"}, {"render/image/"}},
+      {{"ft2build.h", "fontconfig/"}, {"render/text/"}},
+      {{"CLI/"}, {"engine/app/"}},
+      {{"openxr/"}, {"render/xr/"}},
+      {{"boost/"}, {"engine/study/statistics/distributions.cpp", "engine/app/server/http/"}}};
   std::map<std::string, std::set<std::string>> users;  // files by library
-  for (const char* top : {"engine", "haptics", "render"}) {
-    for (const Include& include : all_includes(top)) {
-      for (const char* library :
-           {"openvdb/",   "nanovdb/",    "vulkan/", "GLFW/", "json/", "tbb/",  "nifti1_io.h", "png.h",  "seccomp.h", "CLI/",
-            "ft2build.h", "fontconfig/", "vtk",     "itk",   "gdcm",  "zip.h", "gifti_io.h",  "boost/", "openxr/",   "turbojpeg.h"})
-        if (include.to.starts_with(library)) users[library].insert(include.from);
-    }
-  }
-  const auto only_in = [&](const std::string& library, const std::vector<std::string>& places) {
-    for (const std::string& file : users[library]) {
-      bool allowed = false;
-      for (const std::string& place : places) allowed = allowed || file.starts_with(place);
-      EXPECT_TRUE(allowed) << file << " includes " << library;
-    }
-  };
-  only_in("openvdb/", {"engine/io/vdb/"});
-  for (const char* library : {"vtk", "itk", "gdcm", "zip.h", "gifti_io.h"}) only_in(library, {"engine/io/vtk/"});
-  only_in("nanovdb/", {"engine/field/", "engine/io/"});
-  only_in("nifti1_io.h", {"engine/io/volume/"});
-  only_in("json/", {"engine/base/json"});
-  only_in("tbb/", {"engine/base/threads"});
-  only_in("vulkan/", {"render/", "engine/app/viewer/"});
-  only_in("GLFW/", {"engine/app/viewer/"});
-  only_in("seccomp.h", {"engine/io/sandbox/"});
-  only_in("png.h", {"render/image/"});
-  only_in("turbojpeg.h", {"render/image/"});
-  only_in("ft2build.h", {"render/text/"});
-  only_in("fontconfig/", {"render/text/"});
-  only_in("CLI/", {"engine/app/"});
-  only_in("openxr/", {"render/xr/"});
-  only_in("boost/", {"engine/study/statistics/distributions.cpp", "engine/app/server/http/"});
+  for (const Include& include : all_includes())
+    for (const auto& [libraries, folders] : places)
+      for (const std::string& library : libraries)
+        if (include.to.starts_with(library)) {
+          users[library].insert(include.from);
+          EXPECT_TRUE(begins_with_any(include.from, folders)) << include.from << " includes " << library;
+        }
   EXPECT_LE(users["openvdb/"].size(), 5u) << "openvdb headers cost 10 s of build each";
   for (const char* library : {"openvdb/", "vulkan/", "json/"}) EXPECT_FALSE(users[library].empty()) << library;
 }

@@ -6,9 +6,12 @@
 #include "engine/base/memory_limit.h"
 
 namespace {
-void* counted(std::size_t size) {
+void* counted_or_null(std::size_t size) {
   ++catena::thread_allocations;
-  if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
+  return std::malloc(size == 0 ? 1 : size);
+}
+void* counted(std::size_t size) {
+  if (void* p = counted_or_null(size)) return p;
   throw std::bad_alloc();
 }
 void* counted(std::size_t size, std::align_val_t alignment) {
@@ -23,14 +26,8 @@ void* operator new(std::size_t size) { return counted(size); }
 void* operator new[](std::size_t size) { return counted(size); }
 void* operator new(std::size_t size, std::align_val_t a) { return counted(size, a); }
 void* operator new[](std::size_t size, std::align_val_t a) { return counted(size, a); }
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++catena::thread_allocations;
-  return std::malloc(size == 0 ? 1 : size);
-}
-void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
-  ++catena::thread_allocations;
-  return std::malloc(size == 0 ? 1 : size);
-}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return counted_or_null(size); }
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return counted_or_null(size); }
 void operator delete(void* p, const std::nothrow_t&) noexcept { std::free(p); }
 void operator delete[](void* p, const std::nothrow_t&) noexcept { std::free(p); }
 void operator delete(void* p) noexcept { std::free(p); }

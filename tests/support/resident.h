@@ -10,7 +10,7 @@ namespace catena::test {
 
 /// False under the address sanitizer, which keeps freed memory for a while.
 #ifdef __SANITIZE_ADDRESS__
-inline constexpr bool kResidentCounts = false;
+inline constexpr bool kResidentIsReliable = false;
 #else
 inline constexpr bool kResidentIsReliable = true;
 #endif

@@ -2,6 +2,7 @@
 #include "tests/support/run_program.h"
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -37,6 +38,12 @@ ProgramResult run_program(const std::string& program, const std::vector<std::str
 }
 
 ProgramResult run_catena(const std::vector<std::string>& arguments) { return run_program(program_path(), arguments); }
+
+ProgramResult expect_run(const std::vector<std::string>& arguments) {
+  const ProgramResult result = run_catena(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return result;
+}
 
 namespace {
 std::vector<std::string> split(const std::string& line) {

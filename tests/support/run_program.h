@@ -15,6 +15,8 @@ struct ProgramResult {
 ProgramResult run_program(const std::string& program, const std::vector<std::string>& arguments);
 /// Runs `catena` of this build.
 ProgramResult run_catena(const std::vector<std::string>& arguments);
+/// Runs `catena` and expects exit code 0.
+ProgramResult expect_run(const std::vector<std::string>& arguments);
 
 /// Columns of a CSV: numbers if they parse, otherwise texts.
 class Table {

@@ -41,12 +41,12 @@ int nodes_for(const std::vector<std::vector<double>>& points, double lo, double 
   return maximum;
 }
 
-class OsprayPeer : public peers::Peer {
+class OsprayPeer : public peers::Baseline {
  public:
   explicit OsprayPeer(const peers::Case& given) : given_(given), renderer_("scivis"), camera_("perspective") {
     const auto [minimum, maximum] = std::minmax_element(given.values.begin(), given.values.end());
     // the table ends at the last point and is constant beyond it
-    double lo = std::min(given.opacity.front()[0], given.colour.front()[0]), hi = std::max(given.opacity.back()[0], given.colour.back()[0]);
+    double lo = std::min(given.opacity.front()[0], given.color.front()[0]), hi = std::max(given.opacity.back()[0], given.color.back()[0]);
     const double scale = double(kScale) / (double(*maximum) - double(*minimum));
     values_ = given.values;
     for (float& v : values_) v = float((double(v) - double(*minimum)) * scale);
@@ -59,12 +59,12 @@ class OsprayPeer : public peers::Peer {
     volume.commit();
 
     std::vector<vec3f> colours;
-    const int colour_nodes = nodes_for(given.colour, lo, hi, 2, 1024), opacity_nodes = nodes_for(given.opacity, lo, hi, 256, 4096);
+    const int colour_nodes = nodes_for(given.color, lo, hi, 2, 1024), opacity_nodes = nodes_for(given.opacity, lo, hi, 256, 4096);
     for (int i = 0; i < colour_nodes; ++i) {
       const double value = std::lerp(lo, hi, double(i) / (colour_nodes - 1));
       std::size_t k = 1;
-      while (k + 1 < given.colour.size() && given.colour[k][0] <= value) ++k;
-      const auto &a = given.colour[k - 1], &b = given.colour[k];
+      while (k + 1 < given.color.size() && given.color[k][0] <= value) ++k;
+      const auto &a = given.color[k - 1], &b = given.color[k];
       const double f = std::clamp((value - a[0]) / (b[0] - a[0]), 0.0, 1.0);
       colours.emplace_back(float(std::lerp(a[1], b[1], f)), float(std::lerp(a[2], b[2], f)), float(std::lerp(a[3], b[3], f)));
     }
@@ -82,7 +82,7 @@ class OsprayPeer : public peers::Peer {
     ospray::cpp::VolumetricModel model(volume);
     model.setParam("transferFunction", transfer);
     model.setParam("densityScale", densest);
-    model.setParam("gradientShadingScale", given.shade ? 1.f : 0.f);
+    model.setParam("gradientShadingScale", given.is_shaded ? 1.f : 0.f);
     model.commit();
     ospray::cpp::Group group;
     group.setParam("volume", ospray::cpp::CopiedData(model));
@@ -119,15 +119,15 @@ class OsprayPeer : public peers::Peer {
   }
 
   Outcome draw(double azimuth_deg) override {
-    const Vec3 eye = given_.eye(azimuth_deg), ahead = given_.middle() - eye;
+    const Vec3 eye = given_.camera_position(azimuth_deg), ahead = given_.center() - eye;
     camera_.setParam("position", vec(eye));
     camera_.setParam("direction", vec(ahead));
     camera_.commit();
-    if (given_.shade || !committed_) {
+    if (given_.is_shaded || !committed_) {
       std::vector<ospray::cpp::Light> lights;
       lights.emplace_back("ambient");
       lights.back().setParam("intensity", 0.2f);
-      for (int k = 0; k < (given_.shade ? lights_ : 0); ++k) {
+      for (int k = 0; k < (given_.is_shaded ? lights_ : 0); ++k) {
         lights.emplace_back("distant");
         lights.back().setParam("direction", vec(k == 0 ? ahead : -ahead));
         lights.back().setParam("intensity", float(0.7 * std::numbers::pi));
@@ -141,7 +141,7 @@ class OsprayPeer : public peers::Peer {
     return Done{};
   }
 
-  Result<std::vector<std::uint8_t>> picture() override {
+  Result<std::vector<std::uint8_t>> read_image() override {
     const auto row = std::size_t(given_.width) * 4;
     std::vector<std::uint8_t> out(row * std::size_t(given_.height));
     auto* pixels = static_cast<float*>(frame_.map(OSP_FB_COLOR));
@@ -179,8 +179,8 @@ int main(int argc, char** argv) {
         device.handle(), [](void* to, OSPError, const char* text) { *static_cast<std::string*>(to) = text; }, &failure);
     device.commit();
     device.setCurrent();
-    code = peers::serve(argc, argv, [&](const peers::Case& given) -> Result<std::unique_ptr<peers::Peer>> {
-      std::unique_ptr<peers::Peer> peer = std::make_unique<OsprayPeer>(given);
+    code = peers::run_baseline(argc, argv, [&](const peers::Case& given) -> Result<std::unique_ptr<peers::Baseline>> {
+      std::unique_ptr<peers::Baseline> peer = std::make_unique<OsprayPeer>(given);
       if (!failure.empty()) return Error{"OSPRay: " + failure};
       return peer;
     });

@@ -72,7 +72,7 @@ Outcome make_context() {
   return Error{"no device makes a context of OpenGL 3.2"};
 }
 
-class VtkPeer : public peers::Peer {
+class VtkPeer : public peers::Baseline {
  public:
   explicit VtkPeer(const peers::Case& given) : given_(given) {
     values_->SetArray(const_cast<float*>(given.values.data()), vtkIdType(given.values.size()), 1);
@@ -80,13 +80,13 @@ class VtkPeer : public peers::Peer {
     image_->GetPointData()->SetScalars(values_);
     vtkNew<vtkColorTransferFunction> colour;
     vtkNew<vtkPiecewiseFunction> alpha;
-    for (const auto& p : given.colour) colour->AddRGBPoint(p[0], p[1], p[2], p[3]);
+    for (const auto& p : given.color) colour->AddRGBPoint(p[0], p[1], p[2], p[3]);
     for (const auto& p : given.opacity) alpha->AddPoint(p[0], p[1]);
     property_->SetColor(colour);
     property_->SetScalarOpacity(alpha);
     property_->SetInterpolationTypeToLinear();
     property_->SetScalarOpacityUnitDistance(given.unit);
-    property_->SetShade(given.shade);
+    property_->SetShade(given.is_shaded);
     property_->SetAmbient(0.2);
     property_->SetDiffuse(0.7);
     property_->SetSpecular(0.2);
@@ -131,7 +131,7 @@ class VtkPeer : public peers::Peer {
   Outcome draw(double azimuth_deg) override {
     vtkCamera* camera = renderer_->GetActiveCamera();
     const double longest = std::max({given_.dims[0], given_.dims[1], given_.dims[2]});
-    const Vec3 middle = given_.middle(), eye = given_.eye(azimuth_deg);
+    const Vec3 middle = given_.center(), eye = given_.camera_position(azimuth_deg);
     camera->SetViewAngle(given_.fovy_deg);
     camera->SetFocalPoint(middle.x, middle.y, middle.z);
     camera->SetPosition(eye.x, eye.y, eye.z);
@@ -143,7 +143,7 @@ class VtkPeer : public peers::Peer {
     return Done{};
   }
 
-  Result<std::vector<std::uint8_t>> picture() override {
+  Result<std::vector<std::uint8_t>> read_image() override {
     vtkNew<vtkUnsignedCharArray> pixels;
     window_->GetRGBACharPixelData(0, 0, given_.width - 1, given_.height - 1, 0, pixels);
     const std::size_t row = 4 * std::size_t(given_.width), height = std::size_t(given_.height);
@@ -172,8 +172,8 @@ class VtkPeer : public peers::Peer {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return peers::serve(argc, argv, [](const peers::Case& given) -> Result<std::unique_ptr<peers::Peer>> {
+  return peers::run_baseline(argc, argv, [](const peers::Case& given) -> Result<std::unique_ptr<peers::Baseline>> {
     CATENA_CHECK(make_context());
-    return std::unique_ptr<peers::Peer>(std::make_unique<VtkPeer>(given));
+    return std::unique_ptr<peers::Baseline>(std::make_unique<VtkPeer>(given));
   });
 }

@@ -5,49 +5,49 @@
 
 #include <filesystem>
 
-namespace catena::app {
-namespace add_file_test {
+#include "tests/support/results.h"
+
+namespace catena::app::add_file_test {
+
+using test::value_of;
+
+auto merged(const std::string& text, const std::string& path, const std::string& added, const std::string& added_path) {
+  return value_of(make_merge_edits(text, path, added, added_path));
+}
 
 TEST(AddFile, AddsAFieldAndItsVolumeUnderAnUnusedName) {
   const auto added =
-      make_merge_edits(R"({"fields": {"density": {"analytic": "sphere"}}, "volumes": [{"field": "density"}]})", "/a/s.json",
-                       R"({"fields": {"density": {"file": "x.vdb", "grid": "density"}}, "volumes": [{"field": "density", "shade": true}]})",
-                       "/a/data/x.vdb.json");
-  ASSERT_TRUE(added) << added.error().message;
-  ASSERT_EQ(added->edits.size(), 2u);
-  EXPECT_EQ(added->edits[0].pointer, "/fields/density_2");
-  EXPECT_EQ(*added->edits[0].value, R"({"file": "data/x.vdb", "grid": "density"})");
-  EXPECT_EQ(added->edits[1].pointer, "/volumes/-");
-  EXPECT_EQ(*added->edits[1].value, R"({"field": "density_2", "shade": true})");
-  EXPECT_EQ(added->renames, (std::vector<std::pair<std::string, std::string>>{{"density", "density_2"}}));
+      merged(R"({"fields": {"density": {"analytic": "sphere"}}, "volumes": [{"field": "density"}]})", "/a/s.json",
+             R"({"fields": {"density": {"file": "x.vdb", "grid": "density"}}, "volumes": [{"field": "density", "shade": true}]})",
+             "/a/data/x.vdb.json");
+  ASSERT_EQ(added.edits.size(), 2u);
+  EXPECT_EQ(added.edits[0].pointer, "/fields/density_2");
+  EXPECT_EQ(*added.edits[0].value, R"({"file": "data/x.vdb", "grid": "density"})");
+  EXPECT_EQ(added.edits[1].pointer, "/volumes/-");
+  EXPECT_EQ(*added.edits[1].value, R"({"field": "density_2", "shade": true})");
+  EXPECT_EQ(added.renames, (std::vector<std::pair<std::string, std::string>>{{"density", "density_2"}}));
 }
 
 TEST(AddFile, FilesInAnotherFolderHaveAbsolutePaths) {
-  const auto added =
-      make_merge_edits("{}", "/a/s.json", R"({"fields": {"v": {"file": "x.vdb"}}, "streamlines": [{"field": "v"}]})", "/b/x.vdb.json");
-  ASSERT_TRUE(added);
-  EXPECT_EQ(*added->edits[0].value, R"({"file": "/b/x.vdb"})");
-  EXPECT_EQ(added->edits[0].pointer, "/fields/v");
-  EXPECT_EQ(added->edits[1].pointer, "/streamlines/-");
+  const auto added = merged("{}", "/a/s.json", R"({"fields": {"v": {"file": "x.vdb"}}, "streamlines": [{"field": "v"}]})", "/b/x.vdb.json");
+  EXPECT_EQ(*added.edits[0].value, R"({"file": "/b/x.vdb"})");
+  EXPECT_EQ(added.edits[0].pointer, "/fields/v");
+  EXPECT_EQ(added.edits[1].pointer, "/streamlines/-");
 }
 
 TEST(AddFile, SceneNamesWithoutAFolderAreRelativeToTheCurrentFolder) {
   const char* added = R"({"fields": {"v": {"file": "x.vdb"}}})";
-  const auto beside = make_merge_edits("{}", "s.json", added, "x.vdb.json");
-  ASSERT_TRUE(beside);
-  EXPECT_EQ(*beside->edits[0].value, R"({"file": "x.vdb"})");
-  const auto below = make_merge_edits("{}", "s.json", added, (std::filesystem::current_path() / "data/x.vdb.json").string());
-  ASSERT_TRUE(below);
-  EXPECT_EQ(*below->edits[0].value, R"({"file": "data/x.vdb"})");
-  EXPECT_TRUE(make_merge_edits("{}", "sub/s.json", added, "x.vdb.json"));
+  const auto beside = merged("{}", "s.json", added, "x.vdb.json");
+  EXPECT_EQ(*beside.edits[0].value, R"({"file": "x.vdb"})");
+  const auto below = merged("{}", "s.json", added, (std::filesystem::current_path() / "data/x.vdb.json").string());
+  EXPECT_EQ(*below.edits[0].value, R"({"file": "data/x.vdb"})");
+  merged("{}", "sub/s.json", added, "x.vdb.json");
 }
 
 TEST(AddFile, MeshesWithANameInUseAreRenamed) {
-  const auto added = make_merge_edits(R"({"meshes": [{"name": "mesh", "file": "a.stl"}]})", "/a/s.json",
-                                      R"({"meshes": [{"name": "mesh", "file": "b.stl"}]})", "/a/b.stl.json");
-  ASSERT_TRUE(added);
-  EXPECT_EQ(*added->edits[0].value, R"({"name": "mesh_2", "file": "b.stl"})");
+  const auto added = merged(R"({"meshes": [{"name": "mesh", "file": "a.stl"}]})", "/a/s.json",
+                            R"({"meshes": [{"name": "mesh", "file": "b.stl"}]})", "/a/b.stl.json");
+  EXPECT_EQ(*added.edits[0].value, R"({"name": "mesh_2", "file": "b.stl"})");
 }
 
-}  // namespace add_file_test
-}  // namespace catena::app
+}  // namespace catena::app::add_file_test

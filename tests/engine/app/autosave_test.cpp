@@ -2,23 +2,19 @@
 // Autosave keeps unsaved edits when the window is killed, closed by a key or closed by its close button.
 #include "engine/app/viewer/scene/autosave.h"
 
-#include <gtest/gtest.h>
-
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
-#include <optional>
 
-#include "render/image/image.h"
-#include "tests/support/drive_window.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/environment_variable.h"
+#include "tests/engine/app/window_fixture.h"
+#include "tests/support/results.h"
 
-namespace catena::app {
-namespace autosave_test {
+namespace catena::app::autosave_test {
+
+using test::fails;
 
 namespace fs = std::filesystem;
 
@@ -35,27 +31,9 @@ std::vector<std::string> drafts_in(const std::string& folder) {
   return found;
 }
 
-/// Sets XDG_STATE_HOME for the lifetime of the object.
-class StateHome {
- public:
-  explicit StateHome(const std::string& path) {
-    if (const char* before = std::getenv("XDG_STATE_HOME")) before_ = before;
-    ::setenv("XDG_STATE_HOME", path.c_str(), 1);
-  }
-  ~StateHome() {
-    if (before_)
-      ::setenv("XDG_STATE_HOME", before_->c_str(), 1);
-    else
-      ::unsetenv("XDG_STATE_HOME");
-  }
-
- private:
-  std::optional<std::string> before_;
-};
-
 TEST(Autosave, ADataFilesDraftLiesInTheStateFolderUntilItsSceneIsSaved) {
   const test::TemporaryFolder data, other, home;
-  const StateHome state(home / "state");
+  const test::EnvironmentVariable state("XDG_STATE_HOME", home / "state");
   const std::string scene = data / "head.nii.json", unsaved = home / "state/catena/unsaved";
   test::write_file(data / "head.nii", "data");
   {
@@ -65,10 +43,9 @@ TEST(Autosave, ADataFilesDraftLiesInTheStateFolderUntilItsSceneIsSaved) {
     ASSERT_EQ(drafts_in(unsaved).size(), 1u);
   }
   EXPECT_FALSE(find_orphaned_autosave(other / "head.nii.json")) << "a file of that name elsewhere";
-  const auto left = find_orphaned_autosave(scene);
-  ASSERT_TRUE(left);
-  EXPECT_EQ(left->text, "one");
-  remove_orphaned_autosave(*left);
+  const OrphanedAutosave left = find_orphaned_autosave(scene).value();
+  EXPECT_EQ(left.text, "one");
+  remove_orphaned_autosave(left);
   EXPECT_TRUE(drafts_in(unsaved).empty());
   // A draft is written next to the scene when a scene file exists there.
   test::write_file(scene, "{}");
@@ -100,11 +77,10 @@ TEST(Autosave, IsWrittenAtomicallyAndFoundAfterItsProcessEnds) {
     other.remove();
     EXPECT_EQ(drafts_in(folder.path()), files);
   }
-  const auto left = find_orphaned_autosave(scene);
-  ASSERT_TRUE(left);
-  EXPECT_EQ(left->text, "two");
+  const OrphanedAutosave left = find_orphaned_autosave(scene).value();
+  EXPECT_EQ(left.text, "two");
   EXPECT_FALSE(find_orphaned_autosave(folder / "b.json"));
-  remove_orphaned_autosave(*left);
+  remove_orphaned_autosave(left);
   EXPECT_FALSE(find_orphaned_autosave(scene));
   EXPECT_TRUE(drafts_in(folder.path()).empty());
 }
@@ -120,25 +96,21 @@ TEST(Autosave, AKilledProcessLeavesItsLastText) {
     ::kill(::getpid(), SIGKILL);
   }
   ::waitpid(child, nullptr, 0);
-  const auto left = find_orphaned_autosave(scene);
-  ASSERT_TRUE(left);
-  EXPECT_EQ(left->text, std::string(9000, 'x'));
+  EXPECT_EQ(find_orphaned_autosave(scene).value().text, std::string(9000, 'x'));
 }
 
 TEST(Autosave, AnotherSceneReplacesTheDraftAndWriteErrorsAreReported) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "a.json", kScene);
   test::write_file(folder / "b.json", kScene);
-  const StateHome state(folder / "a.json/no_folder");
+  const test::EnvironmentVariable state("XDG_STATE_HOME", folder / "a.json/no_folder");
   Autosave draft;
   ASSERT_TRUE(draft.save_text(folder / "a.json", "a"));
   ASSERT_TRUE(draft.save_text(folder / "b.json", "b"));
   const auto files = drafts_in(folder.path());
   ASSERT_EQ(files.size(), 1u);
   EXPECT_NE(files[0].find("b.json.unsaved-"), std::string::npos);
-  const Outcome none = draft.save_text(folder / "none/c.json", "c");
-  ASSERT_FALSE(none);
-  EXPECT_NE(none.error().message.find("cannot write"), std::string::npos);
+  EXPECT_TRUE(fails(draft.save_text(folder / "none/c.json", "c"), "cannot write"));
 }
 
 TEST(Autosave, LinksPipesAndOtherNamesAreNotOffered) {
@@ -156,15 +128,18 @@ TEST(Autosave, LinksPipesAndOtherNamesAreNotOffered) {
   EXPECT_FALSE(find_orphaned_autosave(scene)) << "other names";
 }
 
-class ViewerAutosave : public testing::Test {
+class ViewerAutosave : public test::DrivenWindow {
  protected:
   void SetUp() override {
-    if (!test::can_drive_windows()) GTEST_SKIP() << "no Xvfb or no xdotool here";
+    DrivenWindow::SetUp();
     test::write_file(folder_ / "flow.json", kScene);
   }
-  std::string log() const { return test::read_file(folder_ / "log"); }
   bool logged(const std::string& text) const { return log().find(text) != std::string::npos; }
-  test::TemporaryFolder folder_;
+  /// Plays a script that opens its windows; none of the words may be in the log.
+  void expect_played(const std::string& script, const std::vector<std::string>& bad) {
+    EXPECT_EQ(test::drive_windows(folder_, script), 0) << log();
+    for (const std::string& word : bad) EXPECT_FALSE(logged(word)) << word << "\n" << log();
+  }
 };
 
 // An edit without panels: changes the view, saves the scene under another name, and undoes the change.
@@ -173,43 +148,38 @@ constexpr const char* kChange =
     "keys ctrl+z; titled 'copy.json [^ ]'\n";
 
 TEST_F(ViewerAutosave, IsOfferedAfterTheProcessWasKilled) {
-  const int code =
-      test::drive_windows(folder_, "view flow.json --size 900x600\n" + std::string(kChange) +
-                                       "until_ sh -c 'ls copy.json.unsaved-*' || echo 'never kept'\n"
-                                       "kill -9 $V; wait $V\n"
-                                       "cp copy.json saved.json\n"
-                                       // Later: nothing changes, and the draft is offered again.
-                                       "view copy.json --size 900x600\nsleep 2; keys Escape ctrl+q; wait $V || echo 'bad end'\n"
-                                       "cmp copy.json saved.json || echo changed\nls copy.json.unsaved-* || echo 'lost'\n"
-                                       // Restore, then save.
-                                       "view copy.json --size 900x600\nsleep 2; keys Return; titled 'copy.json [^ ]'\n"
-                                       "keys ctrl+s; titled 'copy.json  '; keys ctrl+q; wait $V || echo 'bad end'\n"
-                                       "ls copy.json.unsaved-* 2> /dev/null && echo 'still there'\n"
-                                       // No draft is offered after the save.
-                                       "view copy.json --size 900x600\nsleep 2; keys ctrl+q; wait $V\nexit $?\n");
-  EXPECT_EQ(code, 0) << log();
-  for (const char* bad : {"never", "lost", "changed", "bad end", "still there"}) EXPECT_FALSE(logged(bad)) << bad << "\n" << log();
+  expect_played("view flow.json --size 900x600\n" + std::string(kChange) +
+                    "until_ sh -c 'ls copy.json.unsaved-*' || echo 'never kept'\n"
+                    "kill -9 $V; wait $V\n"
+                    "cp copy.json saved.json\n"
+                    // Later: nothing changes, and the draft is offered again.
+                    "view copy.json --size 900x600\nsleep 2; keys Escape ctrl+q; wait $V || echo 'bad end'\n"
+                    "cmp copy.json saved.json || echo changed\nls copy.json.unsaved-* || echo 'lost'\n"
+                    // Restore, then save.
+                    "view copy.json --size 900x600\nsleep 2; keys Return; titled 'copy.json [^ ]'\n"
+                    "keys ctrl+s; titled 'copy.json  '; keys ctrl+q; wait $V || echo 'bad end'\n"
+                    "ls copy.json.unsaved-* 2> /dev/null && echo 'still there'\n"
+                    // No draft is offered after the save.
+                    "view copy.json --size 900x600\nsleep 2; keys ctrl+q; wait $V\nexit $?\n",
+                {"never", "lost", "changed", "bad end", "still there"});
   EXPECT_EQ(test::read_file(folder_ / "copy.json"), kScene) << "what was undone, restored and saved";
   EXPECT_NE(test::read_file(folder_ / "saved.json"), kScene);
 }
 
 TEST_F(ViewerAutosave, IsKeptAfterAnInterruptAndRemovedWhenDiscarded) {
-  const int code = test::drive_windows(
-      folder_, "view flow.json --size 900x600\n" + std::string(kChange) +
-                   "until_ sh -c 'ls copy.json.unsaved-*' || echo 'never kept'\n"
-                   "kill -TERM $V; wait $V\nls copy.json.unsaved-* || echo 'lost'\n"
-                   // The draft is discarded with the second button, to the right of Restore.
-                   "view copy.json --size 900x600\nsleep 2; keys Return; titled 'copy.json [^ ]'\n"
-                   "keys ctrl+q; sleep 0.3; keys Escape ctrl+z; titled 'copy.json  '; keys ctrl+q; wait $V || echo 'bad end'\n"
-                   "ls copy.json.unsaved-* 2> /dev/null && echo 'still there'\nexit 0\n");
-  EXPECT_EQ(code, 0) << log();
-  for (const char* bad : {"never", "lost", "bad end", "still there"}) EXPECT_FALSE(logged(bad)) << bad << "\n" << log();
+  expect_played("view flow.json --size 900x600\n" + std::string(kChange) +
+                    "until_ sh -c 'ls copy.json.unsaved-*' || echo 'never kept'\n"
+                    "kill -TERM $V; wait $V\nls copy.json.unsaved-* || echo 'lost'\n"
+                    // The draft is discarded with the second button, to the right of Restore.
+                    "view copy.json --size 900x600\nsleep 2; keys Return; titled 'copy.json [^ ]'\n"
+                    "keys ctrl+q; sleep 0.3; keys Escape ctrl+z; titled 'copy.json  '; keys ctrl+q; wait $V || echo 'bad end'\n"
+                    "ls copy.json.unsaved-* 2> /dev/null && echo 'still there'\nexit 0\n",
+                {"never", "lost", "bad end", "still there"});
 }
 
 // Saving must not silently replace what another program wrote to the file.
 TEST_F(ViewerAutosave, AFileChangedByAnotherProgramIsNotReplacedWithoutAsking) {
-  const int code = test::drive_windows(
-      folder_,
+  expect_played(
       "view flow.json --size 900x600\nkeys o\n"
       "sed 's/circle/saddle/' flow.json > theirs.json; cp theirs.json flow.json\n"
       "keys ctrl+s; sleep 0.5; keys Escape; sleep 0.3; cmp flow.json theirs.json || echo 'replaced'\n"
@@ -218,60 +188,48 @@ TEST_F(ViewerAutosave, AFileChangedByAnotherProgramIsNotReplacedWithoutAsking) {
       "cmp flow.json theirs.json || echo 'replaced'\n"
       // A scene file that was removed is not written again without asking.
       "titled 'mine.json'; rm mine.json; keys ctrl+s; sleep 0.5; ls mine.json 2> /dev/null && echo 'made again'\n"
-      "kill -TERM $V; wait $V; exit 0\n");
-  EXPECT_EQ(code, 0) << log();
-  for (const char* bad : {"never", "replaced", "made again"}) EXPECT_FALSE(logged(bad)) << bad << "\n" << log();
+      "kill -TERM $V; wait $V; exit 0\n",
+      {"never", "replaced", "made again"});
 }
 
 TEST_F(ViewerAutosave, QuitAsksDuringARecordingAndOnlyCtrlQQuits) {
-  ASSERT_EQ(test::drive_window(folder_, "flow.json --size 900x600 --record run.catlog",
-                               "titled 'recording'\n"
-                               "keys q Q Escape Escape Escape; kill -0 $V && echo 'after Q'\n"
-                               "keys ctrl+q; sleep 0.3; kill -0 $V && echo 'asked'\n"
-                               "keys Escape; sleep 0.3; titled 'recording'; kill -0 $V && echo 'stayed'\n"
-                               "keys ctrl+q; sleep 0.3; keys Return"),
-            0)
-      << log();
+  play("flow.json --size 900x600 --record run.catlog",
+       "titled 'recording'\n"
+       "keys q Q Escape Escape Escape; kill -0 $V && echo 'after Q'\n"
+       "keys ctrl+q; sleep 0.3; kill -0 $V && echo 'asked'\n"
+       "keys Escape; sleep 0.3; titled 'recording'; kill -0 $V && echo 'stayed'\n"
+       "keys ctrl+q; sleep 0.3; keys Return");
   for (const char* good : {"after Q", "asked", "stayed"}) EXPECT_TRUE(logged(good)) << good << "\n" << log();
-  EXPECT_FALSE(logged("never")) << log();
   EXPECT_TRUE(test::exists(folder_ / "run.catlog"));
 }
 
 // A recording must contain its last ticks when a signal ends the window.
 TEST_F(ViewerAutosave, ARecordingIsCompleteAfterSigterm) {
-  ASSERT_EQ(test::drive_windows(folder_,
-                                "view flow.json --size 900x600 --record run.catlog\ntitled 'recording'; sleep 0.5\n"
-                                "kill -TERM $V; wait $V; exit 0\n"),
-            0)
-      << log();
-  const auto run = test::run_catena({"info", folder_ / "run.catlog"});
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(run.err, "") << "it is whole";
-  EXPECT_EQ(test::run_catena({"replay", "--log", folder_ / "run.catlog"}).exit_code, 0);
+  expect_played(
+      "view flow.json --size 900x600 --record run.catlog\ntitled 'recording'; sleep 0.5\n"
+      "kill -TERM $V; wait $V; exit 0\n",
+      {});
+  EXPECT_EQ(test::run_ok({"info", folder_ / "run.catlog"}).err, "") << "it is whole";
+  test::run_ok({"replay", "--log", folder_ / "run.catlog"});
 }
 
 TEST_F(ViewerAutosave, EscapeClosesAMenuFirst) {
-  ASSERT_EQ(test::drive_window(folder_, "flow.json --size 900x600",
-                               "xdotool mousemove 600 300; sleep 0.3; keys shift+F12; written flow-001.png\n"
-                               "xdotool mousemove 20 8 click 1; sleep 0.4; xdotool mousemove 600 300; sleep 0.3\n"
-                               "keys shift+F12; written flow-002.png\n"
-                               "keys Escape; sleep 0.4; keys shift+F12; written flow-003.png\n"
-                               "keys Escape Escape; kill -0 $V && echo 'stayed'\nkeys ctrl+q"),
-            0)
-      << log();
+  play("flow.json --size 900x600",
+       "xdotool mousemove 600 300; sleep 0.3; keys shift+F12; written flow-001.png\n"
+       "xdotool mousemove 20 8 click 1; sleep 0.4; xdotool mousemove 600 300; sleep 0.3\n"
+       "keys shift+F12; written flow-002.png\n"
+       "keys Escape; sleep 0.4; keys shift+F12; written flow-003.png\n"
+       "keys Escape Escape; kill -0 $V && echo 'stayed'\nkeys ctrl+q");
   EXPECT_TRUE(logged("stayed")) << log();
-  const auto closed = render::read_png(folder_ / "flow-001.png"), open = render::read_png(folder_ / "flow-002.png"),
-             after = render::read_png(folder_ / "flow-003.png");
-  ASSERT_TRUE(closed && open && after) << log();
+  const render::Image8 closed = picture("flow-001.png"), open = picture("flow-002.png"), after = picture("flow-003.png");
   const auto differing = [&](const render::Image8& a) {
     int count = 0;
     for (std::uint32_t y = 24; y < 140; ++y)
-      for (std::uint32_t x = 8; x < 150; ++x) count += std::abs(a.pixel(x, y)[0] - closed->pixel(x, y)[0]) > 20;
+      for (std::uint32_t x = 8; x < 150; ++x) count += std::abs(a.pixel(x, y)[0] - closed.pixel(x, y)[0]) > 20;
     return count;
   };
-  EXPECT_GT(differing(*open), 1000) << "the menu covers the panel";
-  EXPECT_LT(differing(*after), 200);
+  EXPECT_GT(differing(open), 1000) << "the menu covers the panel";
+  EXPECT_LT(differing(after), 200);
 }
 
-}  // namespace autosave_test
-}  // namespace catena::app
+}  // namespace catena::app::autosave_test

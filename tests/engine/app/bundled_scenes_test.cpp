@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// The scenes of assets/scenes work in a fresh clone: each is drawn with the folder `assets` alone, and refers only to files in that folder
 /// and to files of packages that `./run` installs.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
 #include <map>
-#include <sstream>
 
 #include "engine/base/json.h"
-#include "render/image/image.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/program_in_folder.h"
 
-namespace bundled_scenes_test {
+namespace catena::bundled_scenes_test {
 
-using namespace catena;
 namespace fs = std::filesystem;
 
 /// The names of the scenes that need no measured data, without folder and extension.
@@ -53,7 +45,7 @@ double covered(const render::Image8& picture) {
   return 1 - static_cast<double>(max_count) / (picture.width * picture.height);
 }
 
-class BundledScenes : public testing::TestWithParam<std::string> {};
+class BundledScenes : public test::ProgramInFolder, public testing::WithParamInterface<std::string> {};
 
 INSTANTIATE_TEST_SUITE_P(Assets, BundledScenes, testing::ValuesIn(scene_names()), [](const auto& parameter) {
   std::string name = parameter.param;
@@ -62,9 +54,8 @@ INSTANTIATE_TEST_SUITE_P(Assets, BundledScenes, testing::ValuesIn(scene_names())
 });
 
 TEST_P(BundledScenes, IsDrawnFromTheAssetsFolderAlone) {
-  const test::TemporaryFolder clone;
-  fs::copy(test::source_dir() + "/assets", clone / "assets", fs::copy_options::recursive);
-  const std::string scene = clone / ("assets/scenes/" + GetParam() + ".json"), assets = clone / "assets/";
+  fs::copy(test::source_dir() + "/assets", folder_ / "assets", fs::copy_options::recursive);
+  const std::string assets = folder_ / "assets/", scene = assets + "scenes/" + GetParam() + ".json";
 
   const auto root = json::read(scene);
   ASSERT_TRUE(root) << root.error().message;
@@ -73,7 +64,7 @@ TEST_P(BundledScenes, IsDrawnFromTheAssetsFolderAlone) {
   const std::vector<std::string> installed = packages();
   for (const auto& [node, file] : files) {
     if (!fs::path(file).is_absolute()) {
-      const std::string at = fs::path(clone / "assets/scenes/" + file).lexically_normal().string();
+      const std::string at = fs::path(assets + "scenes/" + file).lexically_normal().string();
       EXPECT_TRUE(at.starts_with(assets) && fs::exists(at)) << file << " is not among the assets";
       continue;
     }
@@ -84,21 +75,15 @@ TEST_P(BundledScenes, IsDrawnFromTheAssetsFolderAlone) {
   }
 
   const std::string probe = assets + "probes/" + GetParam() + ".csv";
-  std::vector<std::string> words{"render", scene, "-o", clone / "o.png", "--size", "96x72", "--quality", "draft"};
-  if (fs::exists(probe)) words.insert(words.end(), {"--probe", probe});
-  const auto run = test::run_catena(words);
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  const auto picture = render::read_png(clone / "o.png");
-  ASSERT_TRUE(picture) << picture.error().message;
-  EXPECT_GT(covered(*picture), 0.1);
+  succeed("render -o {o.png} --size 96x72 --quality draft " + scene + (fs::exists(probe) ? " --probe " + probe : ""));
+  EXPECT_GT(covered(picture("o.png")), 0.1);
 }
 
-TEST(MissingPackages, AMissingFileErrorNamesItsPackage) {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "s.json", R"({"fields": {"mr": {"file": "/nowhere/brain.nii.gz", "package": "mricron-data"}}})");
-  const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "o.png"});
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.err.find("the Debian package \"mricron-data\" contains it"), std::string::npos) << run.err;
+using MissingPackages = test::ProgramInFolder;
+
+TEST_F(MissingPackages, AMissingFileErrorNamesItsPackage) {
+  write("s.json", R"({"fields": {"mr": {"file": "/nowhere/brain.nii.gz", "package": "mricron-data"}}})");
+  expect_refused("render {s.json} -o {o.png}", {"the Debian package \"mricron-data\" contains it"});
 }
 
-}  // namespace bundled_scenes_test
+}  // namespace catena::bundled_scenes_test

@@ -6,14 +6,12 @@
 #include <cmath>
 #include <numbers>
 
-namespace catena::app {
-namespace camera_motion_test {
+namespace catena::app::camera_motion_test {
 
 render::View view() { return {{0.0, -10.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 30, false, 4}; }
 
 TEST(Fly, ManySmallStepsCoverTheDistanceOfOneLargeStep) {
-  FlyKeys keys;
-  keys.forward = keys.right = true;
+  const FlyKeys keys{.forward = true, .right = true};
   render::View one = view(), many = view();
   Flight f1, f2;
   fly(one, f1, keys, 8, 1, 0.5);
@@ -27,9 +25,7 @@ TEST(Fly, ManySmallStepsCoverTheDistanceOfOneLargeStep) {
 
 TEST(Fly, TheSpeedScalesWithTheSceneAndFastIsFourTimesAsFast) {
   for (const bool fast : {false, true}) {
-    FlyKeys keys;
-    keys.forward = true;
-    keys.fast = fast;
+    const FlyKeys keys{.forward = true, .fast = fast};
     render::View v = view();
     Flight flight;
     fly(v, flight, keys, 8, 1, 1);  // reaches its steady speed
@@ -40,11 +36,9 @@ TEST(Fly, TheSpeedScalesWithTheSceneAndFastIsFourTimesAsFast) {
 }
 
 TEST(Fly, TheCameraGlidesToRestWhenTheKeysAreReleased) {
-  FlyKeys keys;
-  keys.up = true;
   render::View v = view();
   Flight flight;
-  fly(v, flight, keys, 8, 1, 0.3);
+  fly(v, flight, {.up = true}, 8, 1, 0.3);
   EXPECT_GT(v.position.z, 0);
   EXPECT_FALSE(flight.is_at_rest(8));
   fly(v, flight, {}, 8, 1, 2);
@@ -57,10 +51,8 @@ TEST(Fly, TheCameraGlidesToRestWhenTheKeysAreReleased) {
 TEST(Fly, AnOrthographicCameraZoomsInstead) {
   render::View v = view();
   v.orthographic = true;
-  FlyKeys keys;
-  keys.forward = true;
   Flight flight;
-  fly(v, flight, keys, 8, 1, 0.5);
+  fly(v, flight, {.forward = true}, 8, 1, 0.5);
   EXPECT_LT(v.height, 4);
   EXPECT_EQ(v.position, view().position);
 }
@@ -88,5 +80,4 @@ TEST(Turntable, CompletesATurnInItsPeriod) {
   EXPECT_NEAR(norm(v.position - view().position), 0, 1e-9);
 }
 
-}  // namespace camera_motion_test
-}  // namespace catena::app
+}  // namespace catena::app::camera_motion_test

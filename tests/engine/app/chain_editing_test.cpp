@@ -13,10 +13,13 @@
 #include "engine/base/json_edit.h"
 #include "haptics/build/build_program.h"
 #include "tests/engine/app/open_scene_model.h"
+#include "tests/support/results.h"
 #include "tests/support/support.h"
 
-namespace catena::app {
-namespace chain_editing_test {
+namespace catena::app::chain_editing_test {
+
+using test::fails;
+using test::value_of;
 
 constexpr const char* kScene = R"({
   // the flow
@@ -26,16 +29,39 @@ constexpr const char* kScene = R"({
   "isosurfaces": [{"field": "ball", "level": 1}]
 })";
 
+constexpr const char* kFields = R"({"fields": {"flow": {"analytic": "circle"}, "ball": {"analytic": "sphere"}}})";
+
 struct Fixture {
   explicit Fixture(const std::string& text = kScene) { test::open_scene(folder, text, host); }
+  std::vector<std::string> names() const {
+    std::vector<std::string> out;
+    for (const ChainRow& row : make_chain_rows(host->scene(), {})) out.push_back(row.name);
+    return out;
+  }
+  ChainRow row() const { return make_chain_rows(host->scene(), {})[0]; }
+  /// Adds a link of the type at the probe, as the panel does; returns its text.
+  std::string add_link(const std::string& type, const Vec3& probe) {
+    const std::string link = value_of(make_link_json(host->scene(), type, probe, 4));
+    const Outcome added = host->set("/chain/-", link, "add");
+    EXPECT_TRUE(added) << type << ": " << link << ": " << added.error().message;
+    return link;
+  }
+  void add_validator() {
+    host->set_validator([](scene::Scene& scene) -> Outcome {
+      CATENA_CHECK(haptics::build_program(scene));
+      return Done{};
+    });
+  }
   test::TemporaryFolder folder;
   std::optional<SceneModel> host;
 };
 
-std::vector<std::string> names(const scene::Scene& scene) {
-  std::vector<std::string> out;
-  for (const ChainRow& row : make_chain_rows(scene, {})) out.push_back(row.name);
-  return out;
+/// The types whose links need no file.
+std::vector<std::string> types_without_files() {
+  std::vector<std::string> types;
+  for (const std::string& type : link_types())
+    if (type != "mesh" && type != "curves" && type != "points") types.push_back(type);
+  return types;
 }
 
 TEST(ChainEdit, RowsAreTheChainItemsWithTheirProgramLinks) {
@@ -50,47 +76,30 @@ TEST(ChainEdit, RowsAreTheChainItemsWithTheirProgramLinks) {
 }
 
 TEST(ChainEdit, ANewLinkOfEveryTypeBuildsAProgram) {
-  for (const std::string& type : link_types()) {
-    Fixture f(R"({"fields": {"flow": {"analytic": "circle"}, "ball": {"analytic": "sphere"}}})");
-    const auto link = make_link_json(f.host->scene(), type, Vec3(0.5, 0.25, 0.1), 4);
-    if (type == "mesh") {
-      ASSERT_FALSE(link);
-      EXPECT_EQ(link.error().message, "a mesh needs a mesh, which the scene does not have");
-      continue;
-    }
-    if (type == "curves" || type == "points") {
-      ASSERT_FALSE(link);
-      EXPECT_EQ(link.error().message, type + " cannot be felt: the scene has none");
-      continue;
-    }
-    ASSERT_TRUE(link) << type << link.error().message;
-    // The second link of a type gets a unique name.
-    const Outcome added = f.host->set("/chain/-", *link, "add");
-    ASSERT_TRUE(added) << type << ": " << *link << ": " << added.error().message;
-    const auto second = make_link_json(f.host->scene(), type, Vec3(0.5, 0.25, 0.1), 4);
-    ASSERT_TRUE(second && f.host->set("/chain/-", *second, "add"));
+  for (const std::string& type : types_without_files()) {
+    Fixture f(kFields);
+    const std::string link = f.add_link(type, Vec3(0.5, 0.25, 0.1));
+    f.add_link(type, Vec3(0.5, 0.25, 0.1));  // the second link of a type gets a unique name
     const auto program = haptics::build_program(f.host->scene());
-    ASSERT_TRUE(program) << type << ": " << *link << ": " << program.error().message;
-    EXPECT_EQ(names(f.host->scene()), (std::vector<std::string>{type, type + "_2"}));
+    ASSERT_TRUE(program) << type << ": " << link << ": " << program.error().message;
+    EXPECT_EQ(f.names(), (std::vector<std::string>{type, type + "_2"}));
   }
-  Fixture bare(R"({"fields": {"ball": {"analytic": "sphere"}}})");
-  const auto link = make_link_json(bare.host->scene(), "streamline", Vec3(0.0), 4);
-  ASSERT_FALSE(link);
-  EXPECT_EQ(link.error().message, "a streamline needs a vector field, which the scene does not have");
+  Fixture f(kFields), bare(R"({"fields": {"ball": {"analytic": "sphere"}}})");
+  const auto refused = [](Fixture& in, const char* type) { return make_link_json(in.host->scene(), type, Vec3(0.0), 4).error().message; };
+  EXPECT_EQ(refused(f, "mesh"), "a mesh needs a mesh, which the scene does not have");
+  EXPECT_EQ(refused(f, "curves"), "curves cannot be felt: the scene has none");
+  EXPECT_EQ(refused(f, "points"), "points cannot be felt: the scene has none");
+  EXPECT_EQ(refused(bare, "streamline"), "a streamline needs a vector field, which the scene does not have");
 }
 
 TEST(ChainEdit, AddedKeysHaveValidValues) {
-  for (const std::string& type : link_types()) {
-    if (type == "mesh" || type == "curves" || type == "points") continue;  // these need a file
-    Fixture f(R"({"fields": {"flow": {"analytic": "circle"}, "ball": {"analytic": "sphere"}}})");
+  for (const std::string& type : types_without_files()) {
+    Fixture f(kFields);
     const Vec3 probe(0.5, 0.25, 0.1);
-    ASSERT_TRUE(f.host->set("/chain/-", *make_link_json(f.host->scene(), type, probe, 4), "add"));
-    f.host->set_validator([](scene::Scene& scene) -> Outcome {
-      CATENA_CHECK(haptics::build_program(scene));
-      return Done{};
-    });
+    f.add_link(type, probe);
+    f.add_validator();
     for (const schema::Key& key : link_type_keys(type)) {
-      const ChainRow row = make_chain_rows(f.host->scene(), {})[0];
+      const ChainRow row = f.row();
       // Excludes keys that contradict each other.
       if (row.node.find(key.name) != nullptr || key.name == "coefficient" || key.name == "method") continue;
       const auto edits = make_add_key_edits(f.host->scene(), row, key, probe, 4);
@@ -117,17 +126,16 @@ std::pair<std::string, std::string> surface_of(const json::Node& link) {
 
 TEST(ChainEdit, ANewLinkLiesOnTheNearestDrawnSurface) {
   int with_level = 0;
-  for (const std::string& type : link_types()) {
-    if (type == "mesh" || type == "curves" || type == "points") continue;  // these need a file
+  for (const std::string& type : types_without_files()) {
     Fixture f(kDrawn);
     const Vec3 probe(1.1, 0, 0);  // |x| = 1.1: nearer to 1.23 than to 0.7
-    ASSERT_TRUE(f.host->set("/chain/-", *make_link_json(f.host->scene(), type, probe, 4), "add"));
-    ChainRow row = make_chain_rows(f.host->scene(), {})[0];
+    f.add_link(type, probe);
+    ChainRow row = f.row();
     // Adds the optional key "surface".
     for (const schema::Key& key : link_type_keys(type))
       if (key.name == "surface" && row.node.find("surface") == nullptr) {
         ASSERT_TRUE(f.host->apply(make_add_key_edits(f.host->scene(), row, key, probe, 4), "add")) << type;
-        row = make_chain_rows(f.host->scene(), {})[0];
+        row = f.row();
       }
     const auto [field, level] = surface_of(row.node);
     if (level.empty()) continue;
@@ -140,9 +148,7 @@ TEST(ChainEdit, ANewLinkLiesOnTheNearestDrawnSurface) {
         const Outcome done = f.host->apply(make_change_field_edits(f.host->scene(), row, key, "other", probe), "field");
         ASSERT_TRUE(done) << type << ": " << done.error().message;
       }
-    EXPECT_EQ(surface_of(make_chain_rows(f.host->scene(), {})[0].node),
-              (std::pair<std::string, std::string>("other", R"({"widget": "iso"})")))
-        << type;
+    EXPECT_EQ(surface_of(f.row().node), (std::pair<std::string, std::string>("other", R"({"widget": "iso"})"))) << type;
     const auto program = haptics::build_program(f.host->scene());
     EXPECT_TRUE(program) << type << ": " << program.error().message;
   }
@@ -174,7 +180,7 @@ TEST(ChainEdit, SwappingNeighboursIsOneUndoStepAndKeepsTheOtherText) {
   const std::string before = f.host->document().text();
   const auto rows = make_chain_rows(f.host->scene(), {});
   ASSERT_TRUE(f.host->apply(make_swap_edits(rows[0], rows[1]), "move line"));
-  EXPECT_EQ(names(f.host->scene()), (std::vector<std::string>{"skin", "line"}));
+  EXPECT_EQ(f.names(), (std::vector<std::string>{"skin", "line"}));
   EXPECT_NE(f.host->document().text().find("// the flow"), std::string::npos);
   ASSERT_TRUE(f.host->undo());
   EXPECT_EQ(f.host->document().text(), before);
@@ -184,37 +190,29 @@ TEST(ChainEdit, SwappingNeighboursIsOneUndoStepAndKeepsTheOtherText) {
 TEST(ChainEdit, AnEditThatBuildsNoProgramChangesNothing) {
   Fixture f;
   ASSERT_TRUE(haptics::build_program(f.host->scene()));
-  f.host->set_validator([](scene::Scene& scene) -> Outcome {
-    CATENA_CHECK(haptics::build_program(scene));
-    return Done{};
-  });
+  f.add_validator();
   const auto text = f.host->document().text();
-  const auto loaded = f.host->scene().entities.get<scene::FieldSource>(scene::find_field(f.host->scene(), "ball")).loaded.get();
-  ASSERT_NE(loaded, nullptr);
-  const Outcome bad = f.host->set("/chain/0/release", "-1", "release");
-  ASSERT_FALSE(bad);
-  EXPECT_NE(bad.error().message.find("release"), std::string::npos) << bad.error().message;
+  const auto loaded = [&] {
+    return f.host->scene().entities.get<scene::FieldSource>(scene::find_field(f.host->scene(), "ball")).loaded.get();
+  };
+  const auto before = loaded();
+  ASSERT_NE(before, nullptr);
+  EXPECT_TRUE(fails(f.host->set("/chain/0/release", "-1", "release"), "release"));
   EXPECT_EQ(f.host->document().text(), text);
   EXPECT_FALSE(f.host->document().can_undo());
   EXPECT_FALSE(f.host->take_changed());
-  EXPECT_EQ(make_chain_rows(f.host->scene(), {})[0].node.find("release"), nullptr);
-  EXPECT_EQ(f.host->scene().entities.get<scene::FieldSource>(scene::find_field(f.host->scene(), "ball")).loaded.get(), loaded)
-      << "what was loaded is still there";
+  EXPECT_EQ(f.row().node.find("release"), nullptr);
+  EXPECT_EQ(loaded(), before) << "what was loaded is still there";
   EXPECT_TRUE(f.host->set("/chain/0/release", "0.5", "release"));
   EXPECT_TRUE(f.host->take_changed());
 }
 
 TEST(NewWidget, EveryTypeIsValidAndHasAUniqueName) {
   Fixture f;
-  Bounds bounds;
-  bounds.extend(Vec3(-1.0));
-  bounds.extend(Vec3(1.0));
   for (const std::string& type : list_widget_types())
     for (int n = 0; n < (type == "seed" ? 2 : 1); ++n) {
-      const auto text = make_widget_json(f.host->scene(), type, bounds);
-      ASSERT_TRUE(text) << type;
-      const Outcome done = f.host->set("/widgets/-", *text, "add");
-      ASSERT_TRUE(done) << *text << ": " << done.error().message;
+      const std::string text = value_of(make_widget_json(f.host->scene(), type, test::cube_bounds()));
+      value_of(f.host->set("/widgets/-", text, "add"));
     }
   int count = 0;
   f.host->scene().entities.each<scene::Widget>([&](scene::Entity, const scene::Widget&) { ++count; });
@@ -223,5 +221,4 @@ TEST(NewWidget, EveryTypeIsValidAndHasAUniqueName) {
   EXPECT_TRUE(scene::find_widget(f.host->scene(), "cut"));
 }
 
-}  // namespace chain_editing_test
-}  // namespace catena::app
+}  // namespace catena::app::chain_editing_test

@@ -4,11 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <utility>
+
 #include "engine/app/viewer/xr/world_grab.h"
 
-namespace comfort_test {
+namespace catena::comfort_test {
 
-using namespace catena;
 using namespace catena::xr_interaction;
 
 TEST(SnapTurn, APushOfTheStickIsOneStep) {
@@ -36,39 +38,36 @@ TEST(Vignette, RisesWhileTheWorldMovesAndFallsAtRest) {
   Placement still, now;
   const Vec3 head(0, 1.7, 0);
   const double dt = 0.01;
-  EXPECT_EQ(vignette.step(still, still, head, dt), 0);
   double last = 0;
-  for (int k = 0; k < 10; ++k) {
-    const Placement before = now;
-    now.world_origin.x -= 0.02;  // 2 m/s
-    const double strength = vignette.step(before, now, head, dt);
-    EXPECT_NEAR(strength, last + 0.1, 1e-12);
-    last = strength;
+  // Moves the world `steps` times; each strength is passed on.
+  const auto move = [&](int steps, const std::function<Placement(Placement)>& moved) {
+    for (int k = 0; k < steps; ++k) {
+      const Placement before = std::exchange(now, moved(now));
+      last = vignette.step(before, now, head, dt);
+    }
+  };
+  const auto shifted = [](const Vec3& by) {
+    return [by](Placement p) {
+      p.world_origin += by;
+      return p;
+    };
+  };
+  EXPECT_EQ(vignette.step(still, still, head, 0.01), 0);
+  for (int k = 1; k <= 10; ++k) {
+    move(1, shifted({-0.02, 0, 0}));  // 2 m/s
+    EXPECT_NEAR(last, 0.1 * k, 1e-12);
   }
-  EXPECT_NEAR(last, 1, 1e-12);
-  for (int k = 0; k < 40; ++k) last = vignette.step(now, now, head, dt);
+  move(40, shifted(Vec3(0.0)));
   EXPECT_NEAR(last, 0, 1e-12);
 
   // Half the reference rotation speed gives half the strength; scaling counts away from its fixed point; slow drift does not count.
-  for (int k = 0; k < 100; ++k) {
-    const Placement before = now;
-    now = rotate_about(now, head, 0.005);
-    last = vignette.step(before, now, head, dt);
-  }
+  move(100, [&](const Placement& p) { return rotate_about(p, head, 0.005); });
   EXPECT_NEAR(last, 0.5, 1e-9);
-  for (int k = 0; k < 100; ++k) {
-    const Placement before = now;
-    now = move_world(now, head, kIdentityRotation, std::exp(0.0025), head);
-    last = vignette.step(before, now, head, dt);
-  }
+  move(100, [&](const Placement& p) { return move_world(p, head, kIdentityRotation, std::exp(0.0025), head); });
   EXPECT_NEAR(last, 0.25, 1e-9);
-  for (int k = 0; k < 100; ++k) {
-    const Placement before = now;
-    now.world_origin.y -= 0.0005 / now.meters_per_unit;
-    last = vignette.step(before, now, head, dt);
-  }
+  move(100, shifted({0, -0.0005 / now.meters_per_unit, 0}));
   EXPECT_NEAR(last, 0, 1e-12);
   EXPECT_EQ(vignette.step(now, still, head, 0), last) << "no time, no change";
 }
 
-}  // namespace comfort_test
+}  // namespace catena::comfort_test

@@ -6,10 +6,11 @@
 
 #include <set>
 
-namespace catena::app {
-namespace commands_test {
+namespace catena::app::commands_test {
 
 constexpr int kEscape = 256, kTab = 258, kLeft = 263, kHome = 268, kF1 = 290, kF2 = 291, kF11 = 300, kF12 = 301;
+
+enum Modifiers { kPlain = 0, kControl = 1, kShift = 2, kBoth = 3 };
 
 std::optional<Action> asked(int key, bool control = false, bool shift = false, bool fly = false) {
   KeyEvent event;
@@ -21,53 +22,47 @@ std::optional<Action> asked(int key, bool control = false, bool shift = false, b
 }
 
 TEST(Commands, EachKeystrokeHasOneAction) {
-  const struct {
-    int key;
-    bool control, shift;
-    std::optional<Action> action;
-  } kStrokes[] = {
-      {'O', true, false, Action::open},
-      {'O', true, true, Action::open},
-      {'O', false, false, Action::toggle_projection},
-      {'O', false, true, Action::toggle_projection},
-      {'S', true, false, Action::save},
-      {'S', true, true, Action::save_as},
-      {'S', false, false, {}},
-      {'Q', true, false, Action::quit},
-      {'Q', false, false, {}},
-      {'Z', true, false, Action::undo},
-      {'Z', true, true, Action::redo},
-      {'Z', false, false, {}},
-      {'Y', true, false, Action::redo},
-      {'Y', true, true, Action::redo},
-      {'1', false, false, Action::view_along_plus_x},
-      {'2', false, false, Action::view_along_plus_y},
-      {'3', false, true, Action::view_along_minus_z},
-      {'1', true, false, {}},
-      {'A', false, false, Action::fit_view},
-      {kHome, false, false, Action::fit_view},
-      {'A', true, false, {}},
-      {'R', false, true, Action::reset_view},
-      {'T', false, false, Action::toggle_turntable},
-      {'T', true, false, {}},
-      {'V', false, false, Action::toggle_fly},
-      {'H', false, false, Action::toggle_probe_mode},
-      {'F', false, false, Action::toggle_forces},
-      {'P', false, false, Action::toggle_band_animation},
-      {kF1, false, false, Action::toggle_help},
-      {kF1, true, false, {}},
-      {kF2, false, false, Action::next_stereo_mode},
-      {kEscape, false, false, Action::dismiss},
-      {kTab, true, false, Action::toggle_panels},
-      {kTab, false, false, Action::toggle_panels},
-      {kF11, true, true, Action::toggle_fullscreen},
-      {kF12, false, false, Action::save_image},
-      {kF12, true, true, Action::save_window_image},
-      {'B', false, false, {}},
-      {'?', false, false, {}},
+  using enum Action;
+  using Strokes = std::vector<std::pair<int, Modifiers>>;
+  const std::pair<Action, Strokes> kActions[] = {{open, {{'O', kControl}, {'O', kBoth}}},
+                                                 {toggle_projection, {{'O', kPlain}, {'O', kShift}}},
+                                                 {save, {{'S', kControl}}},
+                                                 {save_as, {{'S', kBoth}}},
+                                                 {quit, {{'Q', kControl}}},
+                                                 {undo, {{'Z', kControl}}},
+                                                 {redo, {{'Z', kBoth}, {'Y', kControl}, {'Y', kBoth}}},
+                                                 {view_along_plus_x, {{'1', kPlain}}},
+                                                 {view_along_plus_y, {{'2', kPlain}}},
+                                                 {view_along_minus_z, {{'3', kShift}}},
+                                                 {fit_view, {{'A', kPlain}, {kHome, kPlain}}},
+                                                 {reset_view, {{'R', kShift}}},
+                                                 {toggle_turntable, {{'T', kPlain}}},
+                                                 {toggle_fly, {{'V', kPlain}}},
+                                                 {toggle_probe_mode, {{'H', kPlain}}},
+                                                 {toggle_forces, {{'F', kPlain}}},
+                                                 {toggle_band_animation, {{'P', kPlain}}},
+                                                 {toggle_help, {{kF1, kPlain}}},
+                                                 {next_stereo_mode, {{kF2, kPlain}}},
+                                                 {dismiss, {{kEscape, kPlain}}},
+                                                 {toggle_panels, {{kTab, kControl}, {kTab, kPlain}}},
+                                                 {toggle_fullscreen, {{kF11, kBoth}}},
+                                                 {save_image, {{kF12, kPlain}}},
+                                                 {save_window_image, {{kF12, kBoth}}}};
+  const auto found = [](const std::pair<int, Modifiers>& stroke) {
+    return asked(stroke.first, (stroke.second & kControl) != 0, (stroke.second & kShift) != 0);
   };
-  for (const auto& stroke : kStrokes)
-    EXPECT_TRUE(asked(stroke.key, stroke.control, stroke.shift) == stroke.action) << stroke.key << stroke.control << stroke.shift;
+  for (const auto& [action, strokes] : kActions)
+    for (const auto& stroke : strokes) EXPECT_TRUE(found(stroke) == action) << stroke.first << " " << stroke.second;
+  for (const auto& stroke : Strokes({{'S', kPlain},
+                                     {'Q', kPlain},
+                                     {'Z', kPlain},
+                                     {'1', kControl},
+                                     {'A', kControl},
+                                     {'T', kControl},
+                                     {kF1, kControl},
+                                     {'B', kPlain},
+                                     {'?', kPlain}}))
+    EXPECT_FALSE(found(stroke)) << stroke.first << " " << stroke.second;
 }
 
 TEST(Commands, OnlyKeyPressesAndTheQuestionMarkHaveActions) {
@@ -144,5 +139,4 @@ Ctrl+Q               quit
 )keys");
 }
 
-}  // namespace commands_test
-}  // namespace catena::app
+}  // namespace catena::app::commands_test

@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace catena::app {
-namespace contact_summary_test {
+namespace catena::app::contact_summary_test {
 
 TEST(ContactSummary, NamesThePressedLabel) {
   haptics::HapticProgram program;
@@ -29,5 +28,4 @@ TEST(ContactSummary, NamesThePressedLabel) {
   EXPECT_NE(summary.link_lines(program).find("pulled up to 3 mm away from Precentral_L"), std::string::npos);
 }
 
-}  // namespace contact_summary_test
-}  // namespace catena::app
+}  // namespace catena::app::contact_summary_test

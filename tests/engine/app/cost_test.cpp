@@ -1,24 +1,17 @@
 // SPDX-License-Identifier: MIT
 /// `catena info --cost`: the expected cost of a scene, and the measured cost with --measure. Times are left to benchmarks.
-#include <gtest/gtest.h>
-
 #include "engine/base/json.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/program_in_folder.h"
 
-namespace catena {
-namespace cost_test {
+namespace catena::cost_test {
 
-class InfoCost : public ::testing::Test {
+class InfoCost : public test::ProgramInFolder {
  protected:
-  std::vector<json::Node> rows(const std::string& scene, bool measure) {
-    test::write_file(folder_ / "s.json", scene);
-    std::vector<std::string> arguments{"info", folder_ / "s.json", "--cost", "--json"};
-    if (measure) arguments.push_back("--measure");
-    const test::ProgramResult run = test::run_catena(arguments);
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    auto node = json::parse(run.out, "out");
-    EXPECT_TRUE(node) << run.out;
+  std::vector<json::Node> rows(const std::string& scene, const std::string& more = "") {
+    write("s.json", scene);
+    const test::ProgramResult done = succeed("info {s.json} --cost --json " + more);
+    auto node = json::parse(done.out, "out");
+    EXPECT_TRUE(node) << done.out;
     return node ? node->find("rows")->items : std::vector<json::Node>{};
   }
   static const json::Node* find(const std::vector<json::Node>& rows, const std::string& part, const std::string& name) {
@@ -30,7 +23,6 @@ class InfoCost : public ::testing::Test {
     const json::Node* value = row != nullptr ? row->find(key) : nullptr;
     return value != nullptr && value->kind == json::Kind::number ? value->number : -1;
   }
-  test::TemporaryFolder folder_;
 };
 
 const char* kScene = R"({
@@ -41,7 +33,7 @@ const char* kScene = R"({
             {"name": "skin", "type": "isosurface", "field": "ball", "level": 0.5}]})";
 
 TEST_F(InfoCost, ExpectedBytesEqualMeasuredBytesAndEveryPartHasARow) {
-  const auto found = rows(kScene, true);
+  const auto found = rows(kScene, "--measure");
   const json::Node* ball = find(found, "load", "ball");
   ASSERT_NE(ball, nullptr);
   EXPECT_GE(number(ball, "expected_bytes"), 40 * 40 * 40 * 4);
@@ -56,12 +48,12 @@ TEST_F(InfoCost, ExpectedBytesEqualMeasuredBytesAndEveryPartHasARow) {
 }
 
 TEST_F(InfoCost, CountsMeshesPointsAndTracedLines) {
-  test::write_file(folder_ / "m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
-  test::write_file(folder_ / "p.csv", "x,y,z\n0,0,0\n1,0,0\n0,1,0\n");
+  write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  write("p.csv", "x,y,z\n0,0,0\n1,0,0\n0,1,0\n");
   const auto found = rows(R"({
     "fields": {"flow": {"analytic": "circle"}}, "points": [{"name": "dots", "file": "p.csv"}], "meshes": [{"name": "tetra", "file": "m.obj"}],
     "streamlines": [{"field": "flow", "seeds": [[0.5, 0, 0], [0.7, 0, 0]]}]})",
-                          true);
+                          "--measure");
   const json::Node* mesh = find(found, "load", "tetra");
   ASSERT_NE(mesh, nullptr);
   EXPECT_EQ(mesh->find("work")->string, "4 triangles");
@@ -78,7 +70,7 @@ TEST_F(InfoCost, CountsMeshesPointsAndTracedLines) {
 }
 
 TEST_F(InfoCost, HiddenAndUnusedPartsHaveNoCost) {
-  const auto found = rows(kScene, false);
+  const auto found = rows(kScene);
   EXPECT_EQ(find(found, "load", "unused"), nullptr);
   EXPECT_EQ(find(found, "mirror", "torus"), nullptr);
   ASSERT_NE(find(found, "create", "widgets"), nullptr);
@@ -87,14 +79,8 @@ TEST_F(InfoCost, HiddenAndUnusedPartsHaveNoCost) {
 }
 
 TEST_F(InfoCost, BadInputIsOneLine) {
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"info", "--measure", folder_ / "s.json"}, {"info", "--cost", folder_ / "none.json"}, {"info", "--cost"}}) {
-    const test::ProgramResult run = test::run_catena(arguments);
-    EXPECT_EQ(run.exit_code, 2);
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-    EXPECT_TRUE(run.out.empty());
-  }
+  for (const char* line : {"info --measure {s.json}", "info --cost {none.json}", "info --cost"})
+    EXPECT_TRUE(expect_refused(line, {}).out.empty()) << line;
 }
 
-}  // namespace cost_test
-}  // namespace catena
+}  // namespace catena::cost_test

@@ -4,14 +4,15 @@
 
 #include "engine/scene/scene.h"
 #include "render/extract/extract.h"
+#include "tests/engine/app/program_in_folder.h"
 #include "tests/render/support/image_fixture.h"
 #include "tests/support/curve_files.h"
-#include "tests/support/run_program.h"
+#include "tests/support/results.h"
 
-namespace catena::app {
-namespace curves_test {
+namespace catena::app::curves_test {
 
 using test::Polylines;
+using test::value_of;
 
 class CurveImages : public test::ImageTest {
  protected:
@@ -35,19 +36,22 @@ class CurveImages : public test::ImageTest {
                "camera": {"position": [4, 3, 2.5], "target": [0, 0, 0], "fovy_deg": 35})" +
            more + "}";
   }
-  Result<render::FramePacket> packet_of(const std::string& text) {
-    auto scene = scene::parse_scene(text, folder_ / "scene.json");
-    if (!scene) return scene.error();
-    return render::make_frame(*scene, 256, 192);
+  render::FramePacket packet_of(const std::string& text) {
+    auto scene = value_of(scene::parse_scene(text, folder_ / "scene.json"));
+    return value_of(render::make_frame(scene, 256, 192));
+  }
+  /// The scene of one file of curves, without further keys.
+  render::FramePacket packet_of_tck(const Polylines& lines) {
+    test::write_file(folder_ / "a.tck", test::tck_bytes(lines, "Float32LE"));
+    return packet_of(R"({"curves": [{"name": "a", "file": "a.tck"}]})");
   }
   /// The color of the image at a world position, without lighting: the brightest component is 1.
   Color hue_at(const render::FramePacket& packet, const render::Image8& picture, const Vec3& place) {
     const auto camera = render::make_camera(packet.view, packet.width, packet.height, Bounds());
     const auto at = render::project(camera, place);
-    const std::size_t pixel = 4 * (static_cast<std::size_t>(at->y) * packet.width + static_cast<std::size_t>(at->x));
-    const auto part = [&](std::size_t i) { return static_cast<float>(picture.rgba[pixel + i]) / 255.0f; };
-    const float max_part = std::max({part(0), part(1), part(2), 1e-3f});
-    return {part(0) / max_part, part(1) / max_part, part(2) / max_part};
+    const std::uint8_t* pixel = picture.pixel(static_cast<std::uint32_t>(at->x), static_cast<std::uint32_t>(at->y));
+    const float max_part = std::max({float(pixel[0]), float(pixel[1]), float(pixel[2]), 0.255f});
+    return {float(pixel[0]) / max_part, float(pixel[1]) / max_part, float(pixel[2]) / max_part};
   }
   test::TemporaryFolder folder_;
 };
@@ -56,74 +60,57 @@ const Vec3 kOn[] = {{0.7, 0.4, 0}, {0, 0.7, 0.4}, {0.4, 0, 0.7}};
 
 TEST_F(CurveImages, LinesAreColouredByDirection) {
   const auto packet = packet_of(scene_of(""));
-  ASSERT_TRUE(packet) << packet.error().message;
-  const auto picture = draw(*packet, {}, "directions");
+  const auto picture = draw(packet, {}, "directions");
   for (int axis = 0; axis < 3; ++axis) {
-    const Color seen = hue_at(*packet, picture, kOn[axis]);
-    const float expected[] = {axis == 0 ? 1.0f : 0.0f, axis == 1 ? 1.0f : 0.0f, axis == 2 ? 1.0f : 0.0f};
-    EXPECT_NEAR(seen.r, expected[0], 0.02) << axis;
-    EXPECT_NEAR(seen.g, expected[1], 0.02) << axis;
-    EXPECT_NEAR(seen.b, expected[2], 0.02) << axis;
+    const Color seen = hue_at(packet, picture, kOn[axis]);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR((std::array{seen.r, seen.g, seen.b})[std::size_t(c)], c == axis ? 1 : 0, 0.02) << axis;
   }
   // A diagonal line.
-  test::write_file(folder_ / "askew.tck", test::tck_bytes({{{-1, -1, 0}, {1, 1, 0}}}, "Float32LE"));
-  const auto askew = packet_of(R"({"curves": [{"name": "a", "file": "askew.tck"}]})");
-  ASSERT_TRUE(askew);
-  EXPECT_NEAR(askew->tubes[0].colors[0].r, std::sqrt(0.5), 1e-6);
-  EXPECT_NEAR(askew->tubes[0].colors[0].g, std::sqrt(0.5), 1e-6);
-  EXPECT_EQ(askew->tubes[0].colors[0].b, 0);
+  const auto askew = packet_of_tck({{{-1, -1, 0}, {1, 1, 0}}});
+  EXPECT_NEAR(askew.tubes[0].colors[0].r, std::sqrt(0.5), 1e-6);
+  EXPECT_NEAR(askew.tubes[0].colors[0].g, std::sqrt(0.5), 1e-6);
+  EXPECT_EQ(askew.tubes[0].colors[0].b, 0);
 }
 
 TEST_F(CurveImages, LinesHaveOneColourOrAreColouredByValueOrLength) {
   const auto one = packet_of(scene_of(R"(, "color": [0, 1, 1])"));
-  ASSERT_TRUE(one);
-  EXPECT_NEAR(hue_at(*one, draw(*one), kOn[0]).r, 0, 0.02);
+  EXPECT_NEAR(hue_at(one, draw(one), kOn[0]).r, 0, 0.02);
 
   // The file's scalars are 100 n + i on line n.
   const std::string table = R"("color": [[0, 1, 0, 0], [99, 1, 0, 0], [100, 0, 1, 0], [199, 0, 1, 0], [200, 0, 0, 1]])";
   const auto values = packet_of(scene_of(R"(, "color_by": {"value": "fa", )" + table + "}", R"(, "scalar_bars": [{"curves": 0}])"));
-  ASSERT_TRUE(values) << values.error().message;
-  const auto picture = draw(*values, {}, "values");
-  EXPECT_NEAR(hue_at(*values, picture, kOn[1]).g, 1, 0.02);
-  EXPECT_NEAR(hue_at(*values, picture, kOn[1]).r, 0, 0.02);
-  ASSERT_EQ(values->overlay.scalar_bars.size(), 1u);
-  EXPECT_EQ(values->overlay.scalar_bars[0].title, "fa");
-  EXPECT_EQ(values->overlay.scalar_bars[0].colors.back()[0], 200);
+  const auto picture = draw(values, {}, "values");
+  EXPECT_NEAR(hue_at(values, picture, kOn[1]).g, 1, 0.02);
+  EXPECT_NEAR(hue_at(values, picture, kOn[1]).r, 0, 0.02);
+  ASSERT_EQ(values.overlay.scalar_bars.size(), 1u);
+  EXPECT_EQ(values.overlay.scalar_bars[0].title, "fa");
+  EXPECT_EQ(values.overlay.scalar_bars[0].colors.back()[0], 200);
 
   const auto lengths = packet_of(scene_of(R"(, "color_by": {"quantity": "arc_length", "color": [[0, 0, 0, 0], [2, 1, 0, 0]]})"));
-  ASSERT_TRUE(lengths);
-  EXPECT_NEAR(lengths->tubes[0].colors[5].r, 0.25, 1e-5);
+  EXPECT_NEAR(lengths.tubes[0].colors[5].r, 0.25, 1e-5);
 
   const auto field = packet_of(
       scene_of(R"(, "color_by": {"field": "x", "color": [[-1, 0, 0, 0], [1, 1, 0, 0]]})", R"(, "fields": {"x": {"analytic": "linear"}})"));
-  ASSERT_TRUE(field) << field.error().message;
-  EXPECT_NEAR(field->tubes[0].colors[13].r, 0.5 + 0.5 * (0.3 + 0.4), 1e-5) << "x + y + z";
+  EXPECT_NEAR(field.tubes[0].colors[13].r, 0.5 + 0.5 * (0.3 + 0.4), 1e-5) << "x + y + z";
 }
 
 TEST_F(CurveImages, ClipPlanesCutAndTheDefaultRadiusFitsTheExtent) {
   const auto clipped = packet_of(scene_of("", R"(, "clip": [{"plane": {"point": [0, 0, 0], "normal": [-1, 0, 0]}}])"));
-  ASSERT_TRUE(clipped);
-  const auto picture = draw(*clipped);
-  EXPECT_NEAR(hue_at(*clipped, picture, {0.7, 0.4, 0}).r, 0, 0.02) << "cut away";
-  const Color left = hue_at(*clipped, picture, {0, 0.7, 0.4});
+  const auto picture = draw(clipped);
+  EXPECT_NEAR(hue_at(clipped, picture, {0.7, 0.4, 0}).r, 0, 0.02) << "cut away";
+  const Color left = hue_at(clipped, picture, {0, 0.7, 0.4});
   EXPECT_NEAR(left.g, 1, 0.02);
-  test::write_file(folder_ / "one.tck", test::tck_bytes({{{0, 0, 0}, {3, 4, 0}}}, "Float32LE"));
-  const auto fitted = packet_of(R"({"curves": [{"name": "a", "file": "one.tck"}]})");
-  ASSERT_TRUE(fitted);
-  EXPECT_NEAR(fitted->tubes[0].radius, 0.003 * 5, 1e-9);
+  const auto fitted = packet_of_tck({{{0, 0, 0}, {3, 4, 0}}});
+  EXPECT_NEAR(fitted.tubes[0].radius, 0.003 * 5, 1e-9);
 }
 
 TEST_F(CurveImages, TooManyLinesAreDrawnInPartWithANote) {
   // 2.2 million points: 11 lines of 200 000.
   std::vector<Vec3> line;
   for (int i = 0; i < 200000; ++i) line.push_back({1e-5 * i, 0, 0});
-  Polylines lines(11, line);
-  test::write_file(folder_ / "many.tck", test::tck_bytes(lines, "Float32LE"));
-  const auto packet = packet_of(R"({"curves": [{"name": "many", "file": "many.tck"}]})");
-  ASSERT_TRUE(packet);
-  EXPECT_EQ(packet->tubes.size(), 10u);
-  EXPECT_EQ(packet->omitted,
-            "curves \"many\": 10 of 11 lines are drawn, evenly chosen, so that they have about 2000000 points; all are felt");
+  const auto packet = packet_of_tck(Polylines(11, line));
+  EXPECT_EQ(packet.tubes.size(), 10u);
+  EXPECT_EQ(packet.omitted, "curves \"a\": 10 of 11 lines are drawn, evenly chosen, so that they have about 2000000 points; all are felt");
 }
 
 TEST_F(CurveImages, PointsAreDrawnAsLitSpheresAtTheirPositions) {
@@ -135,20 +122,19 @@ TEST_F(CurveImages, PointsAreDrawnAsLitSpheresAtTheirPositions) {
                                       "scalar_bars": [{"points": 0}],
                                       "camera": {"position": [0, 0, 6], "target": [0, 0, 0], "up": [0, 1, 0], )" +
                                   camera + "}}");
-    ASSERT_TRUE(packet) << packet.error().message;
-    ASSERT_EQ(packet->spheres.size(), 1u);
-    EXPECT_EQ(packet->spheres[0].spheres->offsets.size(), 2u) << "one has no radius";
-    EXPECT_EQ(packet->overlay.scalar_bars.size(), 1u);
-    const auto picture = draw(*packet, {}, flat ? "flat" : "perspective");
-    EXPECT_NEAR(hue_at(*packet, picture, {0, 0, 0}).r, 1, 0.02);
-    EXPECT_NEAR(hue_at(*packet, picture, {1.5, 0, 0}).g, 1, 0.02);
+    ASSERT_EQ(packet.spheres.size(), 1u);
+    EXPECT_EQ(packet.spheres[0].spheres->offsets.size(), 2u) << "one has no radius";
+    EXPECT_EQ(packet.overlay.scalar_bars.size(), 1u);
+    const auto picture = draw(packet, {}, flat ? "flat" : "perspective");
+    EXPECT_NEAR(hue_at(packet, picture, {0, 0, 0}).r, 1, 0.02);
+    EXPECT_NEAR(hue_at(packet, picture, {1.5, 0, 0}).g, 1, 0.02);
     // Compares each pixel with the nearest depth by the formula of the sphere, or with no hit.
-    const auto camera_now = render::make_camera(packet->view, packet->width, packet->height, Bounds());
+    const auto camera_now = render::make_camera(packet.view, packet.width, packet.height, Bounds());
     const auto depth = renderer_->read_depth();
     ASSERT_TRUE(depth);
     int on = 0, wrong = 0;
-    for (std::uint32_t y = 0; y < packet->height; ++y)
-      for (std::uint32_t x = 0; x < packet->width; ++x) {
+    for (std::uint32_t y = 0; y < packet.height; ++y)
+      for (std::uint32_t x = 0; x < packet.width; ++x) {
         const Vec3 a = render::unproject(camera_now, x + 0.5, y + 0.5, 1), b = render::unproject(camera_now, x + 0.5, y + 0.5, 9);
         const Vec3 ray = direction(b - a);
         double expected = std::numeric_limits<double>::infinity();
@@ -157,7 +143,7 @@ TEST_F(CurveImages, PointsAreDrawnAsLitSpheresAtTheirPositions) {
           const double root = radius * radius - dot(off, off) + dot(off, ray) * dot(off, ray);
           if (root > 0) expected = std::min(expected, 6 - (a + ray * (-dot(off, ray) - std::sqrt(root))).z);
         }
-        const double seen = depth->depth[y * packet->width + x];
+        const double seen = depth->depth[y * packet.width + x];
         on += std::isfinite(expected);
         wrong += std::isfinite(seen) != std::isfinite(expected) || (std::isfinite(seen) && std::fabs(seen - expected) > 0.01);
       }
@@ -171,99 +157,78 @@ TEST_F(CurveImages, AClippedSphereShowsItsInside) {
   const auto packet = packet_of(R"({"points": [{"name": "p", "file": "p.csv", "radius": 1, "color": [0, 1, 0]}],
                                     "clip": [{"plane": {"point": [0, 0, 0], "normal": [0, 0, -1]}}],
                                     "camera": {"position": [0, 0, 6], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30}})");
-  ASSERT_TRUE(packet) << packet.error().message;
-  const auto picture = draw(*packet);
-  EXPECT_NEAR(hue_at(*packet, picture, {0, 0, 0}).g, 1, 0.02);
+  const auto picture = draw(packet);
+  EXPECT_NEAR(hue_at(packet, picture, {0, 0, 0}).g, 1, 0.02);
   const auto depth = renderer_->read_depth();
   ASSERT_TRUE(depth);
   EXPECT_NEAR(depth->depth[96 * 256 + 128], 7, 0.01) << "the far half";
 }
 
-TEST(CurveScenes, ATableOfPointsIsRecognizedByItsHeader) {
-  test::TemporaryFolder folder;
-  test::write_file(folder / "table.csv", "id,x,y,z,mass\n1,0,0,0,7\n2,3,4,0,9\n");
-  auto scene = scene::scene_for_file(folder / "table.csv");
-  ASSERT_TRUE(scene) << scene.error().message;
-  ASSERT_EQ(scene->notes.size(), 1u);
-  EXPECT_NE(scene->notes[0].find("a table of points (columns x, y, z): 2 points, shown as spheres, coloured by \"mass\""),
-            std::string::npos)
-      << scene->notes[0];
-  ASSERT_TRUE(render::make_frame(*scene, 64, 48));
-  test::write_file(folder / "other.csv", "t,force\n1,0\n");
-  const auto other = test::run_catena({"render", folder / "other.csv", "-o", folder / "a.png"});
-  EXPECT_EQ(other.exit_code, 2);
-  EXPECT_NE(other.err.find("there is no column x"), std::string::npos) << other.err;
-  const auto info = test::run_catena({"info", folder / "table.csv"});
-  EXPECT_NE(info.out.find("spacing      median 5"), std::string::npos) << info.out;
+using CurveScenes = test::ProgramInFolder;
+
+TEST_F(CurveScenes, ATableOfPointsIsRecognizedByItsHeader) {
+  write("table.csv", "id,x,y,z,mass\n1,0,0,0,7\n2,3,4,0,9\n");
+  auto scene = value_of(scene::scene_for_file(folder_ / "table.csv"));
+  ASSERT_EQ(scene.notes.size(), 1u);
+  test::expect_parts(scene.notes[0], {"a table of points (columns x, y, z): 2 points, shown as spheres, coloured by \"mass\""});
+  value_of(render::make_frame(scene, 64, 48));
+  write("other.csv", "t,force\n1,0\n");
+  expect_refused("render {other.csv} -o {a.png}", {"there is no column x"});
+  test::expect_parts(run("info {table.csv}").out, {"spacing      median 5"});
 }
 
-TEST(CurveScenes, OutliersOfATableAreLeftOutOfTheViewAndTheColorRange) {
-  test::TemporaryFolder folder;
+TEST_F(CurveScenes, OutliersOfATableAreLeftOutOfTheViewAndTheColorRange) {
   std::string table = "x,y,z,mass\n";
   for (int k = 0; k < 200; ++k) table += fmt::format("{},{},{},{}\n", k % 6, k / 6 % 6, k / 36, k * k % 199);
-  test::write_file(folder / "plain.csv", table);
-  test::write_file(folder / "stray.csv", table + "9000,0,0,100000\n");
-  auto plain = scene::scene_for_file(folder / "plain.csv"), stray = scene::scene_for_file(folder / "stray.csv");
-  ASSERT_TRUE(plain && stray);
-  EXPECT_FALSE(plain->annotations.scalar_bars.at(0).title);
-  EXPECT_FALSE(stray->annotations.scalar_bars.at(0).title);
-  for (const char* part :
-       {"coloured by \"mass\"; 1 value of 100000 beyond the others, 0 .. 196", "1 distant points outside the initial view"})
-    EXPECT_NE(stray->notes.at(0).find(part), std::string::npos) << stray->notes[0];
-  for (scene::Scene* one : {&*plain, &*stray}) {
-    const auto packet = render::make_frame(*one, 320, 240);
-    ASSERT_TRUE(packet) << packet.error().message;
-    const auto camera = render::make_camera(packet->view, 320, 240, {});
-    const auto low = render::project(camera, {0, 0, 0}), high = render::project(camera, {5, 5, 5});
-    ASSERT_TRUE(low && high);
-    EXPECT_GT(std::fabs(low->y - high->y), 80) << "pixels";
+  write("plain.csv", table);
+  write("stray.csv", table + "9000,0,0,100000\n");
+  auto plain = value_of(scene::scene_for_file(folder_ / "plain.csv")), stray = value_of(scene::scene_for_file(folder_ / "stray.csv"));
+  EXPECT_FALSE(plain.annotations.scalar_bars.at(0).title);
+  EXPECT_FALSE(stray.annotations.scalar_bars.at(0).title);
+  test::expect_parts(stray.notes.at(0),
+                     {"coloured by \"mass\"; 1 value of 100000 beyond the others, 0 .. 196", "1 distant points outside the initial view"});
+  for (scene::Scene* one : {&plain, &stray}) {
+    const auto camera = render::make_camera(value_of(render::make_frame(*one, 320, 240)).view, 320, 240, {});
+    const auto low = render::project(camera, {0, 0, 0}).value(), high = render::project(camera, {5, 5, 5}).value();
+    EXPECT_GT(std::fabs(low.y - high.y), 80) << "pixels";
   }
 }
 
-TEST(CurveScenes, ACurveFileIsDrawnAndDescribed) {
-  test::TemporaryFolder folder;
-  test::write_file(folder / "a.tck", test::tck_bytes({{{0, 0, 0}, {3, 4, 0}}, {{0, 0, 0}, {0, 0, 1}}}, "Float32LE"));
-  auto scene = scene::scene_for_file(folder / "a.tck");
-  ASSERT_TRUE(scene) << scene.error().message;
-  ASSERT_EQ(scene->notes.size(), 1u);
-  EXPECT_NE(scene->notes[0].find("2 curves, coloured by direction: red for x, green for y, blue for z"), std::string::npos);
-  const auto packet = render::make_frame(*scene, 64, 48);
-  ASSERT_TRUE(packet);
-  EXPECT_EQ(packet->tubes.size(), 2u);
-  EXPECT_GT(packet->view.position.y, packet->view.target.y) << "a patient is seen from the front";
-  const auto info = test::run_catena({"info", folder / "a.tck"});
-  EXPECT_EQ(info.exit_code, 0);
-  EXPECT_NE(info.out.find("lengths      mean 3 mm, maximum 5 mm"), std::string::npos) << info.out;
+TEST_F(CurveScenes, ACurveFileIsDrawnAndDescribed) {
+  write("a.tck", test::tck_bytes({{{0, 0, 0}, {3, 4, 0}}, {{0, 0, 0}, {0, 0, 1}}}, "Float32LE"));
+  auto scene = value_of(scene::scene_for_file(folder_ / "a.tck"));
+  ASSERT_EQ(scene.notes.size(), 1u);
+  test::expect_parts(scene.notes[0], {"2 curves, coloured by direction: red for x, green for y, blue for z"});
+  const auto packet = value_of(render::make_frame(scene, 64, 48));
+  EXPECT_EQ(packet.tubes.size(), 2u);
+  EXPECT_GT(packet.view.position.y, packet.view.target.y) << "a patient is seen from the front";
+  test::expect_parts(succeed("info {a.tck}").out, {"lengths      mean 3 mm, maximum 5 mm"});
 }
 
-TEST(CurveScenes, ErrorsNameTheLine) {
-  test::TemporaryFolder folder;
-  test::write_file(folder / "a.tck", test::tck_bytes({{{0, 0, 0}, {3, 4, 0}}}, "Float32LE"));
+TEST_F(CurveScenes, ErrorsNameTheLine) {
+  write("a.tck", test::tck_bytes({{{0, 0, 0}, {3, 4, 0}}}, "Float32LE"));
   const auto message = [&](const std::string& text) {
-    auto scene = scene::parse_scene(text, folder / "s.json");
+    auto scene = scene::parse_scene(text, folder_ / "s.json");
     if (!scene) return scene.error().message;
     const auto packet = render::make_frame(*scene, 64, 48);
     return packet ? std::string() : packet.error().message;
   };
-  const auto expect = [&](const std::string& text, const std::string& words) {
-    EXPECT_NE(message(text).find(words), std::string::npos) << message(text);
-    EXPECT_NE(message(text).find("s.json:1"), std::string::npos) << message(text);
-  };
+  const auto expect = [&](const std::string& text, const std::string& words) { test::expect_parts(message(text), {words, "s.json:1"}); };
+  const auto curves = [](const std::string& keys) { return R"({"curves": [{"name": "a", "file": "a.tck")" + keys + "}"; };
+  const auto points = [](const std::string& keys) { return R"({"points": [{"name": "p", "file": "p.csv")" + keys + "}"; };
   expect(R"({"curves": [{"name": "a", "file": "b.tck"}]})",
          "does not exist; a .tck, .trk, .vtu, .vtp, .pvtp, .vtk, .pvd or .series file was expected");
-  expect(R"({"curves": [{"name": "a", "file": "a.tck"}, {"name": "a", "file": "a.tck"}]})", "a unique name was expected");
-  expect(R"({"curves": [{"name": "a", "file": "a.tck", "color_by": {"value": "fa"}}]})",
-         "the file has no values called \"fa\"; known: none");
-  expect(R"({"curves": [{"name": "a", "file": "a.tck", "color_by": {}}]})", "exactly one of them was expected");
-  expect(R"({"curves": [{"name": "a", "file": "a.tck"}], "scalar_bars": [{"curves": 0}]})", "shows no values");
-  test::write_file(folder / "p.csv", "x,y,z,v\n1,2,3,4\n");
-  expect(R"({"points": [{"name": "p", "file": "p.csv", "radius_by": "w"}]})", "no column of numbers called \"w\"; known: v");
-  expect(R"({"points": [{"name": "p", "file": "p.csv", "color_by": {"value": "w"}}]})", "no column of numbers called \"w\"; known: v");
-  expect(R"({"points": [{"name": "p", "file": "p.csv", "radius": 1, "radius_by": "v"}]})", "both \"radius_by\" and \"radius\" are given");
-  expect(R"({"points": [{"name": "p", "file": "p.csv"}], "scalar_bars": [{"points": 0}]})", "shows no values");
-  test::write_file(folder / "a.tck", "mrtrix tracks\n");
-  expect(R"({"curves": [{"name": "a", "file": "a.tck"}]})", "a line END was expected");
+  expect(curves("") + R"(, {"name": "a", "file": "a.tck"}]})", "a unique name was expected");
+  expect(curves(R"(, "color_by": {"value": "fa"})") + "]}", "the file has no values called \"fa\"; known: none");
+  expect(curves(R"(, "color_by": {})") + "]}", "exactly one of them was expected");
+  expect(curves("") + R"(], "scalar_bars": [{"curves": 0}]})", "shows no values");
+  write("p.csv", "x,y,z,v\n1,2,3,4\n");
+  expect(points(R"(, "radius_by": "w")") + "]}", "no column of numbers called \"w\"; known: v");
+  expect(points(R"(, "color_by": {"value": "w"})") + "]}", "no column of numbers called \"w\"; known: v");
+  expect(points(R"(, "radius": 1, "radius_by": "v")") + "]}", "both \"radius_by\" and \"radius\" are given");
+  expect(points("") + R"(], "scalar_bars": [{"points": 0}]})", "shows no values");
+  write("a.tck", "mrtrix tracks\n");
+  expect(curves("") + "]}", "a line END was expected");
 }
 
-}  // namespace curves_test
-}  // namespace catena::app
+}  // namespace catena::app::curves_test

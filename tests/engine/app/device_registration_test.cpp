@@ -9,13 +9,15 @@
 #include <thread>
 
 #include "engine/app/haptics/device_file.h"
-#include "engine/app/viewer/scene/scene_model.h"
 #include "engine/base/json.h"
 #include "tests/engine/app/open_scene_model.h"
+#include "tests/support/results.h"
 #include "tests/support/support.h"
 
-namespace catena::app {
-namespace device_registration_test {
+namespace catena::app::device_registration_test {
+
+using test::fails;
+using test::value_of;
 
 const std::array<Vec3, 3> kTouched{Vec3(0.02, -0.03, 0.01), Vec3(-0.05, 0.01, 0.04), Vec3(0.01, 0.05, 0.02)};
 const Quat kTurn = rotation_from_vector({0.2, -1.4, 0.5});
@@ -38,15 +40,9 @@ struct Rig {
       }
     test::write_file(folder / "path.csv", path);
     test::open_scene(folder, text, host);
-    HapticSession::Options options;
-    options.device = device == "simulated" ? "simulated:" + (folder / "path.csv") : device;
-    options.realtime = {.fifo = false, .lock_memory = false, .cpu = haptics::RealtimeOptions::kUnbound};
-    hand.emplace(options);
-    Bounds bounds;
-    bounds.extend(Vec3(-1.0));
-    bounds.extend(Vec3(1.0));
+    hand.emplace(test::quiet_session(device == "simulated" ? "simulated:" + (folder / "path.csv") : device));
     EXPECT_TRUE(hand->open_device(host->scene()));
-    EXPECT_TRUE(hand->prepare(host->scene(), bounds, RecordedScene{folder / "scene.json", text, {}, {}}));
+    EXPECT_TRUE(hand->prepare(host->scene(), test::cube_bounds(), RecordedScene{folder / "scene.json", text, {}, {}}));
     EXPECT_TRUE(hand->start());
   }
   /// Steps the session, some milliseconds apart, until the condition holds.
@@ -79,6 +75,9 @@ struct Rig {
     touch_with_controller(space);
     return until([&] { return hand->room().has_value(); }, space, [] { return XrHand{}; });
   }
+  void step_once(const StageSpace& space) {
+    EXPECT_TRUE(until([] { return true; }, space, [] { return XrHand{}; }));
+  }
 
   test::TemporaryFolder folder;
   std::optional<SceneModel> host;
@@ -92,15 +91,13 @@ TEST(DeviceRegistration, FindsThePoseFromTheTouchedPoints) {
   Rig rig("simulated");
   ASSERT_TRUE(rig.finds(kStage)) << (rig.messages.empty() ? "" : rig.messages.back());
   ASSERT_EQ(rig.messages.size(), 8u);
-  EXPECT_NE(rig.messages.front().find("Touch three points"), std::string::npos);
-  EXPECT_NE(rig.messages.back().find("is registered"), std::string::npos) << rig.messages.back();
+  EXPECT_TRUE(test::has(rig.messages.front(), "Touch three points"));
+  EXPECT_TRUE(test::has(rig.messages.back(), "is registered"));
   const DeviceRegistration::Room room = *rig.hand->room();
   EXPECT_LT(norm(room.origin_m - kOrigin), 5e-4);
   EXPECT_LT(norm(room.room_from_workspace * Vec3(0, 0, 1) - rotate(kTurn, {0, 0, 1})), 5e-3);
   EXPECT_FALSE(rig.desk.is_active());
-  const auto registration = rig.desk.take_registration();
-  ASSERT_TRUE(registration);
-  EXPECT_EQ(registration->origin_m, room.origin_m);
+  EXPECT_EQ(rig.desk.take_registration().value().origin_m, room.origin_m);
   EXPECT_FALSE(rig.desk.take_registration());
 
   // The device's workspace in the world follows the placement of the world in the room.
@@ -108,9 +105,9 @@ TEST(DeviceRegistration, FindsThePoseFromTheTouchedPoints) {
   placement.world_from_room = glm::mat3_cast(rotation_from_vector({0.0, 0.9, 0.0}));
   placement.world_origin = Vec3(3, -1, 2);
   placement.meters_per_unit = 0.2;
-  const auto workspace = rig.desk.workspace(*rig.hand, placement);
-  ASSERT_TRUE(workspace);
-  const Vec3 world = workspace->origin + workspace->rotation * kTouched[1] / workspace->meters_per_unit;
+  const auto workspace = [&] { return rig.desk.workspace(*rig.hand, placement).value(); };
+  const auto first = workspace();
+  const Vec3 world = first.origin + first.rotation * kTouched[1] / first.meters_per_unit;
   const Vec3 in_room = kStage.position_m + rotate(kStage.orientation, kOrigin + rotate(kTurn, kTouched[1]));
   EXPECT_LT(norm(world - placement.to_world(in_room)), 1e-3 / 0.2);
 
@@ -118,15 +115,14 @@ TEST(DeviceRegistration, FindsThePoseFromTheTouchedPoints) {
   StageSpace moved = kStage;
   moved.position_m += Vec3(0.5, 0, 0);
   moved.recenter_count = 1;
-  EXPECT_TRUE(rig.until([] { return true; }, moved, [] { return XrHand{}; }));
-  EXPECT_LT(norm(rig.desk.workspace(*rig.hand, placement)->origin - workspace->origin - placement.world_from_room * Vec3(0.5, 0, 0) / 0.2),
-            1e-9);
+  rig.step_once(moved);
+  EXPECT_LT(norm(workspace().origin - first.origin - placement.world_from_room * Vec3(0.5, 0, 0) / 0.2), 1e-9);
   EXPECT_TRUE(rig.hand->room());
   // Jitter of the stage does not move the device.
-  const Vec3 before = rig.desk.workspace(*rig.hand, placement)->origin;
+  const Vec3 before = workspace().origin;
   moved.position_m += Vec3(0, 5e-4, 0);
-  EXPECT_TRUE(rig.until([] { return true; }, moved, [] { return XrHand{}; }));
-  EXPECT_EQ(rig.desk.workspace(*rig.hand, placement)->origin, before);
+  rig.step_once(moved);
+  EXPECT_EQ(workspace().origin, before);
 }
 
 TEST(DeviceRegistration, WithoutAStageItIsValidUntilRecentring) {
@@ -136,7 +132,7 @@ TEST(DeviceRegistration, WithoutAStageItIsValidUntilRecentring) {
   EXPECT_FALSE(rig.desk.take_registration());
   StageSpace recentred = local;
   recentred.recenter_count = 1;
-  EXPECT_TRUE(rig.until([] { return true; }, recentred, [] { return XrHand{}; }));
+  rig.step_once(recentred);
   EXPECT_FALSE(rig.hand->room());
   EXPECT_TRUE(rig.desk.is_active());
 }
@@ -144,9 +140,7 @@ TEST(DeviceRegistration, WithoutAStageItIsValidUntilRecentring) {
 TEST(DeviceRegistration, OnlyDevicesWithAFixedPositionCanBeRegistered) {
   const auto refused = [](const std::string& device, const std::string& text, const char* words) {
     Rig rig(device, text);
-    const Outcome begun = rig.desk.begin(*rig.hand);
-    ASSERT_FALSE(begun);
-    EXPECT_NE(begun.error().message.find(words), std::string::npos) << begun.error().message;
+    EXPECT_TRUE(fails(rig.desk.begin(*rig.hand), words));
   };
   refused("null", kScene, "null has no fixed position in the room");
   std::string scaled = kScene;
@@ -164,18 +158,15 @@ TEST(DeviceRegistration, IsStoredInTheDeviceFile) {
   ASSERT_TRUE(write_device_file(file, {{"/room_origin", "[0.3, 0.8, -0.5]"}, {"/room_rotation", "[[0, -1, 0], [1, 0, 0], [0, 0, 1]]"}}));
   EXPECT_TRUE(test::read_file(file).starts_with("// mine\n"));
   ASSERT_TRUE(apply_device_file(file, scene));
-  const auto settings = haptics::read_device_settings(*scene.device, file);
-  ASSERT_TRUE(settings) << settings.error().message;
-  EXPECT_EQ(settings->mass_kg, 0.2);
-  ASSERT_TRUE(settings->room_registration);
-  EXPECT_EQ(settings->room_registration->origin_m, Vec3(0.3, 0.8, -0.5));
-  EXPECT_EQ(settings->room_registration->room_from_workspace * Vec3(1, 0, 0), Vec3(0, 1, 0));
+  const auto settings = value_of(haptics::read_device_settings(*scene.device, file));
+  EXPECT_EQ(settings.mass_kg, 0.2);
+  ASSERT_TRUE(settings.room_registration);
+  EXPECT_EQ(settings.room_registration->origin_m, Vec3(0.3, 0.8, -0.5));
+  EXPECT_EQ(settings.room_registration->room_from_workspace * Vec3(1, 0, 0), Vec3(0, 1, 0));
 
   const auto bad = [&](const std::string& text, const std::string& words) {
     test::write_file(file, text);
-    const Outcome used = apply_device_file(file, scene);
-    ASSERT_FALSE(used) << text;
-    EXPECT_NE(used.error().message.find(words), std::string::npos) << used.error().message;
+    EXPECT_TRUE(fails(apply_device_file(file, scene), words)) << text;
   };
   bad(R"({"type": "simulated", "room_origin": [0, 0, 0]})", "arm.json:1: \"room_origin\" and \"room_rotation\" go together");
   bad(R"({"type": "simulated", "room_origin": [0, 1e9, 0], "room_rotation": [1,0,0,0,1,0,0,0,1]})", "up to 1000");
@@ -184,5 +175,4 @@ TEST(DeviceRegistration, IsStoredInTheDeviceFile) {
   bad(R"([1, 2])", "expected");
 }
 
-}  // namespace device_registration_test
-}  // namespace catena::app
+}  // namespace catena::app::device_registration_test

@@ -13,9 +13,8 @@
 #include "engine/base/result.h"
 #include "haptics/device/device.h"
 
-namespace device_signals_test {
+namespace catena::device_signals_test {
 
-using namespace catena;
 using namespace catena::haptics;
 
 /// A device that reports its stop() on stderr, where the death tests look for it.
@@ -38,36 +37,34 @@ class Last final : public Device {
 
 struct CrashGuardDeathTest : testing::Test {
   CrashGuardDeathTest() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
+  /// Runs the function in another thread, with the device guarded.
+  void guarded(void (*ends)(), bool prepared = true) {
+    EXPECT_TRUE(!prepared || app::prepare_process());
+    const app::CrashGuard guard(device);
+    std::thread(ends).join();
+  }
+  void guarded_signal(int signal_number, int asks = 0) {
+    device.asks_until_rest_ = asks;
+    const app::CrashGuard guard(device);
+    std::raise(signal_number);
+  }
   Last device;
 };
 
 TEST_F(CrashGuardDeathTest, AnAssertionStopsTheDeviceAndAborts) {
-  const auto crash = [&] {
-    const app::CrashGuard guard(device);
-    std::thread([] { CATENA_ASSERT(1 + 1 == 3); }).join();
-  };
-  EXPECT_EXIT(crash(), testing::KilledBySignal(SIGABRT), "let go");
+  EXPECT_EXIT(guarded([] { CATENA_ASSERT(1 + 1 == 3); }, false), testing::KilledBySignal(SIGABRT), "let go");
 }
 
 TEST_F(CrashGuardDeathTest, EveryCrashSignalStopsTheDeviceAndKeepsItsExitStatus) {
-  for (const int signal_number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGTRAP, SIGQUIT}) {
-    const auto crash = [&] {
-      const app::CrashGuard guard(device);
-      std::raise(signal_number);
-    };
-    EXPECT_EXIT(crash(), testing::KilledBySignal(signal_number), "let go") << signal_number;
-  }
+  for (const int signal_number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGTRAP, SIGQUIT})
+    EXPECT_EXIT(guarded_signal(signal_number), testing::KilledBySignal(signal_number), "let go") << signal_number;
 }
 
 // A confirmation of zero force is awaited for long enough that a busy machine's device thread can give it.
 TEST_F(CrashGuardDeathTest, TheDeviceIsReportedOffOnlyOnceConfirmed) {
-  const auto crash = [&](int asks) {
-    device.asks_until_rest_ = asks;
-    const app::CrashGuard guard(device);
-    std::raise(SIGTRAP);
-  };
-  EXPECT_EXIT(crash(200), testing::KilledBySignal(SIGTRAP), "let go\ncatena: ended by SIGTRAP; the device is off\n$");
-  EXPECT_EXIT(crash(1 << 20), testing::KilledBySignal(SIGTRAP), "ended by SIGTRAP; the device has not confirmed that it is off\n$");
+  const auto trapped = testing::KilledBySignal(SIGTRAP);
+  EXPECT_EXIT(guarded_signal(SIGTRAP, 200), trapped, "let go\ncatena: ended by SIGTRAP; the device is off\n$");
+  EXPECT_EXIT(guarded_signal(SIGTRAP, 1 << 20), trapped, "ended by SIGTRAP; the device has not confirmed that it is off\n$");
 }
 
 TEST_F(CrashGuardDeathTest, AfterTheGuardsLifetimeNoDeviceIsStopped) {
@@ -97,18 +94,10 @@ TEST_F(CrashGuardDeathTest, AStackOverflowStopsTheDevice) {
 #endif
 
 TEST_F(CrashGuardDeathTest, AnUncaughtExceptionStopsTheDeviceAndIsOneMessage) {
-  const auto end = [&] {
-    EXPECT_TRUE(app::prepare_process());
-    const app::CrashGuard guard(device);
-    std::thread([] { throw std::system_error(EAGAIN, std::generic_category(), "a thread"); }).join();
-  };
-  EXPECT_EXIT(end(), testing::ExitedWithCode(1), "let go\ncatena: no other thread can be started: Resource");
-  const auto full = [&] {
-    EXPECT_TRUE(app::prepare_process());
-    const app::CrashGuard guard(device);
-    std::thread([] { throw std::bad_alloc(); }).join();
-  };
-  EXPECT_EXIT(full(), testing::ExitedWithCode(1), "let go\ncatena: out of memory: .*\n$");
+  const auto failed = testing::ExitedWithCode(1);
+  EXPECT_EXIT(guarded([] { throw std::system_error(EAGAIN, std::generic_category(), "a thread"); }), failed,
+              "let go\ncatena: no other thread can be started: Resource");
+  EXPECT_EXIT(guarded([] { throw std::bad_alloc(); }), failed, "let go\ncatena: out of memory: .*\n$");
 }
 
 TEST(Interrupt, TerminatingSignalsAreSystemFailures) {
@@ -161,4 +150,4 @@ TEST(Interrupt, SignalsThatEndOrSuspendTheProgramAreOnlyRequests) {
   }
 }
 
-}  // namespace device_signals_test
+}  // namespace catena::device_signals_test

@@ -1,30 +1,32 @@
 // SPDX-License-Identifier: MIT
 /// The self-test of devices (device_check.h) on correct and faulty devices, and the command `catena devices`.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "engine/app/haptics/device_check.h"
 #include "engine/base/json.h"
 #include "haptics/device/device.h"
 #include "haptics/device/registry.h"
+#include "tests/engine/app/program_in_folder.h"
 #include "tests/haptics/device/emulator/boot_image.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
 
-namespace devices_test {
+namespace catena::devices_test {
 
-using namespace catena;
 using namespace catena::app;
 using haptics::DeviceInput;
 using haptics::DeviceOutput;
 using haptics::DeviceStatus;
 
-/// A device whose position is the compliance times the force; its faults begin at stated numbers of reads.
-class Springy final : public haptics::Device {
- public:
-  Springy() { able_.max_force_n = 5; }
+/// A device with a force of at most 5 N.
+struct CheckedDevice : haptics::Device {
+  CheckedDevice() { able_.max_force_n = 5; }
   const haptics::DeviceCapabilities& capabilities() const override { return able_; }
+  void write(const DeviceOutput&) noexcept override {}
+  int reads = 0;
+
+ private:
+  haptics::DeviceCapabilities able_;
+};
+
+/// A device whose position is the compliance times the force; its faults begin at stated numbers of reads.
+struct Springy final : CheckedDevice {
   DeviceInput read() noexcept override {
     ++reads;
     DeviceInput in;
@@ -45,18 +47,16 @@ class Springy final : public haptics::Device {
   }
 
   double compliance = 0.002, noise = 0;
-  int starts = 0, lost = 1 << 30, broken = 1 << 30, reads = 0;
+  int starts = 0, lost = 1 << 30, broken = 1 << 30;
   Vec3 force{0.0}, last{0.0};
   double strongest = 0, steepest = 0;
-
- private:
-  haptics::DeviceCapabilities able_;
 };
 
-DeviceCheckResult check(haptics::Device& device, bool forces, double seconds = 0.5) {
+DeviceCheckResult check(haptics::Device& device, bool forces, double seconds = 0.5, std::vector<std::string>* prompts = nullptr) {
   DeviceCheckOptions options;
   options.seconds = seconds;
   options.forces = forces;
+  if (prompts != nullptr) options.prompt = [&](const std::string& text) { prompts->push_back(text); };
   return check_device(device, options, make_immediate_schedule(options.rate_hz));
 }
 
@@ -128,37 +128,24 @@ TEST(DeviceCheck, TheWaitForAReadyDeviceIsLimited) {
 }
 
 // A device that is not ready for a while and states the reason.
-class Homing final : public haptics::Device {
- public:
-  const haptics::DeviceCapabilities& capabilities() const override { return able_; }
+struct Homing final : CheckedDevice {
   DeviceInput read() noexcept override {
     DeviceInput in;
     if (++reads <= 400) in.status = DeviceStatus::starting;
     return in;
   }
-  void write(const DeviceOutput&) noexcept override {}
   std::string status_text() const override { return reads < 200 ? "pull it out" : reads < 400 ? "push it in" : ""; }
-  int reads = 0;
-
- private:
-  haptics::DeviceCapabilities able_;
 };
 
 TEST(DeviceCheck, PromptsWithTheStatusOfADeviceThatIsNotReady) {
   Homing device;
   std::vector<std::string> prompts;
-  DeviceCheckOptions options;
-  options.seconds = 0.1;
-  options.prompt = [&](const std::string& text) { prompts.push_back(text); };
-  EXPECT_EQ(check_device(device, options, make_immediate_schedule(options.rate_hz)).failure, "");
+  EXPECT_EQ(check(device, false, 0.1, &prompts).failure, "");
   EXPECT_EQ(prompts, (std::vector<std::string>{"pull it out", "push it in"}));
 }
 
 // A device that enables forces late and whose hand moves until `rests`.
-class Arming final : public haptics::Device {
- public:
-  Arming() { able_.max_force_n = 5; }
-  const haptics::DeviceCapabilities& capabilities() const override { return able_; }
+struct Arming final : CheckedDevice {
   DeviceInput read() noexcept override {
     DeviceInput in;
     in.position_m.z = 1e-4 * std::min(++reads, rests);
@@ -169,23 +156,13 @@ class Arming final : public haptics::Device {
     if (norm(out.force_n) > 0 && first_push == 0) first_push = reads;
   }
   std::string status_text() const override { return reads > arms ? "" : "pull it out once"; }
-  int reads = 0, arms = 1500, rests = 2500, first_push = 0;
-
- private:
-  haptics::DeviceCapabilities able_;
+  int arms = 1500, rests = 2500, first_push = 0;
 };
 
 TEST(DeviceCheck, PushesOnlyOnceForcesAreEnabledAndTheGripRests) {
-  const auto run = [](Arming& device, std::vector<std::string>& prompts) {
-    DeviceCheckOptions options;
-    options.seconds = 0.1;
-    options.forces = true;
-    options.prompt = [&](const std::string& text) { prompts.push_back(text); };
-    return check_device(device, options, make_immediate_schedule(options.rate_hz));
-  };
   std::vector<std::string> prompts;
   Arming device;
-  EXPECT_EQ(run(device, prompts).failure, "");
+  EXPECT_EQ(check(device, true, 0.1, &prompts).failure, "");
   EXPECT_GE(device.first_push, 2500 - 20 + 500);  // 2 mm of rest are 20 ticks of this hand
   EXPECT_LE(device.first_push, 2510 + 500);
   ASSERT_EQ(prompts.size(), 2u);
@@ -194,8 +171,8 @@ TEST(DeviceCheck, PushesOnlyOnceForcesAreEnabledAndTheGripRests) {
 
   Arming never, restless;
   never.arms = restless.rests = 1 << 30;
-  EXPECT_NE(run(never, prompts).failure.find("has not enabled its forces after 20 s; pull it out once"), std::string::npos);
-  EXPECT_NE(run(restless, prompts).failure.find("did not rest"), std::string::npos);
+  EXPECT_NE(check(never, true, 0.1, &prompts).failure.find("has not enabled its forces after 20 s; pull it out once"), std::string::npos);
+  EXPECT_NE(check(restless, true, 0.1, &prompts).failure.find("did not rest"), std::string::npos);
   EXPECT_EQ(never.first_push + restless.first_push, 0);
 }
 
@@ -221,17 +198,21 @@ TEST(DeviceCheck, ADeviceWithoutForceCannotPush) {
   EXPECT_NE(check(device, true).failure.find("no force output"), std::string::npos);
 }
 
-test::ProgramResult devices(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "devices");
-  return test::run_catena(arguments);
-}
+class Devices : public test::ProgramInFolder {
+ protected:
+  test::ProgramResult tested(const std::string& more) { return succeed("devices test --seconds 0.05 " + more); }
+  /// The displacement in mm that the check reports under a force of 1 N along x.
+  static double pushed_mm(const test::ProgramResult& run) {
+    const std::string prefix = "force        +1.00 +0.00 +0.00 N moved the hand +";
+    const auto at = run.out.find(prefix);
+    EXPECT_NE(at, std::string::npos) << run.out;
+    return at == std::string::npos ? 0 : std::stod(run.out.substr(at + prefix.size()));
+  }
+};
 
-TEST(Devices, ListsTheDevices) {
-  const test::ProgramResult plain = devices({}), json = devices({"--json"});
-  EXPECT_EQ(plain.exit_code, 0);
-  EXPECT_NE(plain.out.find("simulated-6dof"), std::string::npos);
-  EXPECT_NE(plain.out.find("orientation, force up to"), std::string::npos);
-  const auto read = json::parse(json.out, "out");
+TEST_F(Devices, ListsTheDevices) {
+  test::expect_parts(succeed("devices").out, {"simulated-6dof", "orientation, force up to"});
+  const auto read = json::parse(run("devices --json").out, "out");
   ASSERT_TRUE(read) << read.error().message;
   ASSERT_GE(read->items.size(), 6u);
   bool found = false;
@@ -243,69 +224,58 @@ TEST(Devices, ListsTheDevices) {
   EXPECT_TRUE(found);
 }
 
-TEST(Devices, TestsTheSimulatedDevicesAndARecordedPath) {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "p.csv", "t,x,y,z,buttons\n-1,0,2,3,0\n0,1,2,3,0\n0.001,1.5,2,3,2\n");
-  for (const std::string& name : {std::string("null"), std::string("simulated"), "recorded:" + (folder / "p.csv")}) {
-    const test::ProgramResult run = devices({"test", name, "--seconds", "0.05"});
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_NE(run.out.find("pass (without forces"), std::string::npos) << run.out;
-  }
-  const test::ProgramResult recorded = devices({"test", "recorded:" + (folder / "p.csv"), "--seconds", "0.05"});
-  EXPECT_NE(recorded.out.find("x 1.00000 .. 1.50000"), std::string::npos) << recorded.out;
-  EXPECT_NE(recorded.out.find("buttons      2"), std::string::npos) << recorded.out;
+TEST_F(Devices, TestsTheSimulatedDevicesAndARecordedPath) {
+  write("p.csv", "t,x,y,z,buttons\n-1,0,2,3,0\n0,1,2,3,0\n0.001,1.5,2,3,2\n");
+  for (const char* name : {"null", "simulated", "recorded:{p.csv}"}) test::expect_parts(tested(name).out, {"pass (without forces"});
+  test::expect_parts(tested("recorded:{p.csv}").out, {"x 1.00000 .. 1.50000", "buttons      2"});
 }
 
-TEST(Devices, PushesTheSimulatedHand) {
-  const test::ProgramResult run = devices({"test", "simulated-6dof", "--seconds", "0.05", "--forces"});
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-  const std::string prefix = "force        +1.00 +0.00 +0.00 N moved the hand +";
-  const auto at = run.out.find(prefix);
-  ASSERT_NE(at, std::string::npos) << run.out;
-  EXPECT_NEAR(std::stod(run.out.substr(at + prefix.size())), 2, 0.5) << run.out;  // mm: 1 N against a hand of 500 N/m
-  EXPECT_NE(run.out.find("\npass\n"), std::string::npos) << run.out;
+TEST_F(Devices, PushesTheSimulatedHand) {
+  const test::ProgramResult run = tested("simulated-6dof --forces");
+  EXPECT_NEAR(pushed_mm(run), 2, 0.5) << run.out;  // mm: 1 N against a hand of 500 N/m
+  test::expect_parts(run.out, {"\npass\n"});
 }
 
-TEST(Devices, PushesTheEmulatedFalconInAStillHand) {
-  const test::ProgramResult run = devices({"test", "emulated-falcon:still", "--seconds", "0.05", "--forces"});
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.err.find("pull the grip fully out"), std::string::npos) << run.err;
-  const std::string prefix = "force        +1.00 +0.00 +0.00 N moved the hand +";
-  const auto at = run.out.find(prefix);
-  ASSERT_NE(at, std::string::npos) << run.out;
-  EXPECT_NEAR(std::stod(run.out.substr(at + prefix.size())), 1000.0 / 300, 0.5) << run.out;  // mm: 1 N against a hand of 300 N/m
+TEST_F(Devices, PushesTheEmulatedFalconInAStillHand) {
+  const test::ProgramResult run = tested("emulated-falcon:still --forces");
+  test::expect_parts(run.err, {"pull the grip fully out"});
+  EXPECT_NEAR(pushed_mm(run), 1000.0 / 300, 0.5) << run.out;  // mm: 1 N against a hand of 300 N/m
 }
 
-TEST(Devices, TheEmulatedFalconBootsAStatedFirmware) {
-  const test::TemporaryFolder folder;
+TEST_F(Devices, TheEmulatedFalconBootsAStatedFirmware) {
   const auto image = haptics::tests::boot_image({40, 3});
-  test::write_file(folder / "good.bin", std::string(image.begin(), image.end()));
-  const test::ProgramResult good = devices({"test", "emulated-falcon", "--seconds", "0.05", "--firmware", folder / "good.bin"});
-  EXPECT_EQ(good.exit_code, 0) << good.err;
-  EXPECT_NE(good.err.find("firmware is being sent"), std::string::npos) << good.err;
+  const std::string bytes(image.begin(), image.end());
+  write("good.bin", bytes);
+  test::expect_parts(tested("emulated-falcon --firmware {good.bin}").err, {"firmware is being sent"});
   for (std::size_t size = 0; size < image.size(); size += 7) {
-    test::write_file(folder / "bad.bin", std::string(image.begin(), image.begin() + static_cast<std::ptrdiff_t>(size)));
-    const test::ProgramResult bad = devices({"test", "emulated-falcon", "--seconds", "0.05", "--firmware", folder / "bad.bin"});
+    write("bad.bin", bytes.substr(0, size));
+    const test::ProgramResult bad = run("devices test emulated-falcon --seconds 0.05 --firmware {bad.bin}");
     EXPECT_NE(bad.exit_code, 0) << size;
-    EXPECT_NE(bad.err.find("bad.bin"), std::string::npos) << bad.err;
-    EXPECT_EQ(std::count(bad.err.begin(), bad.err.end(), '\n'), 1) << bad.err;
+    test::expect_parts(bad.err, {"bad.bin"});
+    test::expect_one_line(bad.err);
   }
 }
 
-TEST(Devices, FailuresAreOneLine) {
-  const auto expect = [](const test::ProgramResult& run, int code, const char* part) {
-    EXPECT_EQ(run.exit_code, code) << run.err;
-    EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-  };
-  expect(devices({"test", "sextant"}), 2, "simulated-6dof");
-  expect(devices({"test", "null", "--seconds", "0"}), 2, "--seconds");
-  expect(devices({"test", "null", "--seconds", "0.05", "--forces"}), 1, "no force output");
-  expect(devices({"test", "recorded"}), 1, "recorded:PATH.csv");
-  expect(devices({"test", "mouse"}), 1, "catena view");
-  expect(devices({"test", "simulated:"}), 1, "no detail after the colon");
-  expect(devices({"test", "null:1"}), 1, "\"null\" was expected");
-  expect(devices({"test", "emulated-falcon:stil"}), 1, "emulated-falcon:still");
+TEST_F(Devices, FailuresAreOneLine) {
+  const struct {
+    const char* line;
+    int exit_code;
+    const char* part;
+  } kFailures[] = {{"sextant", 2, "simulated-6dof"},
+                   {"null --seconds 0", 2, "--seconds"},
+                   {"null --seconds 0.05 --forces", 1, "no force output"},
+                   {"recorded", 1, "recorded:PATH.csv"},
+                   {"mouse", 1, "catena view"},
+                   {"simulated:", 1, "no detail after the colon"},
+                   {"null:1", 1, "\"null\" was expected"},
+                   {"emulated-falcon:stil", 1, "emulated-falcon:still"}};
+  for (const auto& failure : kFailures) {
+    SCOPED_TRACE(failure.line);
+    const test::ProgramResult done = run("devices test " + std::string(failure.line));
+    EXPECT_EQ(done.exit_code, failure.exit_code) << done.err;
+    test::expect_parts(done.err, {failure.part});
+    test::expect_one_line(done.err);
+  }
 }
 
-}  // namespace devices_test
+}  // namespace catena::devices_test

@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include "engine/app/viewer/scene/scene_model.h"
+#include "tests/support/results.h"
 
-namespace catena::app {
-namespace edits_test {
+namespace catena::app::edits_test {
+
+using test::value_of;
 
 constexpr const char* kScene = R"({"fields": {"f": {"analytic": "gaussian"}}, "isosurfaces": [{"field": "f", "level": 0.5}]})";
 
@@ -21,19 +23,12 @@ struct Notes {
     for (const Command& command : std::exchange(commands, {})) {
       const Edit* edit = std::get_if<Edit>(&command);
       ASSERT_NE(edit, nullptr);
-      const Outcome done = host.apply(edit->edits, edit->undo_label, edit->undo_group);
-      EXPECT_TRUE(done) << done.error().message;
+      value_of(host.apply(edit->edits, edit->undo_label, edit->undo_group));
     }
   }
 };
 
-SceneModel open_scene() {
-  auto document = scene::Document::create(kScene, "scene.json");
-  EXPECT_TRUE(document);
-  auto host = SceneModel::open(std::move(*document), {});
-  EXPECT_TRUE(host);
-  return std::move(*host);
-}
+SceneModel open_scene() { return value_of(SceneModel::open(value_of(scene::Document::create(kScene, "scene.json")), {})); }
 
 TEST(Edits, AreQueuedAndAppliedInOrder) {
   SceneModel host = open_scene();
@@ -76,10 +71,8 @@ TEST(Edits, EditsOfDifferentGesturesOrItemsAreSeparateUndoSteps) {
 
 TEST(Edits, ASetOfEditsIsAppliedCompletelyOrNotAtAll) {
   SceneModel host = open_scene();
-  const Outcome done = host.apply({{"/isosurfaces/0/level", "0.1"}, {"/isosurfaces/0/opacity", "\"thick\""}}, "level");
-  EXPECT_FALSE(done);
+  EXPECT_FALSE(host.apply({{"/isosurfaces/0/level", "0.1"}, {"/isosurfaces/0/opacity", "\"thick\""}}, "level"));
   EXPECT_EQ(host.document().text(), kScene);
 }
 
-}  // namespace edits_test
-}  // namespace catena::app
+}  // namespace catena::app::edits_test

@@ -1,59 +1,42 @@
 // SPDX-License-Identifier: MIT
 /// The command `catena feel`.
-#include <gtest/gtest.h>
 #include <pty.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <future>
 #include <thread>
 
 #include "engine/base/json.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/program_in_folder.h"
 
-namespace catena {
-namespace feel_command_test {
+namespace catena::feel_command_test {
 
 constexpr const char* kScene = R"({
   "fields": {"v": {"analytic": "circle"}},
   "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0, 0]}])";
 
-class FeelCommand : public testing::Test {
+class FeelCommand : public test::ProgramInFolder {
  protected:
-  test::ProgramResult feel(const std::vector<std::string>& more, const std::string& device = "") {
-    test::write_file(folder_ / "s.json", kScene + (device.empty() ? "" : ", \"device\": " + device) + "}");
-    std::vector<std::string> arguments{"feel", folder_ / "s.json"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return test::run_catena(arguments);
-  }
+  void scene(const std::string& device = "") { write("s.json", kScene + (device.empty() ? "" : ", \"device\": " + device) + "}"); }
   /// Runs for a fifth of a second and returns the statistics.
-  json::Node stats(std::vector<std::string> more, const std::string& device = "") {
-    more.insert(more.end(), {"--seconds", "0.2", "--stats", folder_ / "stats.json"});
-    const test::ProgramResult run = feel(more, device);
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    out_ = run.out;
-    err_ = run.err;
-    auto node = json::parse(test::read_file(folder_ / "stats.json"), "stats.json");
+  json::Node stats(const std::string& more, const std::string& device = "") {
+    scene(device);
+    const test::ProgramResult done = succeed("feel {s.json} --seconds 0.2 --stats {stats.json} " + more);
+    out_ = done.out;
+    err_ = done.err;
+    auto node = json::parse(read("stats.json"), "stats.json");
     EXPECT_TRUE(node);
     return node ? *node : json::Node{};
   }
-  void expect_refused(const test::ProgramResult& run, const std::string& part) {
-    EXPECT_EQ(run.exit_code, 2) << run.err;
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-    EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
-    EXPECT_FALSE(test::exists(folder_ / "stats.json"));
-  }
 
-  test::TemporaryFolder folder_;
   std::string out_, err_;
 };
 
 TEST_F(FeelCommand, RunsTheServoAndWritesItsStatistics) {
-  const json::Node root = stats({});
+  const json::Node root = stats("");
   EXPECT_EQ(root.find("device")->string.find("simulated"), 0u) << "the default device";
   EXPECT_EQ(root.find("rate_hz")->number, 1000);
   EXPECT_GT(root.find("ticks")->number, 0);
@@ -75,16 +58,16 @@ TEST_F(FeelCommand, RunsTheServoAndWritesItsStatistics) {
 
 TEST_F(FeelCommand, OptionsOverrideTheScenesDeviceAndThatOverridesTheDefault) {
   const std::string device = R"({"type": "null", "rate": 500})";
-  EXPECT_EQ(stats({}, device).find("rate_hz")->number, 500);
-  EXPECT_EQ(stats({"--rate", "2000"}, device).find("rate_hz")->number, 2000);
-  const json::Node other = stats({"--device", "simulated", "--forces", "on"}, device);
+  EXPECT_EQ(stats("", device).find("rate_hz")->number, 500);
+  EXPECT_EQ(stats("--rate 2000", device).find("rate_hz")->number, 2000);
+  const json::Node other = stats("--device simulated --forces on", device);
   EXPECT_EQ(other.find("rate_hz")->number, 1000) << "what the scene says is for its own device";
   EXPECT_NE(err_.find("describes a device of type null; it is not used for simulated"), std::string::npos) << err_;
   EXPECT_NE(out_.find("forces on"), std::string::npos) << out_;
 }
 
 TEST_F(FeelCommand, WithRealtimeOffThereAreNoNotes) {
-  const json::Node root = stats({"--realtime", "off"});
+  const json::Node root = stats("--realtime off");
   EXPECT_FALSE(root.find("realtime")->find("fifo")->boolean);
   EXPECT_FALSE(root.find("realtime")->find("locked")->boolean);
   EXPECT_TRUE(root.find("realtime")->find("cpu")->is_null());
@@ -92,11 +75,11 @@ TEST_F(FeelCommand, WithRealtimeOffThereAreNoNotes) {
 }
 
 TEST_F(FeelCommand, CtrlCEndsItCleanly) {
-  test::write_file(folder_ / "s.json", std::string(kScene) + "}");
+  scene();
   const test::ProgramResult run = test::run_program("/usr/bin/timeout", {"--preserve-status", "-s", "INT", "1", test::program_path(),
                                                                          "feel", folder_ / "s.json", "--stats", folder_ / "stats.json"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_TRUE(test::exists(folder_ / "stats.json"));
+  EXPECT_TRUE(exists("stats.json"));
   EXPECT_NE(run.out.find("ticks in"), std::string::npos) << run.out;
 }
 
@@ -136,7 +119,7 @@ int run_on_stopped_terminal(const std::vector<std::string>& words, int signal_nu
 
 // The status line must not wait for the terminal: the time limit, signals and the end of the program do not depend on the terminal.
 TEST_F(FeelCommand, AStoppedTerminalDoesNotBlockTheProgram) {
-  test::write_file(folder_ / "s.json", std::string(kScene) + "}");
+  scene();
   const auto words = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {"feel", folder_ / "s.json", "--device", "emulated-falcon", "--forces", "on"});
     return more;
@@ -147,27 +130,26 @@ TEST_F(FeelCommand, AStoppedTerminalDoesNotBlockTheProgram) {
   EXPECT_EQ(run_on_stopped_terminal(later, SIGINT), 0);
   EXPECT_EQ(asked.get(), 0);
   EXPECT_EQ(in_time.get(), 0);
-  EXPECT_TRUE(test::exists(folder_ / "stats.json"));
+  EXPECT_TRUE(exists("stats.json"));
 }
 
 TEST_F(FeelCommand, BadInputIsOneLine) {
-  const std::string file = folder_ / "stats.json";
-  expect_refused(feel({"--device", "nonsense", "--stats", file}), "there is no device \"nonsense\"");
-  expect_refused(feel({"--rate", "50", "--stats", file}), "--rate");
-  expect_refused(feel({"--rate", "20000", "--stats", file}), "--rate");
-  expect_refused(feel({"--rate", "nan", "--stats", file}),
-                 "--rate: \"nan\" is out of range; a finite number from 100 to 10000 was expected");
-  expect_refused(feel({"--seconds", "nan", "--stats", file}),
-                 "--seconds: \"nan\" is out of range; a finite number of at least 0 was expected");
-  expect_refused(feel({"--seconds", "-1", "--stats", file}), "--seconds: \"-1\" is out of range; a finite number of at least 0");
-  expect_refused(feel({"--forces", "maybe", "--stats", file}), "--forces");
-  expect_refused(feel({"--seconds", "0.1", "--stats", file}, R"({"type": "simulated", "colour": 3})"), "colour");
-  expect_refused(feel({"--seconds", "0.1", "--stats", file}, R"({"rate": 500})"), "type");
-  expect_refused(feel({"--stats", folder_ / "none/stats.json"}), "none");
-  const test::ProgramResult data = test::run_catena({"feel", "grid.vdb"});
-  EXPECT_EQ(data.exit_code, 2);
-  EXPECT_NE(data.err.find("a scene file (.json) with a chain was expected"), std::string::npos) << data.err;
+  const std::pair<const char*, const char*> bad[] = {
+      {"--device nonsense", "there is no device \"nonsense\""},
+      {"--rate 50", "--rate"},
+      {"--rate 20000", "--rate"},
+      {"--rate nan", "--rate: \"nan\" is out of range; a finite number from 100 to 10000 was expected"},
+      {"--seconds nan", "--seconds: \"nan\" is out of range; a finite number of at least 0 was expected"},
+      {"--seconds -1", "--seconds: \"-1\" is out of range; a finite number of at least 0"},
+      {"--forces maybe", "--forces"}};
+  scene();
+  for (const auto& [more, part] : bad) expect_refused("feel {s.json} --stats {stats.json} " + std::string(more), {part});
+  expect_refused("feel {s.json} --stats {none/stats.json}", {"none"});
+  expect_refused("feel grid.vdb", {"a scene file (.json) with a chain was expected"});
+  for (const auto& [device, part] : {std::pair{R"({"type": "simulated", "colour": 3})", "colour"}, {R"({"rate": 500})", "type"}}) {
+    scene(device);
+    expect_refused("feel {s.json} --seconds 0.1 --stats {stats.json}", {part});
+  }
 }
 
-}  // namespace feel_command_test
-}  // namespace catena
+}  // namespace catena::feel_command_test

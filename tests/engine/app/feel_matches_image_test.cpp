@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include "engine/app/tuning/figures/figures.h"
@@ -15,9 +16,12 @@
 #include "tests/render/support/image_fixture.h"
 #include "tests/support/curve_files.h"
 #include "tests/support/mesh_shapes.h"
+#include "tests/support/results.h"
 
-namespace catena::app {
-namespace feel_matches_image_test {
+namespace catena::app::feel_matches_image_test {
+
+using test::fails;
+using test::value_of;
 
 constexpr int kPixels = 20, kTicks = 400;
 
@@ -25,15 +29,13 @@ class FeelMatchesImage : public test::ImageTest {
  protected:
   void show(const std::string& text) {
     ASSERT_NO_FATAL_FAILURE(test::open_scene(folder_, text, host_));
-    auto packet = render::make_frame(host_->scene(), 320, 240);
-    ASSERT_TRUE(packet) << packet.error().message;
-    packet_ = std::move(*packet);
+    packet_ = value_of(render::make_frame(host_->scene(), 320, 240));
     draw(packet_);
     camera_ = render::make_camera(packet_.view, packet_.width, packet_.height, Bounds());
   }
 
   /// A pixel that shows an item of the given part, away from its silhouette, and its position.
-  std::optional<PickHit> random_place(const std::string& part) {
+  PickHit random_place(const std::string& part) {
     std::uniform_int_distribution<int> column(4, 315), row(4, 235);
     for (int tries = 0; tries < 4000; ++tries) {
       const double x = column(random_) + 0.5, y = row(random_) + 0.5;
@@ -44,9 +46,9 @@ class FeelMatchesImage : public test::ImageTest {
       }
       if (!inner) continue;
       pixel_ = {x, y};
-      return pick_on_cpu(packet_, x, y);
+      return pick_on_cpu(packet_, x, y).value();
     }
-    return std::nullopt;
+    throw std::runtime_error("no pixel shows " + part);
   }
   std::string item_of(const PickHit& place) const { return packet_.objects[place.id - 1].scene_path; }
   double pixel_at(const Vec3& p) const { return render::pixel_size(camera_, render::project(camera_, p)->z); }
@@ -63,16 +65,16 @@ class FeelMatchesImage : public test::ImageTest {
     Vec3 hand{0.0};
     std::string words;
   };
+  HapticBinding binding_at(const PickHit& place) {
+    return value_of(make_haptic_binding(host_->scene(), item_of(place), place.world, packet_.view.position, 4));
+  }
   /// Makes the link as the window does, places the hand at the position, and pushes along the view direction.
   Contact feel_at(const PickHit& place, double push) {
     Contact contact;
-    const auto thing = make_haptic_binding(host_->scene(), item_of(place), place.world, packet_.view.position, 4);
-    EXPECT_TRUE(thing) << thing.error().message;
-    if (!thing) return contact;
-    contact.words = thing->description;
+    const HapticBinding thing = binding_at(place);
+    contact.words = thing.description;
     const std::string text = host_->document().text();
-    const std::string with_link = text.substr(0, text.rfind('}')) + ", \"chain\": [" + thing->link_json + "]}";
-    TickSimulation hand(with_link);
+    TickSimulation hand(text.substr(0, text.rfind('}')) + ", \"chain\": [" + thing.link_json + "]}");
     const Vec3 ahead = direction(place.world - packet_.view.position);
     for (int k = 0; k <= kTicks; ++k) {
       const double share = std::max(0.0, (k - 50) / double(kTicks - 50));
@@ -83,6 +85,18 @@ class FeelMatchesImage : public test::ImageTest {
       contact.force_n = norm(state.force_n);
     }
     return contact;
+  }
+  /// At random pixels of the part, the touched point is the drawn one, except for the radius of a tube, and a push has a force.
+  void expect_felt(
+      const std::string& part, double push, double radius = 0,
+      const std::function<void(const PickHit&, const Contact&)>& more = [](const PickHit&, const Contact&) {}) {
+    for (int k = 0; k < kPixels; ++k) {
+      const PickHit place = random_place(part);
+      const Contact contact = feel_at(place, push);
+      EXPECT_LE(norm(contact.touched - place.world), radius + pixel_at(place.world)) << contact.words;
+      EXPECT_GT(contact.force_n, 0.05);
+      more(place, contact);
+    }
   }
 
   test::TemporaryFolder folder_;
@@ -124,32 +138,21 @@ TEST_F(FeelMatchesImage, PickingFindsTheDrawnObjectAndDepth) {
 TEST_F(FeelMatchesImage, AnIsosurfaceIsFeltWhereItIsDrawn) {
   show(R"({"fields": {"g": {"analytic": "gaussian", "resolution": 48}}, "isosurfaces": [{"field": "g", "level": 0.37}],
            "camera": {"position": [5, -3, 2], "target": [0, 0, 0]}, "workspace": {"metres_per_unit": 0.05}})");
-  for (int k = 0; k < kPixels; ++k) {
-    const auto place = random_place("isosurfaces");
-    ASSERT_TRUE(place);
-    const Contact contact = feel_at(*place, 0.05);
-    EXPECT_LE(norm(contact.touched - place->world), pixel_at(place->world)) << contact.words;
-    EXPECT_LE(norm(contact.touched - drawn_at(pixel_[0], pixel_[1])), 1.5 * pixel_at(place->world)) << contact.words;
+  expect_felt("isosurfaces", 0.05, 0, [&](const PickHit& place, const Contact& contact) {
+    EXPECT_EQ(contact.words, "isosurface g at 0.37");
+    EXPECT_LE(norm(contact.touched - drawn_at(pixel_[0], pixel_[1])), 1.5 * pixel_at(place.world));
     // The proxy of the pressed hand stays on the drawn surface.
     const auto at = render::project(camera_, contact.pressed);
     const Vec3 drawn = drawn_at(std::floor(at->x) + 0.5, std::floor(at->y) + 0.5);
     EXPECT_LE(norm(drawn - contact.pressed), 3 * pixel_at(contact.pressed)) << "half a pixel sideways on an oblique surface";
-    EXPECT_GT(contact.force_n, 0.05);
     EXPECT_GT(norm(contact.hand - contact.pressed), 0.01);
-  }
-  EXPECT_EQ(feel_at(*random_place("isosurfaces"), 0.05).words, "isosurface g at 0.37");
+  });
 }
 
 TEST_F(FeelMatchesImage, AVolumeIsFeltAsTheIsosurfaceOfThePickedValue) {
   show(R"({"fields": {"g": {"analytic": "gaussian", "resolution": 48}},
            "volumes": [{"field": "g", "extinction": [[0.3, 0], [0.31, 40], [1, 40]]}], "workspace": {"metres_per_unit": 0.05}})");
-  for (int k = 0; k < kPixels; ++k) {
-    const auto place = random_place("volumes");
-    ASSERT_TRUE(place);
-    const Contact contact = feel_at(*place, 0.05);
-    EXPECT_LE(norm(contact.touched - place->world), pixel_at(place->world)) << contact.words;
-    EXPECT_GT(contact.force_n, 0.05);
-  }
+  expect_felt("volumes", 0.05);
 }
 
 TEST_F(FeelMatchesImage, OnlyThePickedLabelOfALabelMapIsFelt) {
@@ -163,22 +166,19 @@ TEST_F(FeelMatchesImage, OnlyThePickedLabelOfALabelMapIsFelt) {
            "all": {"label": "*", "of": "m"}}, "isosurfaces": [{"field": "all", "level": 0.5, "color_by": {"field": "m"}}]})");
   std::set<std::string> words;
   for (int k = 0; k < kPixels; ++k) {
-    const auto place = random_place("isosurfaces");
-    ASSERT_TRUE(place);
-    const auto thing = make_haptic_binding(host_->scene(), item_of(*place), place->world, packet_.view.position, 4);
-    ASSERT_TRUE(thing) << thing.error().message;
-    words.insert(thing->description);
-    if (std::fabs(place->world.x - 11.5) > 0.6) {
-      EXPECT_EQ(thing->description, place->world.x < 11.5 ? "label Left one (5)" : "label Right (6)");
+    const PickHit place = random_place("isosurfaces");
+    const HapticBinding thing = binding_at(place);
+    words.insert(thing.description);
+    if (std::fabs(place.world.x - 11.5) > 0.6) {
+      EXPECT_EQ(thing.description, place.world.x < 11.5 ? "label Left one (5)" : "label Right (6)");
     }
-    if (thing->description != "label Left one (5)") continue;
+    if (thing.description != "label Left one (5)") continue;
     // The first binding adds the label's field together with the link; later ones find the link.
-    const bool known = !find_bound_link(host_->scene(), *thing).empty();
-    EXPECT_EQ(thing->new_field.has_value(), !known);
+    const bool known = !find_bound_link(host_->scene(), thing).empty();
+    EXPECT_EQ(thing.new_field.has_value(), !known);
     if (known) continue;
-    EXPECT_EQ(thing->new_field->first, "/fields/left_one");
-    const auto done = host_->apply({{thing->new_field->first, thing->new_field->second}, {"/chain/-", thing->link_json}}, "feel");
-    ASSERT_TRUE(done) << done.error().message;
+    EXPECT_EQ(thing.new_field->first, "/fields/left_one");
+    value_of(host_->apply({{thing.new_field->first, thing.new_field->second}, {"/chain/-", thing.link_json}}, "feel"));
     ASSERT_TRUE(scene::resolve_field(host_->scene(), "left_one", {}));
   }
   EXPECT_EQ(words.size(), 2u) << "both are seen";
@@ -189,14 +189,7 @@ TEST_F(FeelMatchesImage, ThePickedStreamlineIsFelt) {
            "streamlines": [{"field": "flow", "radius": 0.04, "length": 2, "seeds": [[0.6, 0, -0.8], [-0.5, 0.2, 0.1], [0, 0.9, 0.4]]}],
            "workspace": {"metres_per_unit": 0.05}})");
   std::set<std::string> links;
-  for (int k = 0; k < kPixels; ++k) {
-    const auto place = random_place("streamlines");
-    ASSERT_TRUE(place);
-    links.insert(make_haptic_binding(host_->scene(), item_of(*place), place->world, packet_.view.position, 4)->link_json);
-    const Contact contact = feel_at(*place, 0.2);
-    EXPECT_LE(norm(contact.touched - place->world), 0.04 + pixel_at(place->world)) << "the line within the tube";
-    EXPECT_GT(contact.force_n, 0.05);
-  }
+  expect_felt("streamlines", 0.2, 0.04, [&](const PickHit& place, const Contact&) { links.insert(binding_at(place).link_json); });
   EXPECT_GE(links.size(), 2u) << "the picture shows several lines";
 }
 
@@ -204,26 +197,20 @@ TEST_F(FeelMatchesImage, ASliceIsFeltAsItsPlane) {
   show(
       R"({"fields": {"g": {"analytic": "gaussian", "resolution": 32}}, "slices": [{"field": "g", "point": [0, 0.1, 0], "normal": [1, -2, 0.5]}],
            "workspace": {"metres_per_unit": 0.05}})");
-  for (int k = 0; k < kPixels; ++k) {
-    const auto place = random_place("slices");
-    ASSERT_TRUE(place);
-    const Contact contact = feel_at(*place, 0.1);
-    EXPECT_LE(norm(contact.touched - place->world), pixel_at(place->world));
+  expect_felt("slices", 0.1, 0, [&](const PickHit&, const Contact& contact) {
     EXPECT_LE(std::abs(dot(direction(Vec3(1, -2, 0.5)), contact.pressed - Vec3(0, 0.1, 0))), 1e-9);
-    EXPECT_GT(contact.force_n, 0.05);
-  }
+  });
+}
+
+/// The scene of one mesh; TickSimulation needs its absolute path.
+std::string mesh_scene(const std::string& file) {
+  return R"({"meshes": [{"name": "ball", "file": ")" + file + R"("}], "workspace": {"metres_per_unit": 0.05}})";
 }
 
 TEST_F(FeelMatchesImage, AMeshIsFeltWhereItIsDrawn) {
   test::write_file(folder_ / "ball.stl", test::binary_stl(test::sphere_soup(24, 0.8)));
-  show(R"({"meshes": [{"name": "ball", "file": ")" + (folder_ / "ball.stl") + R"("}], "workspace": {"metres_per_unit": 0.05}})");
-  for (int k = 0; k < kPixels; ++k) {
-    const auto place = random_place("meshes");
-    ASSERT_TRUE(place);
-    const Contact contact = feel_at(*place, 0.05);
-    EXPECT_LE(norm(contact.touched - place->world), pixel_at(place->world));
-    EXPECT_GT(contact.force_n, 0.05);
-  }
+  show(mesh_scene(folder_ / "ball.stl"));
+  expect_felt("meshes", 0.05);
 }
 
 TEST_F(FeelMatchesImage, ThePickedCurveOfAFileIsFelt) {
@@ -239,18 +226,13 @@ TEST_F(FeelMatchesImage, ThePickedCurveOfAFileIsFelt) {
   show(R"({"curves": [{"name": "fibres", "file": ")" + (folder_ / "fibres.tck") + R"(", "radius": 0.03}],
            "workspace": {"metres_per_unit": 0.05}})");
   std::set<int> held;
-  for (int k = 0; k < kPixels; ++k) {
-    const auto place = random_place("curves");
-    ASSERT_TRUE(place);
-    const Contact contact = feel_at(*place, 0.06);
+  expect_felt("curves", 0.06, 0.03, [&](const PickHit& place, const Contact& contact) {
     EXPECT_EQ(contact.words, "curves fibres");
-    EXPECT_LE(norm(contact.touched - place->world), 0.03 + pixel_at(place->world)) << "the line within the tube";
-    EXPECT_LE(norm(contact.touched - drawn_at(pixel_[0], pixel_[1])), 0.03 + 1.5 * pixel_at(place->world));
+    EXPECT_LE(norm(contact.touched - drawn_at(pixel_[0], pixel_[1])), 0.03 + 1.5 * pixel_at(place.world));
     // The proxy of the pressed hand stays on that line.
     EXPECT_NEAR(contact.pressed.y, contact.touched.y, 1e-9);
-    EXPECT_GT(contact.force_n, 0.05);
     held.insert(static_cast<int>(std::lround((contact.pressed.y + 0.9) / 0.15)));
-  }
+  });
   EXPECT_GE(held.size(), 4u) << "the picture shows many lines";
 }
 
@@ -261,15 +243,11 @@ TEST_F(FeelMatchesImage, ThePickedPointOfATableIsFelt) {
   test::write_file(folder_ / "table.csv", table);
   show(R"({"points": [{"name": "dots", "file": ")" + (folder_ / "table.csv") + R"(", "radius": 0.06}],
            "workspace": {"metres_per_unit": 0.05}})");
-  for (int k = 0; k < kPixels; ++k) {
-    const auto at = random_place("points");
-    ASSERT_TRUE(at);
-    EXPECT_LE(norm(at->world - drawn_at(pixel_[0], pixel_[1])), 1.5 * pixel_at(at->world)) << "picked where it is drawn";
-    const Contact contact = feel_at(*at, 0.03);
+  expect_felt("points", 0.03, 0.06, [&](const PickHit& at, const Contact& contact) {
+    EXPECT_LE(norm(at.world - drawn_at(pixel_[0], pixel_[1])), 1.5 * pixel_at(at.world)) << "picked where it is drawn";
     EXPECT_EQ(contact.words, "points dots");
-    EXPECT_NEAR(norm(contact.pressed - at->world), 0.06, 1e-6) << "the middle of the ball";
-    EXPECT_GT(contact.force_n, 0.05);
-  }
+    EXPECT_NEAR(norm(contact.pressed - at.world), 0.06, 1e-6) << "the middle of the ball";
+  });
 }
 
 TEST_F(FeelMatchesImage, TheFreeSideIsTheCamerasSideForEitherMeshOrientation) {
@@ -278,35 +256,27 @@ TEST_F(FeelMatchesImage, TheFreeSideIsTheCamerasSideForEitherMeshOrientation) {
   for (auto& triangle : soup.triangles) std::swap(triangle[0], triangle[1]);
   test::write_file(folder_ / "in.stl", test::binary_stl(soup));
   for (const std::string name : {"out", "in"}) {
-    show(R"({"meshes": [{"name": "ball", "file": ")" + (folder_ / (name + ".stl")) + R"("}], "workspace": {"metres_per_unit": 0.05}})");
-    const auto place = random_place("meshes");
-    ASSERT_TRUE(place);
-    EXPECT_GT(feel_at(*place, 0.05).force_n, 0.05) << name;
+    show(mesh_scene(folder_ / (name + ".stl")));
+    EXPECT_GT(feel_at(random_place("meshes"), 0.05).force_n, 0.05) << name;
   }
 }
 
 TEST_F(FeelMatchesImage, AConstantFieldHasNoSurface) {
   show(R"({"fields": {"c": {"analytic": "constant", "resolution": 16}}, "volumes": [{"field": "c"}]})");
-  const auto thing = make_haptic_binding(host_->scene(), "volumes[0]", Vec3(0.0), Vec3(9, 9, 9), 4);
-  ASSERT_FALSE(thing);
-  EXPECT_NE(thing.error().message.find("the same value everywhere"), std::string::npos);
+  EXPECT_TRUE(fails(make_haptic_binding(host_->scene(), "volumes[0]", Vec3(0.0), Vec3(9, 9, 9), 4), "the same value everywhere"));
 }
 
 TEST_F(FeelMatchesImage, AnExistingLinkIsFoundAndErrorsStateTheReason) {
   show(R"({"fields": {"g": {"analytic": "gaussian", "resolution": 16}}, "isosurfaces": [{"field": "g", "level": 0.5}],
            "volumes": [{"field": "g"}], "slices": [{"field": "g", "widget": "cut"}], "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1]}],
            "chain": [{"name": "skin", "type": "isosurface", "field": "g", "level": 0.5, "free": "below"}]})");
-  const auto thing = make_haptic_binding(host_->scene(), "isosurfaces[0]", std::nullopt, Vec3(9, 9, 9), 4);
-  ASSERT_TRUE(thing);
-  EXPECT_EQ(find_bound_link(host_->scene(), *thing), "skin");
-  EXPECT_NE(make_haptic_binding(host_->scene(), "volumes[0]", std::nullopt, Vec3(9, 9, 9), 4).error().message.find("point at the volume"),
-            std::string::npos);
-  EXPECT_NE(make_haptic_binding(host_->scene(), "slices[0]", std::nullopt, Vec3(9, 9, 9), 4).error().message.find("widget"),
-            std::string::npos);
+  const auto bound = [&](const char* item) { return make_haptic_binding(host_->scene(), item, std::nullopt, Vec3(9, 9, 9), 4); };
+  EXPECT_EQ(find_bound_link(host_->scene(), value_of(bound("isosurfaces[0]"))), "skin");
+  EXPECT_TRUE(fails(bound("volumes[0]"), "point at the volume"));
+  EXPECT_TRUE(fails(bound("slices[0]"), "widget"));
   EXPECT_FALSE(can_bind_haptics("lights"));
   for (const char* part : {"isosurfaces", "streamlines", "slices", "meshes", "curves", "points", "volumes"})
     EXPECT_TRUE(can_bind_haptics(part)) << part;
 }
 
-}  // namespace feel_matches_image_test
-}  // namespace catena::app
+}  // namespace catena::app::feel_matches_image_test

@@ -8,8 +8,7 @@
 
 #include "tests/support/support.h"
 
-namespace catena::app {
-namespace file_browser_test {
+namespace catena::app::file_browser_test {
 
 class FileBrowser : public testing::Test {
  protected:
@@ -76,5 +75,4 @@ TEST_F(FileBrowser, ImagesGetTheNextUnusedNumber) {
   EXPECT_EQ(path_stem(""), "catena");
 }
 
-}  // namespace file_browser_test
-}  // namespace catena::app
+}  // namespace catena::app::file_browser_test

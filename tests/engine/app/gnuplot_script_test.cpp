@@ -11,9 +11,7 @@
 #include "engine/app/tuning/report/gnuplot_script.h"
 #include "engine/base/numbers.h"
 
-namespace gnuplot_script_test {
-
-using namespace catena;
+namespace catena::gnuplot_script_test {
 
 /// The numbers of a line like "set xtics (1, 2, 5)".
 std::vector<double> listed(const std::string& text) {
@@ -41,4 +39,4 @@ TEST(ReportPlot, TheShortestAxisHasTickLabels) {
   EXPECT_EQ(app::log_tics('x', 0.7, 14), "set xtics (1, 3, 10)\n");
 }
 
-}  // namespace gnuplot_script_test
+}  // namespace catena::gnuplot_script_test

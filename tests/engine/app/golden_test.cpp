@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// Images against reviewed golden images (tests/golden), with two tolerances: on the RMS error of the whole image, and on the fraction of
 /// pixels with a large error. CATENA_GOLDEN_WRITE=1 writes the golden images: review them before a commit.
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
-#include "render/image/image.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/program_in_folder.h"
 
-namespace catena {
-namespace golden_test {
+namespace catena::golden_test {
 
 constexpr double kMaxRmse = 0.5;   // maximum RMS error of 8-bit RGB
 constexpr int kFar = 8;            // a pixel with a larger error counts as far
@@ -41,31 +35,25 @@ std::string scene_of(const Golden& golden) {
          golden.scene + R"(, "camera": {"position": [3, -7, 4], "target": [0, 0, 0], "fovy_deg": 32}})";
 }
 
-class GoldenImage : public testing::TestWithParam<Golden> {};
+class GoldenImage : public test::ProgramInFolder, public testing::WithParamInterface<Golden> {};
 
 TEST_P(GoldenImage, EqualsTheReviewedImage) {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "s.json", scene_of(GetParam()));
-  const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "o.png", "--size", "192x144", "--quality", "step=0.5",
-                                     "--validation", "--stats", folder / "o.json"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(test::read_file(folder / "o.json").find("\"validation_messages\": 0"), std::string::npos) << run.err;
-  const auto found = render::read_png(folder / "o.png");
-  ASSERT_TRUE(found);
+  write("s.json", scene_of(GetParam()));
+  const render::Image8 found = drawn("{s.json} --size 192x144 --quality step=0.5");
   const std::string path = test::source_dir() + "/tests/golden/" + GetParam().name + ".png";
   if (std::getenv("CATENA_GOLDEN_WRITE") != nullptr) {
-    ASSERT_TRUE(render::write_png(path, *found, false));
+    ASSERT_TRUE(render::write_png(path, found, false));
   }
   const auto golden = render::read_png(path);
   ASSERT_TRUE(golden) << path;
-  ASSERT_EQ(found->rgba.size(), golden->rgba.size());
+  ASSERT_EQ(found.rgba.size(), golden->rgba.size());
   double squares = 0;
   std::size_t far_pixels = 0;
-  const std::size_t pixels = found->rgba.size() / 4;
+  const std::size_t pixels = found.rgba.size() / 4;
   for (std::size_t i = 0; i < pixels; ++i) {
     int worst = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      const int d = found->rgba[4 * i + c] - golden->rgba[4 * i + c];
+      const int d = found.rgba[4 * i + c] - golden->rgba[4 * i + c];
       squares += d * d;
       worst = std::max(worst, std::abs(d));
     }
@@ -82,5 +70,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, GoldenImage, testing::ValuesIn(kGoldens), [](co
   return name;
 });
 
-}  // namespace golden_test
-}  // namespace catena
+}  // namespace catena::golden_test

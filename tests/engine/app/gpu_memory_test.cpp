@@ -1,51 +1,40 @@
 // SPDX-License-Identifier: MIT
 /// `catena render --gpu-memory`: a grid that does not fit is drawn at a lower resolution, with a note and an entry in the statistics; a
 /// grid that fits at no resolution is a one-line error.
-#include <gtest/gtest.h>
+#include "tests/engine/app/program_in_folder.h"
 
-#include "engine/base/json.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
+namespace catena::gpu_memory_test {
 
-namespace gpu_memory_test {
+class GpuMemory : public test::ProgramInFolder {
+ protected:
+  test::ProgramResult render(const std::string& megabytes) {
+    write("s.json", R"({"fields": {"density": {"analytic": "sphere", "resolution": 64}},
+      "volumes": [{"field": "density", "color": [[0, 1, 0, 0], [2, 0, 0, 1]], "extinction": [[0, 0.5], [2, 0]]}]})");
+    return run("render {s.json} -o {o.png} --size 96x64 --quality reference --validation --stats {o.json} --gpu-memory " + megabytes);
+  }
+};
 
-using namespace catena;
-
-test::ProgramResult render(const test::TemporaryFolder& folder, const std::string& megabytes) {
-  test::write_file(folder / "s.json", R"({"fields": {"density": {"analytic": "sphere", "resolution": 64}},
-    "volumes": [{"field": "density", "color": [[0, 1, 0, 0], [2, 0, 0, 1]], "extinction": [[0, 0.5], [2, 0]]}]})");
-  return test::run_catena({"render", folder / "s.json", "-o", folder / "o.png", "--size", "96x64", "--quality", "reference", "--validation",
-                           "--gpu-memory", megabytes, "--stats", folder / "o.json"});
-}
-
-TEST(GpuMemory, AGridThatDoesNotFitIsDrawnCoarser) {
-  const test::TemporaryFolder folder;
-  const auto run = render(folder, "2");
+TEST_F(GpuMemory, AGridThatDoesNotFitIsDrawnCoarser) {
+  const auto run = render("2");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.err.find("sphere: 64^3 needs 1.3 MB of GPU memory, 0.85 MB are left: drawn at half resolution\n"), std::string::npos)
-      << run.err;
-  const std::string stats = test::read_file(folder / "o.json");
-  EXPECT_NE(stats.find(R"("mirror_coarsening": [{"grid": "sphere", "factor": 2}])"), std::string::npos) << stats;
-  EXPECT_NE(stats.find("\"gpu_budget_bytes\": 2000000,"), std::string::npos) << stats;
-  EXPECT_NE(stats.find("\"validation_messages\": 0"), std::string::npos) << run.err;
+  test::expect_parts(run.err, {"sphere: 64^3 needs 1.3 MB of GPU memory, 0.85 MB are left: drawn at half resolution\n"});
+  test::expect_parts(read("o.json"), {R"("mirror_coarsening": [{"grid": "sphere", "factor": 2}])", "\"gpu_budget_bytes\": 2000000,",
+                                      "\"validation_messages\": 0"});
 }
 
-TEST(GpuMemory, AGridThatFitsKeepsItsResolution) {
-  const test::TemporaryFolder folder;
-  const auto run = render(folder, "20");
+TEST_F(GpuMemory, AGridThatFitsKeepsItsResolution) {
+  const auto run = render("20");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.err.find("resolution"), std::string::npos) << run.err;
-  EXPECT_NE(test::read_file(folder / "o.json").find("\"mirror_coarsening\": []"), std::string::npos);
+  test::expect_parts(read("o.json"), {"\"mirror_coarsening\": []"});
 }
 
-TEST(GpuMemory, NoImageIsWrittenIfNoResolutionFits) {
-  const test::TemporaryFolder folder;
-  const auto run = render(folder, "1.1");
+TEST_F(GpuMemory, NoImageIsWrittenIfNoResolutionFits) {
+  const auto run = render("1.1");
   EXPECT_NE(run.exit_code, 0);
-  EXPECT_NE(run.err.find("sphere: 64^3 needs"), std::string::npos) << run.err;
-  EXPECT_EQ(test::read_file(folder / "o.png"), "");
-  const auto words = render(folder, "much");
-  EXPECT_EQ(words.exit_code, 2) << words.err;
+  test::expect_parts(run.err, {"sphere: 64^3 needs"});
+  EXPECT_EQ(read("o.png"), "");
+  EXPECT_EQ(render("much").exit_code, 2);
 }
 
-}  // namespace gpu_memory_test
+}  // namespace catena::gpu_memory_test

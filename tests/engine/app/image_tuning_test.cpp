@@ -8,6 +8,7 @@
 #include "render/extract/extract.h"
 #include "render/quality/quality.h"
 #include "tests/engine/app/tuning_fixtures.h"
+#include "tests/support/results.h"
 
 namespace tuning_test {
 
@@ -31,7 +32,7 @@ TEST(ImageTuning, MeetsItsErrorAtAnyFrameTime) {
     EXPECT_LE(plan.expected_error(), 1);
   }
   plan.set_targets(parse_target("error=0.01"));
-  EXPECT_NE(plan.summary().find("the target is not reached: most accurate setting"), std::string::npos) << plan.summary();
+  EXPECT_TRUE(test::has(plan.summary(), "the target is not reached: most accurate setting"));
 }
 
 TEST(ImageTuning, OnlyTheProgramsSettingsAreAccepted) {
@@ -64,10 +65,8 @@ TEST(ImageTuning, TakesTheVoxelFormatOfFewerBytes) {
   EXPECT_EQ(texels("error=1"), render::TexelFormat::r16f);
   EXPECT_EQ(texels("error=0.6"), render::TexelFormat::automatic);  // error too large
   EXPECT_EQ(texels("time=20"), render::TexelFormat::automatic);    // smallest error
-  EXPECT_NE(
-      ImageTuning(made_curve, parse_target("error=1")).summary().find("16 bits a voxel; expected: error 0.8/255 in 10.3 ms, 1.91 MiB"),
-      std::string::npos)
-      << ImageTuning(made_curve, parse_target("error=1")).summary();
+  EXPECT_TRUE(test::has(ImageTuning(made_curve, parse_target("error=1")).summary(),
+                        "16 bits a voxel; expected: error 0.8/255 in 10.3 ms, 1.91 MiB"));
   made_curve.curve.points[1].time = {14, 13.9, 14.1, 9};
   EXPECT_EQ(texels("error=1"), render::TexelFormat::automatic);  // much slower
 }
@@ -103,22 +102,17 @@ TEST(ImageTuning, OffersVoxelFormatsOnlyWhereRaysReadVoxels) {
 }
 
 TEST(ImageTuning, ErrorsBelowTheReportedMinimumAreEqual) {
-  auto scene = scene::parse_scene(R"({"fields": {"ball": {"analytic": "sphere", "resolution": 24}},
+  auto scene = test::value_of(scene::parse_scene(R"({"fields": {"ball": {"analytic": "sphere", "resolution": 24}},
     "volumes": [{"field": "ball", "color": "viridis", "range": [0.2, 2], "opacity": [[0.2, 0.3], [2, 0]]}]})",
-                                  "s.json");
-  ASSERT_TRUE(scene) << scene.error().message;
-  ASSERT_TRUE(scene::prepare(*scene));
-  const auto packet = render::make_frame(*scene, 64, 48);
-  ASSERT_TRUE(packet) << packet.error().message;
-  auto renderer = render::Renderer::create({});
-  ASSERT_TRUE(renderer) << renderer.error().message;
-  const auto kind = detect_quality_level_options(**renderer, *packet);
-  ASSERT_TRUE(kind);
-  auto measured = measure_image_curve(**renderer, *packet, *kind, [](double) {});
-  ASSERT_TRUE(measured) << measured.error().message;
+                                                "s.json"));
+  test::value_of(scene::prepare(scene));
+  const auto packet = test::value_of(render::make_frame(scene, 64, 48));
+  const auto renderer = test::value_of(render::Renderer::create({}));
+  const auto kind = test::value_of(detect_quality_level_options(*renderer, packet));
+  auto measured = test::value_of(measure_image_curve(*renderer, packet, kind, [](double) {}));
   // Among settings whose errors are below the reported minimum, the cheapest is chosen for any time.
-  measured->curve.discretization_error = app::tuning::kNotMeasured;
-  auto& points = measured->curve.points;
+  measured.curve.discretization_error = app::tuning::kNotMeasured;
+  auto& points = measured.curve.points;
   ASSERT_GE(points.size(), 3u);
   const int cheapest = int(points.size()) - 2;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -127,8 +121,8 @@ TEST(ImageTuning, ErrorsBelowTheReportedMinimumAreEqual) {
   }
   points[points.size() - 2].error = 1.4 * render::kMinReportedRmse;
   points[points.size() - 1].error = 0.05;
-  EXPECT_EQ(ImageTuning(*measured, parse_target("time=1000")).current(), cheapest);
-  EXPECT_EQ(ImageTuning(*measured, parse_target("error=0.01")).current(), cheapest);
+  EXPECT_EQ(ImageTuning(measured, parse_target("time=1000")).current(), cheapest);
+  EXPECT_EQ(ImageTuning(measured, parse_target("error=0.01")).current(), cheapest);
 }
 
 }  // namespace tuning_test

@@ -1,23 +1,18 @@
 // SPDX-License-Identifier: MIT
 /// `catena info --json`: the output of `info` for programs.
-#include <gtest/gtest.h>
-
 #include "engine/base/json.h"
+#include "tests/engine/app/program_in_folder.h"
 #include "tests/engine/io/vtk/files.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
 
-namespace catena {
-namespace info_json_test {
+namespace catena::info_json_test {
 
-class InfoJson : public ::testing::Test {
+class InfoJson : public test::ProgramInFolder {
  protected:
-  json::Node info(const std::string& path) {
-    const test::ProgramResult run = test::run_catena({"info", "--json", path});
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_EQ(run.out.find('\n') + 1, run.out.size()) << "one line";
-    auto node = json::parse(run.out, "out");
-    EXPECT_TRUE(node) << (node ? "" : node.error().message) << run.out;
+  json::Node info(const std::string& name) {
+    const test::ProgramResult done = succeed("info --json {" + name + "}");
+    EXPECT_EQ(done.out.find('\n') + 1, done.out.size()) << "one line";
+    auto node = json::parse(done.out, "out");
+    EXPECT_TRUE(node) << (node ? "" : node.error().message) << done.out;
     return node ? *node : json::Node{};
   }
   static double number(const json::Node& node, const char* key) {
@@ -30,12 +25,11 @@ class InfoJson : public ::testing::Test {
     EXPECT_TRUE(found != nullptr && found->kind == json::Kind::string) << key;
     return found == nullptr ? "" : found->string;
   }
-  test::TemporaryFolder folder_;
 };
 
 TEST_F(InfoJson, ADataFileHasItsGrids) {
-  ASSERT_EQ(test::run_catena({"generate", "linear", "-o", folder_ / "a.vdb", "--resolution", "5", "--box", "-1", "3"}).exit_code, 0);
-  const json::Node info_of = info(folder_ / "a.vdb");
+  succeed("generate linear -o {a.vdb} --resolution 5 --box -1 3");
+  const json::Node info_of = info("a.vdb");
   EXPECT_EQ(word(info_of, "kind"), "data");
   const json::Node* grids = info_of.find("grids");
   ASSERT_TRUE(grids != nullptr && grids->items.size() == 1);
@@ -50,27 +44,26 @@ TEST_F(InfoJson, ADataFileHasItsGrids) {
 }
 
 TEST_F(InfoJson, AnUnstructuredGridHasItsNumbersOfPointsAndCells) {
-  test::write_file(folder_ / "m.vtu", test::vtk_files::vtu_mixed([](const Vec3& p) { return p.x; }));
-  const json::Node meshed = info(folder_ / "m.vtu");
+  write("m.vtu", test::vtk_files::vtu_mixed([](const Vec3& p) { return p.x; }));
+  const json::Node meshed = info("m.vtu");
   const json::Node& points = meshed.find("grids")->items.at(0);
   const json::Node& cells = meshed.find("grids")->items.at(1);
   EXPECT_EQ(number(cells, "active_cells"), 2) << "a hexahedron and a tetrahedron";
   EXPECT_EQ(points.find("active_voxels"), nullptr);
-  const std::string text = test::run_catena({"info", folder_ / "m.vtu"}).out;
-  EXPECT_NE(text.find(fmt::format("active       {} points\n", number(points, "active_points"))), std::string::npos) << text;
-  EXPECT_NE(text.find("active       2 cells\n"), std::string::npos) << text;
+  const std::string active_points = fmt::format("active       {} points\n", number(points, "active_points"));
+  test::expect_parts(run("info {m.vtu}").out, {active_points, "active       2 cells\n"});
 }
 
 TEST_F(InfoJson, AMeshAndASceneHaveTheirParts) {
-  test::write_file(folder_ / "t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
-  test::write_file(folder_ / "s.json", R"({"fields": {"r": {"analytic": "sphere"}}, "meshes": [{"name": "t", "file": "t.obj"}],
+  write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  write("s.json", R"({"fields": {"r": {"analytic": "sphere"}}, "meshes": [{"name": "t", "file": "t.obj"}],
     "isosurfaces": [{"field": "r", "level": 1}], "chain": [{"name": "skin", "type": "isosurface", "field": "r", "level": 1}],
     "widgets": [{"name": "cut", "type": "cutting_plane", "center": [1, 2, 3], "normal": [0, 0, 1]}]})");
-  const json::Node mesh = info(folder_ / "t.obj");
+  const json::Node mesh = info("t.obj");
   EXPECT_EQ(word(mesh, "kind"), "mesh");
   EXPECT_EQ(number(mesh, "triangles"), 4);
   EXPECT_EQ(number(mesh, "open_edges"), 0);
-  const json::Node scene = info(folder_ / "s.json");
+  const json::Node scene = info("s.json");
   EXPECT_EQ(word(scene, "kind"), "scene");
   EXPECT_EQ(word(scene.find("fields")->items.at(0), "source"), "sphere");
   EXPECT_EQ(scene.find("fields")->items.at(0).find("range")->items.at(1).kind, json::Kind::null) << "of a formula without an end";
@@ -82,22 +75,14 @@ TEST_F(InfoJson, AMeshAndASceneHaveTheirParts) {
 }
 
 TEST_F(InfoJson, ARecordingHasItsTicks) {
-  test::write_file(folder_ / "s.json", "{}");
-  ASSERT_EQ(
-      test::run_catena({"feel", folder_ / "s.json", "--seconds", "0.02", "--realtime", "off", "--record", folder_ / "l.catlog"}).exit_code,
-      0);
-  const json::Node recording = info(folder_ / "l.catlog");
+  write("s.json", "{}");
+  succeed("feel {s.json} --seconds 0.02 --realtime off --record {l.catlog}");
+  const json::Node recording = info("l.catlog");
   EXPECT_EQ(word(recording, "kind"), "recording");
   EXPECT_GT(number(recording, "ticks"), 0);
   EXPECT_EQ(number(recording, "rate_hz"), 1000);
 }
 
-TEST_F(InfoJson, ErrorsEqualThoseOfInfo) {
-  const test::ProgramResult run = test::run_catena({"info", "--json", folder_ / "none.vdb"});
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_TRUE(run.out.empty());
-  EXPECT_NE(run.err.find("none.vdb"), std::string::npos);
-}
+TEST_F(InfoJson, ErrorsEqualThoseOfInfo) { EXPECT_TRUE(expect_refused("info --json {none.vdb}", {"none.vdb"}).out.empty()); }
 
-}  // namespace info_json_test
-}  // namespace catena
+}  // namespace catena::info_json_test

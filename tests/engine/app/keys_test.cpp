@@ -7,8 +7,7 @@
 #include <set>
 #include <string>
 
-namespace catena::app {
-namespace keys_test {
+namespace catena::app::keys_test {
 
 using What = KeyEvent::Type;
 constexpr int kA = 65, kB = 66, kEscape = 256, kEnter = 257, kBackspace = 259, kShift = 340, kControl = 341;
@@ -51,10 +50,7 @@ struct Interface {
 
 TEST(Keys, AShortKeystrokeIsPressedAndReleasedInDifferentFrames) {
   Interface ui;
-  ui.send(event(What::press, kBackspace));
-  ui.send(event(What::release, kBackspace));
-  ui.send(event(What::press, kBackspace));
-  ui.send(event(What::release, kBackspace));
+  for (const What what : {What::press, What::release, What::press, What::release}) ui.send(event(what, kBackspace));
   ui.frame();
   EXPECT_EQ(ui.strokes_read, "<259><259>");
 }
@@ -88,7 +84,7 @@ TEST(Keys, NoInterleavingOfKeysRepeatsFocusAndFramesLosesInput) {
   std::mt19937 random(20240611);
   for (int run = 0; run < 3000; ++run) {
     Interface ui;
-    std::set<int> down_keys;  // keys that are down
+    std::set<int> down_keys;
     std::string expected_text, expected_strokes;
     const auto modifiers = [](const std::set<int>& keys) {
       std::set<int> some;
@@ -157,5 +153,4 @@ TEST(Keys, NoInterleavingOfKeysRepeatsFocusAndFramesLosesInput) {
   }
 }
 
-}  // namespace keys_test
-}  // namespace catena::app
+}  // namespace catena::app::keys_test

@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace catena::app {
-namespace layout_test {
+namespace catena::app::layout_test {
 
 TEST(Layout, TheImageFillsTheAreaBesideThePanels) {
   const Area area = compute_image_area(1000, 700, {320, 20, 25});
@@ -34,5 +33,4 @@ TEST(Layout, PixelsFollowTheFramebufferScale) {
   EXPECT_EQ(to_pixel_rect(area, 1000, 700, 2000, 1400), (std::array<std::uint32_t, 4>{640, 40, 2000, 1350}));
 }
 
-}  // namespace layout_test
-}  // namespace catena::app
+}  // namespace catena::app::layout_test

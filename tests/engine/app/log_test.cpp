@@ -1,24 +1,18 @@
 // SPDX-License-Identifier: MIT
 /// `catena replay --log`, `export` and `info` of a recording: every kind of link, switches, maps and program changes.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
 
 #include "engine/app/haptics/log_replay.h"
 #include "haptics/build/build_program.h"
 #include "haptics/servo/log/rewrite.h"
+#include "tests/engine/app/program_in_folder.h"
 #include "tests/fuzz/log_bytes.h"
 #include "tests/support/recording_fixture.h"
-#include "tests/support/run_program.h"
 
-namespace log_test {
+namespace catena::log_test {
 
-using namespace catena;
 using namespace catena::haptics;
 using test::ProgramChange;
-
-test::ProgramResult catena_program(const std::vector<std::string>& arguments) { return test::run_catena(arguments); }
 
 struct TestedScene {
   const char* name;
@@ -63,16 +57,6 @@ const TestedScene kScenes[] = {
 constexpr const char* kOtherScene = R"({"fields": {"s": {"analytic": "sphere"}},
   "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.4}, {"name": "pin", "type": "point", "position": [0, 0, 0.2]}]})";
 
-void make_data(const std::string& folder) {
-  for (const char* name : {"circle", "sphere"}) {
-    const auto run =
-        catena_program({"generate", name, "-o", folder + "/" + std::string(name) + ".vdb", "--resolution", "17", "--box", "-1", "1"});
-    ASSERT_EQ(run.exit_code, 0) << run.err;
-  }
-  test::write_file(folder + "/wedge.obj",
-                   "v -0.4 -0.4 -0.3\nv 0.4 -0.4 -0.3\nv 0 0.5 -0.3\nv 0 0 0.4\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
-}
-
 /// Program changes like those of a session with a device: a fitted workspace, limits, and four programs (the scene, an equal one,
 /// another one, the scene).
 std::vector<ProgramChange> session(const std::string& scene_path, const std::string& text) {
@@ -97,20 +81,33 @@ std::vector<ProgramChange> session(const std::string& scene_path, const std::str
   return changes;
 }
 
-std::uint64_t record_session(const std::string& log, const std::string& scene_path, int ticks = 1200) {
-  auto header = app::make_log_header(scene_path, {}, "simulated", 1000);
-  EXPECT_TRUE(header) << header.error().message;
-  auto writer = log::LogWriter::open(log, *header, {scene_path});
-  EXPECT_TRUE(writer) << writer.error().message;
-  const std::uint64_t hash = test::record_ticks(**writer, session(scene_path, header->scene_text), test::adversarial_path(ticks));
-  const Outcome done = (*writer)->finish();
-  EXPECT_TRUE(done) << done.error().message;
-  return hash;
-}
+class RecordingTest : public test::ProgramInFolder {
+ protected:
+  /// Writes the scene s.json and the files that scenes name to a subfolder of the folder, for example "a/".
+  void make_scene(const TestedScene& scene, const std::string& subfolder = "") {
+    for (const std::string name : {"circle", "sphere"})
+      succeed("generate " + name + " -o {" + subfolder + name + ".vdb} --resolution 17 --box -1 1");
+    write(subfolder + "wedge.obj", "v -0.4 -0.4 -0.3\nv 0.4 -0.4 -0.3\nv 0 0.5 -0.3\nv 0 0 0.4\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    write(subfolder + "s.json", scene.scene);
+  }
+  /// Records a session with the scene to l.catlog; returns its state_hash as it is printed.
+  std::string record_session(const std::string& scene_name = "s.json") {
+    const std::string scene_path = folder_ / scene_name;
+    auto header = app::make_log_header(scene_path, {}, "simulated", 1000);
+    EXPECT_TRUE(header) << header.error().message;
+    auto writer = log::LogWriter::open(log_, *header, {scene_path});
+    EXPECT_TRUE(writer) << writer.error().message;
+    const std::uint64_t hash = test::record_ticks(**writer, session(scene_path, header->scene_text), test::adversarial_path(1200));
+    const Outcome done = (*writer)->finish();
+    EXPECT_TRUE(done) << done.error().message;
+    return fmt::format("{:016x}", hash);
+  }
+  test::Table table(const std::string& name) const { return test::Table::read(folder_ / name); }
+  std::string log_ = folder_ / "l.catlog";
+};
 
 /// The text of a tick table without its "_curve" columns, which a recording does not contain.
-std::string without_curves(const std::string& path) {
-  const test::Table table = test::Table::read(path);
+std::string without_curves(const test::Table& table) {
   std::string text;
   for (std::size_t row = 0; row < table.rows(); ++row)
     for (const std::string& column : table.header())
@@ -118,12 +115,10 @@ std::string without_curves(const std::string& path) {
   return text;
 }
 
-TEST(Upgrade, AnUpgradedRecordingOfVersion02ReplaysToTheSameHash) {
-  const test::TemporaryFolder folder;
-  make_data(folder.path());
-  test::write_file(folder / "s.json", kScenes[0].scene);
-  const std::uint64_t hash = record_session(folder / "new.catlog", folder / "s.json");
-  const std::string old = folder / "old.catlog";
+using Upgrade = RecordingTest;
+TEST_F(Upgrade, AnUpgradedRecordingOfVersion02ReplaysToTheSameHash) {
+  make_scene(kScenes[0]);
+  const std::string hash = record_session(), old = folder_ / "old.catlog";
   const auto old_names = [](std::string_view scene_text) -> Result<std::string> {
     std::string text(scene_text);
     for (const auto& [now, then] :
@@ -131,53 +126,42 @@ TEST(Upgrade, AnUpgradedRecordingOfVersion02ReplaysToTheSameHash) {
       for (std::size_t at; (at = text.find(now)) != std::string::npos;) text.replace(at, std::string_view(now).size(), then);
     return text;
   };
-  ASSERT_TRUE(haptics::log::rewrite_scene_texts(folder / "new.catlog", old, old_names));
-  const auto refused = catena_program({"replay", "--log", old});
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.err.find("\"indicate\" is now \"release_cue\""), std::string::npos) << refused.err;
+  ASSERT_TRUE(haptics::log::rewrite_scene_texts(log_, old, old_names));
+  expect_refused("replay --log {old.catlog}", {"\"indicate\" is now \"release_cue\""});
 
-  const std::string bytes = test::read_file(old);
-  ASSERT_EQ(catena_program({"upgrade", old}).exit_code, 0);
-  EXPECT_EQ(test::read_file(old + ".bak"), bytes);
-  const auto run = catena_program({"replay", "--log", old, "--stats", folder / "s.txt"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(test::read_file(folder / "s.txt").find(fmt::format("{:016x}", hash)), std::string::npos);
-  EXPECT_EQ(catena_program({"upgrade", old}).out, old + ": has no old names\n");
+  const std::string bytes = read("old.catlog");
+  succeed("upgrade {old.catlog}");
+  EXPECT_EQ(read("old.catlog.bak"), bytes);
+  succeed("replay --log {old.catlog} --stats {s.txt}");
+  test::expect_parts(read("s.txt"), {hash});
+  EXPECT_EQ(succeed("upgrade {old.catlog}").out, old + ": has no old names\n");
 
-  test::write_file(folder / "a.json", R"({"fog": {"most": 0.5}})");
-  test::write_file(folder / "a.json.bak", "mine");
-  EXPECT_EQ(catena_program({"upgrade", folder / "a.json"}).exit_code, 2);  // no file is overwritten
-  EXPECT_EQ(test::read_file(folder / "a.json") + test::read_file(folder / "a.json.bak"), R"({"fog": {"most": 0.5}}mine)");
-  test::write_file(old, bytes.substr(0, 100) + "x" + bytes.substr(101));
-  EXPECT_EQ(catena_program({"upgrade", "--no-backup", old}).exit_code, 2);
+  write("a.json", R"({"fog": {"most": 0.5}})");
+  write("a.json.bak", "mine");
+  EXPECT_EQ(run("upgrade {a.json}").exit_code, 2);  // no file is overwritten
+  EXPECT_EQ(read("a.json") + read("a.json.bak"), R"({"fog": {"most": 0.5}}mine)");
+  write("old.catlog", bytes.substr(0, 100) + "x" + bytes.substr(101));
+  EXPECT_EQ(run("upgrade --no-backup {old.catlog}").exit_code, 2);
 }
 
-class RecordedScene : public testing::TestWithParam<TestedScene> {};
+class RecordedScene : public RecordingTest, public testing::WithParamInterface<TestedScene> {};
 
 TEST_P(RecordedScene, ReplaysBitExactlyAndExportsTheSameTable) {
-  const test::TemporaryFolder folder;
-  make_data(folder.path());
-  test::write_file(folder / "s.json", GetParam().scene);
-  const std::uint64_t hash = record_session(folder / "l.catlog", folder / "s.json");
-  const auto run = catena_program(
-      {"replay", "--log", folder / "l.catlog", "-o", folder / "t.csv", "--details", folder / "d.csv", "--stats", folder / "s.txt"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("1200 ticks, all bit-identical; ends cleanly with tick 1200"), std::string::npos) << run.out;
-  char text[32];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  EXPECT_NE(test::read_file(folder / "s.txt").find(text), std::string::npos);
+  make_scene(GetParam());
+  const std::string hash = record_session();
+  const auto run = succeed("replay --log {l.catlog} -o {t.csv} --details {d.csv} --stats {s.txt}");
+  test::expect_parts(run.out, {"1200 ticks, all bit-identical; ends cleanly with tick 1200"});
+  test::expect_parts(read("s.txt"), {hash});
 
-  const auto exported = catena_program({"export", folder / "l.catlog", "-o", folder / "e.csv", "--details", folder / "ed.csv"});
-  ASSERT_EQ(exported.exit_code, 0) << exported.err;
-  const test::Table exported_ticks = test::Table::read(folder / "e.csv");
-  EXPECT_EQ(exported_ticks.header(), test::Table::read(folder / "t.csv").header());
-  EXPECT_EQ(without_curves(folder / "e.csv"), without_curves(folder / "t.csv"));
+  succeed("export {l.catlog} -o {e.csv} --details {ed.csv}");
+  const test::Table exported_ticks = table("e.csv"), details = table("d.csv"), all = table("ed.csv");
+  EXPECT_EQ(exported_ticks.header(), table("t.csv").header());
+  EXPECT_EQ(without_curves(exported_ticks), without_curves(table("t.csv")));
   for (const std::string& column : exported_ticks.header()) {
     if (column.ends_with("_curve")) {
       EXPECT_EQ(exported_ticks.text(0, column), "") << column;
     }
   }
-  const test::Table details = test::Table::read(folder / "d.csv"), all = test::Table::read(folder / "ed.csv");
   ASSERT_EQ(details.rows(), 1200u);
   ASSERT_EQ(all.rows(), 1200u);
   for (const std::string& column : details.header())
@@ -197,118 +181,83 @@ TEST_P(RecordedScene, ReplaysBitExactlyAndExportsTheSameTable) {
 INSTANTIATE_TEST_SUITE_P(Scenes, RecordedScene, testing::ValuesIn(kScenes),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
-class Recording : public testing::Test {
+class Recording : public RecordingTest {
  protected:
   Recording() {
     std::filesystem::create_directory(folder_ / "a");
-    make_data(folder_ / "a");
-    test::write_file(folder_ / "a/s.json", kScenes[1].scene);
-    record_session(log_, folder_ / "a/s.json");
+    make_scene(kScenes[1], "a/");
+    record_session("a/s.json");
   }
-  test::TemporaryFolder folder_;
-  std::string log_ = folder_ / "l.catlog";
 };
 
 TEST_F(Recording, IsReplayedWithAMovedSceneIfThatIsGiven) {
   std::filesystem::rename(folder_ / "a", folder_ / "b");
-  const auto lost = catena_program({"replay", "--log", log_, "-o", folder_ / "t.csv"});
-  EXPECT_EQ(lost.exit_code, 2);
-  EXPECT_NE(lost.err.find("circle.vdb"), std::string::npos) << lost.err;
-  EXPECT_FALSE(test::exists(folder_ / "t.csv"));
+  expect_refused("replay --log {l.catlog} -o {t.csv}", {"circle.vdb"});
   // The scene is next to its files; a replay needs no output.
-  const auto found = catena_program({"replay", folder_ / "b/s.json", "--log", log_});
-  EXPECT_EQ(found.exit_code, 0) << found.err;
-  EXPECT_NE(found.out.find("all bit-identical"), std::string::npos);
+  test::expect_parts(succeed("replay {b/s.json} --log {l.catlog}").out, {"all bit-identical"});
   // Tables need neither the scene nor its files.
   std::filesystem::remove_all(folder_ / "b");
-  EXPECT_EQ(catena_program({"export", log_, "-o", folder_ / "e.csv"}).exit_code, 0);
-  EXPECT_EQ(test::Table::read(folder_ / "e.csv").rows(), 1200u);
+  succeed("export {l.catlog} -o {e.csv}");
+  EXPECT_EQ(table("e.csv").rows(), 1200u);
 }
 
 TEST_F(Recording, WithoutAWorkspaceTheScaleIsReported) {
   const std::string sentence = "the scene states no workspace: 1 world unit is ";
-  const auto own = catena_program({"replay", "--log", log_});
-  EXPECT_NE(own.out.find(sentence + "0.07 m of the device, as recorded\n"), std::string::npos) << own.out;
-  test::write_file(folder_ / "p.csv", "t,x,y,z\n0,0,0,0\n");
-  const auto path = catena_program({"replay", folder_ / "a/s.json", "--probe", folder_ / "p.csv", "-o", folder_ / "t.csv"});
-  EXPECT_NE(path.out.find(sentence + "1 m of the device\n"), std::string::npos) << path.out;
+  test::expect_parts(run("replay --log {l.catlog}").out, {sentence + "0.07 m of the device, as recorded\n"});
+  write("p.csv", "t,x,y,z\n0,0,0,0\n");
+  test::expect_parts(run("replay {a/s.json} --probe {p.csv} -o {t.csv}").out, {sentence + "1 m of the device\n"});
   std::string text = kScenes[1].scene;
   text.insert(1, R"("workspace": {"metres_per_unit": 0.07}, )");
-  test::write_file(folder_ / "a/stated.json", text);
-  const auto stated = catena_program({"replay", folder_ / "a/stated.json", "--probe", folder_ / "p.csv", "-o", folder_ / "t.csv"});
-  EXPECT_EQ(stated.exit_code, 0) << stated.err;
+  write("a/stated.json", text);
+  const auto stated = succeed("replay {a/stated.json} --probe {p.csv} -o {t.csv}");
   EXPECT_EQ(stated.out.find(sentence), std::string::npos) << stated.out;
 }
 
 TEST_F(Recording, AnotherSceneIsReportedWithTheFirstDifferentTick) {
   std::string text = kScenes[1].scene;
   text.replace(text.find("0.02, 0.03]"), 4, "0.03");
-  test::write_file(folder_ / "a/other.json", text);
-  const auto run = catena_program({"replay", folder_ / "a/other.json", "--log", log_, "-o", folder_ / "t.csv"});
-  EXPECT_EQ(run.exit_code, 1);
-  EXPECT_NE(run.err.find("first differs at tick "), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find("recorded"), std::string::npos) << run.err;
-  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-  EXPECT_EQ(test::Table::read(folder_ / "t.csv").rows(), 1200u) << "what the replay gave, to compare";
-  test::write_file(folder_ / "a/none.json", R"({"chain": []})");
-  const auto none = catena_program({"replay", folder_ / "a/none.json", "--log", log_});
-  EXPECT_EQ(none.exit_code, 2);
-  EXPECT_NE(none.err.find("links or widgets of the scene differ"), std::string::npos) << none.err;
+  write("a/other.json", text);
+  const auto other = run("replay {a/other.json} --log {l.catlog} -o {t.csv}");
+  EXPECT_EQ(other.exit_code, 1);
+  test::expect_parts(other.err, {"first differs at tick ", "recorded"});
+  test::expect_one_line(other.err);
+  EXPECT_EQ(table("t.csv").rows(), 1200u) << "what the replay gave, to compare";
+  write("a/none.json", R"({"chain": []})");
+  expect_refused("replay {a/none.json} --log {l.catlog}", {"links or widgets of the scene differ"});
 }
 
 TEST_F(Recording, ATruncatedLogIsReplayedAndDescribed) {
-  const std::string bytes = test::read_file(log_);
-  test::write_file(log_, bytes.substr(0, bytes.size() - 100));
-  const auto run = catena_program({"replay", "--log", log_, "-o", folder_ / "t.csv"});
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("all bit-identical; truncated after tick "), std::string::npos) << run.out;
-  const auto info = catena_program({"info", log_});
-  EXPECT_EQ(info.exit_code, 0) << info.err;
-  for (const char* part :
-       {"a/s.json", "simulated at 1000 Hz", "truncated after tick", "from tick 1: curve, surface", "from tick 700: surface, pin", "ticks "})
-    EXPECT_NE(info.out.find(part), std::string::npos) << part << " in\n" << info.out;
+  const std::string bytes = read("l.catlog");
+  write("l.catlog", bytes.substr(0, bytes.size() - 100));
+  test::expect_parts(succeed("replay --log {l.catlog} -o {t.csv}").out, {"all bit-identical; truncated after tick "});
+  test::expect_parts(succeed("info {l.catlog}").out, {"a/s.json", "simulated at 1000 Hz", "truncated after tick",
+                                                      "from tick 1: curve, surface", "from tick 700: surface, pin", "ticks "});
 }
 
 TEST_F(Recording, AGapIsReportedAndTheReplayFails) {
-  std::string bytes = test::read_file(log_);
+  std::string bytes = read("l.catlog");
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
-  test::write_file(log_, bytes);
-  const auto run = catena_program({"replay", "--log", log_});
-  EXPECT_EQ(run.exit_code, 1);
-  EXPECT_NE(run.out.find("all bit-identical"), std::string::npos) << run.out;
-  EXPECT_NE(run.err.find("are lost: the log is damaged at this point; the rest cannot be replayed"), std::string::npos) << run.err;
-  const auto table = catena_program({"export", log_, "-o", folder_ / "e.csv"});
-  EXPECT_EQ(table.exit_code, 0);
-  EXPECT_NE(table.err.find("are lost"), std::string::npos);
-  EXPECT_NE(catena_program({"info", log_}).out.find("gap "), std::string::npos);
+  write("l.catlog", bytes);
+  const auto replay = run("replay --log {l.catlog}");
+  EXPECT_EQ(replay.exit_code, 1);
+  test::expect_parts(replay.out, {"all bit-identical"});
+  test::expect_parts(replay.err, {"are lost: the log is damaged at this point; the rest cannot be replayed"});
+  test::expect_parts(succeed("export {l.catlog} -o {e.csv}").err, {"are lost"});
+  test::expect_parts(run("info {l.catlog}").out, {"gap "});
 }
 
 TEST_F(Recording, BadArgumentsAreOneLineAndNoFile) {
-  test::write_file(folder_ / "no.catlog", "this is no recording");
-  test::write_file(folder_ / "p.csv", "t,x,y,z\n0,0,0,0\n");
-  const std::string o = folder_ / "o.csv";
-  const std::pair<std::vector<std::string>, std::string> bad[] = {
-      {{"replay", "--log", folder_ / "no.catlog", "-o", o}, "not a recording"},
-      {{"replay", "--log", folder_ / "none.catlog", "-o", o}, "none.catlog"},
-      {{"replay", "--log", log_, "--probe", folder_ / "p.csv", "-o", o}, "--probe and --log"},
-      {{"replay", "--log", log_, "-o", log_}, "input"},
-      {{"replay", "--log", log_, "-o", folder_ / "a/s.json"}, "input"},
-      {{"replay", "--log", log_, "-o", o, "--details", o}, "one file"},
-      {{"export", folder_ / "no.catlog", "-o", o}, "not a recording"},
-      {{"export", log_, "-o", log_}, "input"},
-      {{"export", log_, "-o", o, "--details", folder_ / "./o.csv"}, "one file"},
-      {{"info", folder_ / "no.catlog"}, "not a recording"},
-      {{"replay", "-o", o}, "SCENE is required"},
-      {{"replay", folder_ / "a/s.json", "-o", o}, "--probe or --log"},
-      {{"replay", folder_ / "a/s.json", "--probe", folder_ / "p.csv"}, "--output is required"}};
-  for (const auto& [arguments, expected] : bad) {
-    const auto run = catena_program(arguments);
-    EXPECT_EQ(run.exit_code, 2) << run.err;
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-    EXPECT_NE(run.err.find(expected), std::string::npos) << expected << " in " << run.err;
-    EXPECT_FALSE(test::exists(o));
-  }
-  EXPECT_EQ(test::read_file(folder_ / "a/s.json"), kScenes[1].scene);
+  write("no.catlog", "this is no recording");
+  write("p.csv", "t,x,y,z\n0,0,0,0\n");
+  const std::pair<const char*, const char*> bad[] = {{"replay --log {no.catlog} -o {o.csv}", "not a recording"},
+                                                     {"replay --log {none.catlog} -o {o.csv}", "none.catlog"},
+                                                     {"replay --log {l.catlog} --probe {p.csv} -o {o.csv}", "--probe and --log"},
+                                                     {"export {no.catlog} -o {o.csv}", "not a recording"},
+                                                     {"info {no.catlog}", "not a recording"},
+                                                     {"replay -o {o.csv}", "SCENE is required"},
+                                                     {"replay {a/s.json} -o {o.csv}", "--probe or --log"},
+                                                     {"replay {a/s.json} --probe {p.csv}", "--output is required"}};
+  for (const auto& [line, part] : bad) expect_refused(line, {part});
 }
 
 TEST_F(Recording, ReplacedFieldsAreRelativeToTheRecordedWorkingFolder) {
@@ -325,16 +274,16 @@ TEST_F(Recording, ReplacedFieldsAreRelativeToTheRecordedWorkingFolder) {
   auto writer = log::LogWriter::open(log_, *header);
   test::record_ticks(**writer, {{1, *program, {}}}, test::adversarial_path(200));
   ASSERT_TRUE((*writer)->finish());
-  const auto run = catena_program({"replay", "--log", log_});
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(catena_program({"info", log_}).out.find("s=a/sphere.vdb"), std::string::npos);
+  succeed("replay --log {l.catlog}");
+  test::expect_parts(run("info {l.catlog}").out, {"s=a/sphere.vdb"});
 }
 
+using ForgedRecording = RecordingTest;
+
 // A log that begins during a run contains the chain's raw state, which is validated even if the hashes are right.
-TEST(ForgedRecording, IsOneErrorLineAndExitCodeTwo) {
-  const test::TemporaryFolder folder;
-  const std::string scene_path = folder / "s.json", log_path = folder / "l.catlog";
-  test::write_file(scene_path, R"({"chain": [{"name": "path", "type": "polyline", "points": [[-1, -1, 0], [1, -1, 0], [1, 1, 0]]}]})");
+TEST_F(ForgedRecording, IsOneErrorLineAndExitCodeTwo) {
+  const std::string scene_path = folder_ / "s.json";
+  write("s.json", R"({"chain": [{"name": "path", "type": "polyline", "points": [[-1, -1, 0], [1, -1, 0], [1, 1, 0]]}]})");
   auto header = app::make_log_header(scene_path, {}, "simulated", 1000);
   ASSERT_TRUE(header);
   auto scene = scene::parse_scene(header->scene_text, scene_path);
@@ -345,7 +294,7 @@ TEST(ForgedRecording, IsOneErrorLineAndExitCodeTwo) {
   auto state = std::make_unique<ChainState>();
   auto scratch = std::make_unique<ChainScratch>();
   HapticState out;
-  auto writer = log::LogWriter::open(log_path, *header, {scene_path});
+  auto writer = log::LogWriter::open(log_, *header, {scene_path});
   ASSERT_TRUE(writer);
   for (std::size_t k = 0; k < path.size(); ++k) {
     if (k == 60) {
@@ -358,11 +307,10 @@ TEST(ForgedRecording, IsOneErrorLineAndExitCodeTwo) {
   }
   ASSERT_TRUE((*writer)->finish());
   writer->reset();
-  const auto good = catena_program({"replay", "--log", log_path});
-  EXPECT_EQ(good.exit_code, 0) << good.err;
+  succeed("replay --log {l.catlog}");
 
   // Sets the polyline's current segment to an index far out of range.
-  std::string bytes = test::read_file(log_path);
+  std::string bytes = read("l.catlog");
   for (std::size_t at = log::kPreambleBytes; at < bytes.size();) {
     log::BlockHeader head;
     std::memcpy(&head, bytes.data() + at, sizeof head);
@@ -372,14 +320,9 @@ TEST(ForgedRecording, IsOneErrorLineAndExitCodeTwo) {
     at += head.length;
   }
   test::rewrite_hashes(bytes);
-  test::write_file(log_path, bytes);
-  const auto forged = catena_program({"replay", "--log", log_path, "-o", folder / "t.csv"});
-  EXPECT_EQ(forged.exit_code, 2) << forged.out << forged.err;
-  EXPECT_NE(forged.err.find("l.catlog: before tick 61: the state of link \"path\" is damaged, forged or from another scene"),
-            std::string::npos)
-      << forged.err;
-  EXPECT_EQ(std::count(forged.err.begin(), forged.err.end(), '\n'), 1) << forged.err;
-  EXPECT_FALSE(test::exists(folder / "t.csv"));
+  write("l.catlog", bytes);
+  expect_refused("replay --log {l.catlog} -o {t.csv}",
+                 {"l.catlog: before tick 61: the state of link \"path\" is damaged, forged or from another scene"});
 }
 
-}  // namespace log_test
+}  // namespace catena::log_test

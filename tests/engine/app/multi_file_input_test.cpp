@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Inputs that consist of several files: no part is overwritten, and no part that is a pipe blocks the program.
-#include <gtest/gtest.h>
-
 #include <sys/stat.h>
 
-#include <filesystem>
+#include "tests/engine/app/program_in_folder.h"
 
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
-
-namespace catena::app {
-namespace multi_file_input_test {
+namespace catena::app::multi_file_input_test {
 
 namespace fs = std::filesystem;
 
@@ -24,13 +18,11 @@ std::string piece(int from, int to) {
   std::string values;
   for (int i = 0; i < 16 * (to - from + 1); ++i) values += std::to_string(i + 16 * from) + " ";
   const std::string extent = "0 3 0 3 " + std::to_string(from) + " " + std::to_string(to);
-  return "<VTKFile type=\"ImageData\" version=\"0.1\" byte_order=\"LittleEndian\"><ImageData WholeExtent=\"" + extent +
-         "\" Origin=\"0 0 0\" Spacing=\"1 1 1\"><Piece Extent=\"" + extent +
-         "\"><PointData Scalars=\"v\"><DataArray type=\"Float32\" Name=\"v\" format=\"ascii\">" + values +
+  return R"(<VTKFile type="ImageData" version="0.1" byte_order="LittleEndian"><ImageData WholeExtent=")" + extent +
+         R"(" Origin="0 0 0" Spacing="1 1 1"><Piece Extent=")" + extent +
+         R"("><PointData Scalars="v"><DataArray type="Float32" Name="v" format="ascii">)" + values +
          "</DataArray></PointData></Piece></ImageData></VTKFile>\n";
 }
-
-std::string ensight(const std::string& description, const std::string& values) { return description + "\npart\n1\nblock\n" + values; }
 
 /// The named file, and the other files that belong to it.
 struct Data {
@@ -38,11 +30,16 @@ struct Data {
   std::vector<std::string> parts;
 };
 
-std::vector<Data> make_data(const test::TemporaryFolder& folder) {
-  const auto write = [&](const std::string& name, const std::string& bytes) {
-    fs::create_directories(fs::path(folder / name).parent_path());
-    test::write_file(folder / name, bytes);
-  };
+class MultiFileInput : public test::ProgramInFolder {
+ protected:
+  std::vector<Data> make_data() const;
+  test::ProgramResult draw(const std::string& name, const std::string& stats) {
+    return run("render {" + name + "} -o {x.png} --size 16x16 --stats {" + stats + "}");
+  }
+};
+
+std::vector<Data> MultiFileInput::make_data() const {
+  fs::create_directory(folder_ / "deep");
   write("a.nhdr", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\ndata file: a.bin\n");
   write("a.bin", kBytes);
   write("b.mhd", "ObjectType = Image\nNDims = 3\nDimSize = 4 4 4\nElementType = MET_UCHAR\nElementDataFile = deep/b.bin\n");
@@ -66,8 +63,7 @@ std::vector<Data> make_data(const test::TemporaryFolder& folder) {
     for (int i = 0; i < 8; ++i) coordinates += std::to_string(i >> axis & 1) + ".0\n";
   for (int i = 0; i < 8; ++i) values += std::to_string(i) + ".0\n";
   write("e.geo", "a\nb\nnode id off\nelement id off\npart\n1\np\nblock\n2 2 2\n" + coordinates);
-  write("e.v00", ensight("v", values));
-  write("e.v01", ensight("v", values));
+  for (const char* name : {"e.v00", "e.v01"}) write(name, "v\npart\n1\nblock\n" + values);
   return {{"a.nhdr", {"a.bin"}},
           {"b.mhd", {"deep/b.bin"}},
           {"c.pvti", {"c0.vti", "c1.vti"}},
@@ -75,57 +71,51 @@ std::vector<Data> make_data(const test::TemporaryFolder& folder) {
           {"e.case", {"e.geo", "e.v00", "e.v01"}}};
 }
 
-test::ProgramResult import(const test::TemporaryFolder& folder, const std::string& name, const std::string& stats) {
-  return test::run_catena({"render", folder / name, "-o", folder / "x.png", "--size", "16x16", "--stats", folder / stats});
-}
-
-TEST(MultiFileInput, AnOutputOnAPartIsRefused) {
-  const test::TemporaryFolder folder;
-  for (const Data& data : make_data(folder)) {
-    test::write_file(folder / "own", "an earlier output");
-    const auto fine = import(folder, data.name, "own");
-    EXPECT_EQ(fine.exit_code, 0) << data.name << ": " << fine.err;
-    fs::remove(folder / "x.png");
+TEST_F(MultiFileInput, AnOutputOnAPartIsRefused) {
+  for (const Data& data : make_data()) {
+    write("own", "an earlier output");
+    EXPECT_EQ(draw(data.name, "own").exit_code, 0) << data.name;
+    fs::remove(folder_ / "x.png");
     for (const std::string& part : data.parts)
       for (const char* how : {"name", "hard", "link"}) {
-        const std::string before = test::read_file(folder / part);
+        SCOPED_TRACE(part + " by " + how);
+        const std::string before = read(part);
         std::string output = part;
-        if (*how == 'h') fs::create_hard_link(folder / part, folder / (output = "hard"));
-        if (*how == 'l') fs::create_symlink(folder / part, folder / (output = "link"));
-        const auto run = import(folder, data.name, output);
-        EXPECT_EQ(run.exit_code, 2) << part << " by " << how;
-        EXPECT_NE(run.err.find("is also an input"), std::string::npos) << part << ": " << run.err;
-        EXPECT_EQ(test::read_file(folder / part), before) << part << " by " << how;
-        EXPECT_FALSE(fs::exists(folder / "x.png")) << part << " by " << how;
-        if (output != part) fs::remove(folder / output);
+        if (*how == 'h') fs::create_hard_link(folder_ / part, folder_ / (output = "hard"));
+        if (*how == 'l') fs::create_symlink(folder_ / part, folder_ / (output = "link"));
+        const auto done = draw(data.name, output);
+        EXPECT_EQ(done.exit_code, 2);
+        test::expect_parts(done.err, {"is also an input"});
+        EXPECT_EQ(read(part), before);
+        EXPECT_FALSE(exists("x.png"));
+        if (output != part) fs::remove(folder_ / output);
       }
   }
 }
 
-TEST(MultiFileInput, APipeIsRefused) {
-  const test::TemporaryFolder folder;
-  for (const Data& data : make_data(folder)) {
+TEST_F(MultiFileInput, APipeIsRefused) {
+  for (const Data& data : make_data()) {
     const std::string& part = data.parts.front();
-    fs::remove(folder / part);
-    ASSERT_EQ(::mkfifo((folder / part).c_str(), 0600), 0);
-    const auto run = test::run_program("/usr/bin/env", {"timeout", "30", test::program_path(), "info", folder / data.name});
+    fs::remove(folder_ / part);
+    ASSERT_EQ(::mkfifo((folder_ / part).c_str(), 0600), 0);
+    const auto run = test::run_program("/usr/bin/env", {"timeout", "30", test::program_path(), "info", folder_ / data.name});
     EXPECT_EQ(run.exit_code, 2) << data.name << ": " << run.err;
-    EXPECT_NE(run.err.find("is a pipe, a socket or a device"), std::string::npos) << data.name << ": " << run.err;
+    test::expect_parts(run.err, {"is a pipe, a socket or a device"});
   }
 }
 
-TEST(MultiFileInput, AnOutputPipeWithoutAReaderIsRefused) {
-  const test::TemporaryFolder folder;
-  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
-  const auto run = test::run_program("/usr/bin/env", {"timeout", "30", test::program_path(), "render", folder / make_data(folder)[0].name,
-                                                      "-o", folder / "x.png", "--size", "16x16", "--stats", folder / "pipe"});
+TEST_F(MultiFileInput, AnOutputPipeWithoutAReaderIsRefused) {
+  ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  make_data();
+  std::vector<std::string> words = test::words_of(folder_, "render {a.nhdr} -o {x.png} --size 16x16 --stats {pipe}");
+  words.insert(words.begin(), {"timeout", "30", test::program_path()});
+  const auto run = test::run_program("/usr/bin/env", words);
   EXPECT_EQ(run.exit_code, 2) << run.err;
-  EXPECT_NE(run.err.find("nothing reads"), std::string::npos) << run.err;
+  test::expect_parts(run.err, {"nothing reads"});
 }
 
 /// Declared sizes in a header must not cost processor time.
-TEST(MultiFileInput, AHugeDeclaredSizeFailsInTime) {
-  const test::TemporaryFolder folder;
+TEST_F(MultiFileInput, AHugeDeclaredSizeFailsInTime) {
   const std::string many = "2000000000", head = "<?xml version=\"1.0\"?>\n<VTKFile version=\"1.0\" byte_order=\"LittleEndian\" type=\"";
   const std::string extent = "\"0 " + many + " 0 " + many + " 0 " + many + "\"";
   for (const auto& [name, text] : {
@@ -139,36 +129,28 @@ TEST(MultiFileInput, AHugeDeclaredSizeFailsInTime) {
            {"a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: a*.geo\nTIME\ntime set: 1\nnumber of steps: " + many +
                           "\nfilename start number: 0\nfilename increment: 1\ntime values: 0\n"},
        }) {
-    test::write_file(folder / name, text);
-    const auto run = test::run_catena({"info", folder / name});
-    EXPECT_EQ(run.exit_code, 2) << name << run.err;
-    EXPECT_EQ(run.err.find("20 s of processor time"), std::string::npos) << name << run.err;
+    write(name, text);
+    const auto done = run("info {" + std::string(name) + "}");
+    EXPECT_EQ(done.exit_code, 2) << name << done.err;
+    EXPECT_EQ(done.err.find("20 s of processor time"), std::string::npos) << name << done.err;
   }
 }
 
 /// A sparse file of 4 GB must not be loaded.
-TEST(MultiFileInput, SparseFilesAreNotRead) {
-  const test::TemporaryFolder folder;
-  for (const char* name : {"a.stl", "a.obj", "a.trk", "a.tck"}) {
-    test::write_file(folder / name, "");
-    fs::resize_file(folder / name, std::uintmax_t{4000} << 20);
-    const auto run = test::run_catena({"info", folder / name});
-    EXPECT_EQ(run.exit_code, 2) << name;
-    EXPECT_NE(run.err.find("on the disk"), std::string::npos) << name << ": " << run.err;
+TEST_F(MultiFileInput, SparseFilesAreNotRead) {
+  for (const std::string name : {"a.stl", "a.obj", "a.trk", "a.tck"}) {
+    write(name, "");
+    fs::resize_file(folder_ / name, std::uintmax_t{4000} << 20);
+    expect_refused("info {" + name + "}", {"on the disk"});
   }
 }
 
 /// A message must not list thousands of names.
-TEST(MultiFileInput, ErrorMessagesAreBounded) {
-  const test::TemporaryFolder folder;
+TEST_F(MultiFileInput, ErrorMessagesAreBounded) {
   std::string fields;
   for (int i = 0; i < 2000; ++i) fields += std::string(i == 0 ? "" : ", ") + "\"f" + std::to_string(i) + "\": {\"analytic\": \"sphere\"}";
-  test::write_file(folder / "s.json", "{\"fields\": {" + fields + "}, \"volumes\": [{\"field\": \"none\"}]}");
-  const auto run = test::run_catena({"info", folder / "s.json"});
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.err.find("and 1990 more"), std::string::npos) << run.err;
-  EXPECT_LT(run.err.size(), 2001u);
+  write("s.json", "{\"fields\": {" + fields + "}, \"volumes\": [{\"field\": \"none\"}]}");
+  EXPECT_LT(expect_refused("info {s.json}", {"and 1990 more"}).err.size(), 2001u);
 }
 
-}  // namespace multi_file_input_test
-}  // namespace catena::app
+}  // namespace catena::app::multi_file_input_test

@@ -9,12 +9,15 @@
 #include "engine/app/haptics/haptic_device_setup.h"
 #include "engine/app/viewer/input/commands.h"
 #include "engine/base/camera_limits.h"
+#include "tests/support/results.h"
 
-namespace catena::app {
-namespace navigation_test {
+namespace catena::app::navigation_test {
 
-Navigation controls() {
+using test::value_of;
+
+Navigation controls(bool probe_mode = false) {
   Navigation c;
+  c.probe_mode = probe_mode;
   c.view = c.home = {{0.0, -10.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 30, false, 4};
   return c;
 }
@@ -32,6 +35,22 @@ Input input(double dx, double dy, double wheel = 0) {
   return i;
 }
 
+/// A motion with a button or a modifier held down.
+Input drag(bool Input::*held, Input motion) {
+  motion.*held = true;
+  return motion;
+}
+
+/// The depth and the pixel of a position in the image.
+auto projected(const Navigation& c, const Vec3& place) { return render::project(render::make_camera(c.view, 320, 240, {}), place).value(); }
+
+Bounds bounds_of(const Vec3& low, const Vec3& high) {
+  Bounds bounds;
+  bounds.extend(low);
+  bounds.extend(high);
+  return bounds;
+}
+
 TEST(Navigation, MotionWithoutAButtonDoesNothing) {
   Navigation c = controls();
   EXPECT_FALSE(apply(c, input(30, 20)).any());
@@ -40,9 +59,7 @@ TEST(Navigation, MotionWithoutAButtonDoesNothing) {
 
 TEST(Navigation, ALeftDragOrbitsAtAConstantDistance) {
   Navigation c = controls();
-  Input i = input(50, 0);
-  i.left = true;
-  const NavigationChanges changed = apply(c, i);
+  const NavigationChanges changed = apply(c, drag(&Input::left, input(50, 0)));
   EXPECT_TRUE(changed.view);
   EXPECT_FALSE(changed.probe);
   EXPECT_NEAR(norm(c.view.position), 10, 1e-12);
@@ -50,9 +67,7 @@ TEST(Navigation, ALeftDragOrbitsAtAConstantDistance) {
   EXPECT_NEAR(c.view.position.z, 0, 1e-12);
 
   // Dragging down shows the scene from above, and stops before the pole.
-  i = input(0, 1000);
-  i.left = true;
-  apply(c, i);
+  apply(c, drag(&Input::left, input(0, 1000)));
   EXPECT_GT(c.view.position.z, 9.9);
   EXPECT_GT(std::hypot(c.view.position.x, c.view.position.y), 0.1);
   EXPECT_TRUE(apply(c, Action::reset_view, 4.0 / 3));
@@ -69,14 +84,10 @@ TEST(Navigation, AViewAlongUpCanStillBeOrbited) {
 
 TEST(Navigation, PanMovesTheSceneWithThePointer) {
   Navigation c = controls();
-  Input i = input(24, -12);
-  i.middle = true;
-  EXPECT_TRUE(apply(c, i).view);
-  const auto camera = render::make_camera(c.view, 320, 240, {});
-  const auto p = render::project(camera, Vec3(0.0));  // was in the center
-  ASSERT_TRUE(p);
-  EXPECT_NEAR(p->x, 160 + 24, 1e-9);
-  EXPECT_NEAR(p->y, 120 - 12, 1e-9);
+  EXPECT_TRUE(apply(c, drag(&Input::middle, input(24, -12))).view);
+  const auto p = projected(c, Vec3(0.0));  // was in the center
+  EXPECT_NEAR(p.x, 160 + 24, 1e-9);
+  EXPECT_NEAR(p.y, 120 - 12, 1e-9);
 }
 
 TEST(Navigation, TheWheelZooms) {
@@ -93,9 +104,8 @@ TEST(Navigation, CameraAndProbeStayWithinTheLimits) {
   for (const double notches : {30.0, -30.0})
     for (const bool flat : {false, true})
       for (const bool as_hand : {false, true}) {
-        Navigation c = controls();
+        Navigation c = controls(as_hand);
         c.view.orthographic = flat;
-        c.probe_mode = as_hand;
         for (int k = 0; k < 1000; ++k) {
           apply(c, input(50, -20, notches));
           ASSERT_TRUE(is_finite(c.view.position) && is_finite(c.probe)) << k;
@@ -110,8 +120,7 @@ TEST(Navigation, TheNumberKeysLookAlongTheAxesAtTheWholeScene) {
     for (const bool back : {false, true})
       for (const bool flat : {false, true}) {
         Navigation c = controls();
-        c.bounds.extend(Vec3(1.0, 2.0, 3.0));
-        c.bounds.extend(Vec3(5.0, 3.0, 9.0));
+        c.bounds = bounds_of({1.0, 2.0, 3.0}, {5.0, 3.0, 9.0});
         c.view.orthographic = flat;
         constexpr Action kAlong[2][3] = {{Action::view_along_plus_x, Action::view_along_plus_y, Action::view_along_plus_z},
                                          {Action::view_along_minus_x, Action::view_along_minus_y, Action::view_along_minus_z}};
@@ -121,15 +130,13 @@ TEST(Navigation, TheNumberKeysLookAlongTheAxesAtTheWholeScene) {
         EXPECT_LE(norm(direction(c.view.target - c.view.position) - along), 1e-12);
         EXPECT_EQ(c.view.orthographic, flat);
         const auto camera = render::make_camera(c.view, 320, 240, c.bounds);
-        double max_x = 0, max_y = 0;
+        double outermost = 0;
         for (int k = 0; k < 8; ++k) {
-          const auto p = render::project(camera, c.bounds.corner(k));
-          ASSERT_TRUE(p);
-          max_x = std::max(max_x, std::fabs(p->x - 160) / 160);
-          max_y = std::max(max_y, std::fabs(p->y - 120) / 120);
+          const auto p = render::project(camera, c.bounds.corner(k)).value();
+          outermost = std::max({outermost, std::fabs(p.x - 160) / 160, std::fabs(p.y - 120) / 120});
         }
-        EXPECT_LE(std::max(max_x, max_y), 1);
-        EXPECT_GE(std::max(max_x, max_y), 0.8) << "and it fills the picture";
+        EXPECT_LE(outermost, 1);
+        EXPECT_GE(outermost, 0.8) << "and it fills the picture";
       }
 }
 
@@ -148,12 +155,11 @@ TEST(Navigation, FitKeepsTheDirectionAndNeedsBounds) {
 TEST(Navigation, TogglingTheProjectionKeepsSizesInTheTargetsPlane) {
   Navigation c = controls();
   const Vec3 corner(1.5, 0.0, 1.0);
-  const auto place = [&] { return render::project(render::make_camera(c.view, 320, 240, {}), corner); };
-  const auto before = place();
+  const auto before = projected(c, corner);
   EXPECT_TRUE(apply(c, Action::toggle_projection, 4.0 / 3));
   EXPECT_TRUE(c.view.orthographic);
-  EXPECT_NEAR(place()->x, before->x, 1e-9);
-  EXPECT_NEAR(place()->y, before->y, 1e-9);
+  EXPECT_NEAR(projected(c, corner).x, before.x, 1e-9);
+  EXPECT_NEAR(projected(c, corner).y, before.y, 1e-9);
   zoom(c.view, 0.5);
   apply(c, Action::toggle_projection, 4.0 / 3);
   EXPECT_FALSE(c.view.orthographic);
@@ -161,103 +167,85 @@ TEST(Navigation, TogglingTheProjectionKeepsSizesInTheTargetsPlane) {
 }
 
 TEST(Navigation, TheProbeFollowsThePointerInTheImagePlane) {
-  for (const int way : {0, 1}) {
+  for (bool Input::*const held : {&Input::right, &Input::control}) {
     Navigation c = controls();
     c.probe = {0.2, 1.0, -0.3};
-    const auto camera = render::make_camera(c.view, 320, 240, {});
-    const auto before = render::project(camera, c.probe);
-    Input i = input(40, 25);
-    i.right = way == 0;
-    i.control = way == 1;
-    const NavigationChanges changed = apply(c, i);
+    const auto before = projected(c, c.probe);
+    const NavigationChanges changed = apply(c, drag(held, input(40, 25)));
     EXPECT_TRUE(changed.probe);
     EXPECT_FALSE(changed.view);
-    const auto after = render::project(camera, c.probe);
-    EXPECT_NEAR(after->x - before->x, 40, 1e-9);
-    EXPECT_NEAR(after->y - before->y, 25, 1e-9);
-    EXPECT_NEAR(after->z, before->z, 1e-12);
+    const auto after = projected(c, c.probe);
+    EXPECT_NEAR(after.x - before.x, 40, 1e-9);
+    EXPECT_NEAR(after.y - before.y, 25, 1e-9);
+    EXPECT_NEAR(after.z, before.z, 1e-12);
   }
 }
 
 TEST(Navigation, InProbeModeTheWheelIsDepthAndTheLeftButtonIsButton1) {
-  Navigation c = controls();
-  c.probe_mode = true;
+  Navigation c = controls(true);
   EXPECT_TRUE(apply(c, input(0, 0, 2)).probe);
   EXPECT_NEAR(c.probe.y, 2 * kNotch, 1e-12);  // twice 1 % of the image's height at the distance 10, away from the camera
   EXPECT_EQ(c.view.position, c.home.position);
-  Input i = input(0, 0);
-  i.left = true;
-  EXPECT_TRUE(apply(c, i).probe);
+  const Input pressed = drag(&Input::left, input(0, 0));
+  EXPECT_TRUE(apply(c, pressed).probe);
   EXPECT_EQ(c.buttons, 1u);
-  EXPECT_FALSE(apply(c, i).any());
-  i.left = false;
-  EXPECT_TRUE(apply(c, i).probe);
+  EXPECT_FALSE(apply(c, pressed).any());
+  EXPECT_TRUE(apply(c, input(0, 0)).probe);
   EXPECT_EQ(c.buttons, 0u);
 }
 
 TEST(Navigation, AProbeBehindTheCameraReturnsToTheTargetsDepth) {
   Navigation c = controls();
   c.probe = {0.0, -50.0, 0.0};
-  Input i = input(1, 0);
-  i.right = true;
-  apply(c, i);
+  apply(c, drag(&Input::right, input(1, 0)));
   EXPECT_NEAR(c.probe.y, 0, 1e-12);
 }
 
+scene::Scene scene_of(const std::string& text) { return value_of(scene::parse_scene(text, "test.json")); }
+
 TEST(WorkspaceSetup, TheWorkspaceFillsTheDevicesRange) {
-  auto scene = scene::parse_scene(R"({"fields": {}, "chain": []})", "test.json");
-  ASSERT_TRUE(scene);
-  Bounds bounds;
-  bounds.extend(Vec3(10.0, 0.0, 0.0));
-  bounds.extend(Vec3(50.0, 4.0, 2.0));
-  fit_workspace(*scene, bounds, 0.2);
-  EXPECT_DOUBLE_EQ(scene->workspace.meters_per_unit, 0.005);
-  EXPECT_LE(norm(device_from_world(scene->workspace, {50.0, 2.0, 1.0}) - Vec3(0.1, 0.0, 0.0)), 1e-15);
-  EXPECT_EQ(scene->coupling.ramp_s, 0.02);
-  EXPECT_EQ(initial_probe_position(*scene, bounds), Vec3(30.0, 2.0, 1.0));
+  const Bounds bounds = bounds_of({10.0, 0.0, 0.0}, {50.0, 4.0, 2.0});
+  scene::Scene scene = scene_of(R"({"fields": {}, "chain": []})");
+  fit_workspace(scene, bounds, 0.2);
+  EXPECT_DOUBLE_EQ(scene.workspace.meters_per_unit, 0.005);
+  EXPECT_LE(norm(device_from_world(scene.workspace, {50.0, 2.0, 1.0}) - Vec3(0.1, 0.0, 0.0)), 1e-15);
+  EXPECT_EQ(scene.coupling.ramp_s, 0.02);
+  EXPECT_EQ(initial_probe_position(scene, bounds), Vec3(30.0, 2.0, 1.0));
 }
 
 TEST(WorkspaceSetup, TheCenterOfTheDevicesRangeIsTheScenesCenter) {
-  auto scene = scene::parse_scene(R"({"fields": {}, "chain": []})", "test.json");
-  ASSERT_TRUE(scene);
-  Bounds bounds;
-  bounds.extend(Vec3(10.0, 0.0, 0.0));
-  bounds.extend(Vec3(50.0, 4.0, 2.0));
+  const Bounds bounds = bounds_of({10.0, 0.0, 0.0}, {50.0, 4.0, 2.0});
+  scene::Scene scene = scene_of(R"({"fields": {}, "chain": []})");
   const Vec3 centre_m{0.0, 0.01, 0.12};
-  fit_workspace(*scene, bounds, 0.2, centre_m);
-  EXPECT_LE(norm(device_from_world(scene->workspace, bounds.center()) - centre_m), 1e-15);
+  fit_workspace(scene, bounds, 0.2, centre_m);
+  EXPECT_LE(norm(device_from_world(scene.workspace, bounds.center()) - centre_m), 1e-15);
 }
 
 TEST(WorkspaceSetup, AStatedWorkspaceAndRampAreKept) {
-  auto scene =
-      scene::parse_scene(R"({"fields": {}, "chain": [], "workspace": {"metres_per_unit": 3}, "coupling": {"ramp_s": 0.5}})", "test.json");
-  ASSERT_TRUE(scene);
+  scene::Scene scene = scene_of(R"({"fields": {}, "chain": [], "workspace": {"metres_per_unit": 3}, "coupling": {"ramp_s": 0.5}})");
   Bounds bounds;
   bounds.extend(Vec3(0.0), 1);
-  fit_workspace(*scene, bounds, 0.2);
-  EXPECT_EQ(scene->workspace.meters_per_unit, 3);
-  EXPECT_EQ(scene->coupling.ramp_s, 0.5);
+  fit_workspace(scene, bounds, 0.2);
+  EXPECT_EQ(scene.workspace.meters_per_unit, 3);
+  EXPECT_EQ(scene.coupling.ramp_s, 0.5);
 }
 
 TEST(WorkspaceSetup, TheProbeStartsAtTheFirstSeed) {
-  auto scene = scene::parse_scene(
-      R"({"fields": {"v": {"analytic": "circle"}}, "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0.5, 0]}]})",
-      "test.json");
-  ASSERT_TRUE(scene);
-  EXPECT_EQ(initial_probe_position(*scene, {}), Vec3(1.0, 0.5, 0.0));
+  const scene::Scene scene = scene_of(
+      R"({"fields": {"v": {"analytic": "circle"}}, "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0.5, 0]}]})");
+  EXPECT_EQ(initial_probe_position(scene, {}), Vec3(1.0, 0.5, 0.0));
 }
 
 /// Moves the pointer to the pixel (x, y) of the image, from dx to the left.
-Input to_pixel(double x, double y, double dx = 1) {
-  Input i = input(dx, 0);
+Input to_pixel(double x, double y, double dx = 1, double wheel = 0) {
+  Input i = input(dx, 0, wheel);
   i.x = x - dx;
   i.y = y;
   return i;
 }
 
 TEST(Navigation, InProbeModeTheProbeIsOnTheSurfaceUnderThePointer) {
-  Navigation c = controls();
-  c.probe_mode = true;
+  Navigation c = controls(true);
   c.pointer_hit = Vec3(0.7, 2, 0.3);
   begin_probe_mode(c);
   EXPECT_EQ(c.probe, Vec3(0.7, 2, 0.3));
@@ -266,41 +254,34 @@ TEST(Navigation, InProbeModeTheProbeIsOnTheSurfaceUnderThePointer) {
   EXPECT_TRUE(apply(c, to_pixel(80, 60)).probe);
   EXPECT_LE(norm(c.probe - *c.pointer_hit), 1e-12);
   // A probe that is pushed with the wheel keeps its depth below the surface.
-  Input wheel = to_pixel(80, 60, 0);
-  wheel.wheel = 3;
-  apply(c, wheel);
+  apply(c, to_pixel(80, 60, 0, 3));
   const double push = c.wheel_depth;
   EXPECT_NEAR(push, 3 * 0.75 * kNotch, 1e-12);
-  EXPECT_NEAR(render::project(camera, c.probe)->z, 7.5 + push, 1e-12);
-  EXPECT_NEAR(render::project(camera, c.probe)->x, 80, 1e-9) << "along the view";
+  EXPECT_NEAR(projected(c, c.probe).z, 7.5 + push, 1e-12);
+  EXPECT_NEAR(projected(c, c.probe).x, 80, 1e-9) << "along the view";
   c.pointer_hit = render::unproject(camera, 90, 65, 7.2);
   apply(c, to_pixel(90, 65));
-  EXPECT_NEAR(render::project(camera, c.probe)->z, 7.2 + push, 1e-12);
+  EXPECT_NEAR(projected(c, c.probe).z, 7.2 + push, 1e-12);
   // Where the pointer hits nothing, the depth stays; while a button is pressed, the depth stays over any surface.
   c.pointer_hit.reset();
   apply(c, to_pixel(200, 100));
-  EXPECT_NEAR(render::project(camera, c.probe)->z, 7.2 + push, 1e-12);
+  EXPECT_NEAR(projected(c, c.probe).z, 7.2 + push, 1e-12);
   c.pointer_hit = render::unproject(camera, 210, 100, 3.0);
-  Input drag = to_pixel(210, 100);
-  drag.left = true;
-  apply(c, drag);
-  EXPECT_NEAR(render::project(camera, c.probe)->z, 7.2 + push, 1e-12);
-  EXPECT_NEAR(render::project(camera, c.probe)->x, 210, 1e-9);
+  apply(c, drag(&Input::left, to_pixel(210, 100)));
+  EXPECT_NEAR(projected(c, c.probe).z, 7.2 + push, 1e-12);
+  EXPECT_NEAR(projected(c, c.probe).x, 210, 1e-9);
 }
 
 TEST(Navigation, TheProbesDepthFollowsTheProxy) {
   const auto at = [](double depth) {
-    Navigation c = controls();
-    c.probe_mode = true;
+    Navigation c = controls(true);
     c.probe = {0, depth - 10, 0};
     c.last_proxy = Vec3(0, 3, 0);
     return c;
   };
-  const auto depth = [](const Navigation& c) { return render::project(render::make_camera(c.view, 320, 240, {}), c.probe)->z; };
+  const auto depth = [](const Navigation& c) { return projected(c, c.probe).z; };
   Navigation c = at(11);
-  Input still = to_pixel(160, 120, 0);
-  still.wheel = 1;
-  apply(c, still);
+  apply(c, to_pixel(160, 120, 0, 1));
   EXPECT_NEAR(depth(c), 11 + 1.1 * kNotch, 1e-9) << "the wheel alone presses";
   c = at(11);
   apply(c, to_pixel(190, 120, Navigation::kDepthBlendPixels / 2));
@@ -318,9 +299,7 @@ TEST(Navigation, TheProbesDepthFollowsTheProxy) {
   // The depth follows the proxy in probe mode only.
   c = at(11);
   c.probe_mode = false;
-  Input drag = input(30, 0);
-  drag.control = true;
-  apply(c, drag);
+  apply(c, drag(&Input::control, input(30, 0)));
   EXPECT_NEAR(depth(c), 11, 1e-9);
 }
 
@@ -332,25 +311,19 @@ TEST(Navigation, InProbeModeMotionAgainstTheForceIsReduced) {
   EXPECT_EQ(compliant_motion({2, 1, 0}, force, 8), Vec3(2, 1, 0));
   EXPECT_EQ(compliant_motion({0, 0, -1}, Vec3(0.0), 8), Vec3(0, 0, -1));
   // The wheel pushes less against a force, and pulls out at full speed.
-  Navigation c = controls();
-  c.probe_mode = true;
+  Navigation c = controls(true);
   c.force_n = {0, -8, 0};
   c.max_force_n = 8;
-  Input in = to_pixel(160, 120, 0), out = in;
-  in.wheel = 1;
-  out.wheel = -1;
-  apply(c, in);
+  apply(c, to_pixel(160, 120, 0, 1));
   EXPECT_NEAR(c.probe.y, 0.25 * kNotch, 1e-12);
-  apply(c, out);
+  apply(c, to_pixel(160, 120, 0, -1));
   EXPECT_NEAR(c.probe.y, 0.25 * kNotch - (1 + 0.025 * kNotch) * kNotch, 1e-12);
 }
 
 TEST(Navigation, InFlyModeALeftDragLooksAroundAndTheWheelSetsTheSpeed) {
   Navigation c = controls();
   c.fly = true;
-  Input i = input(40, 0);
-  i.left = true;
-  EXPECT_TRUE(apply(c, i).view);
+  EXPECT_TRUE(apply(c, drag(&Input::left, input(40, 0))).view);
   EXPECT_EQ(c.view.position, c.home.position);
   EXPECT_GT(c.view.target.x, 0);
   apply(c, input(0, 0, 2));
@@ -358,5 +331,4 @@ TEST(Navigation, InFlyModeALeftDragLooksAroundAndTheWheelSetsTheSpeed) {
   EXPECT_EQ(c.view.position, c.home.position);
 }
 
-}  // namespace navigation_test
-}  // namespace catena::app
+}  // namespace catena::app::navigation_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A scene from a text, open for editing as in the window.
+/// A scene from a text, open for editing as in the window, and a haptic session without real-time settings.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/app/viewer/input/haptic_session.h"
 #include "engine/app/viewer/scene/scene_model.h"
 #include "tests/support/support.h"
 
@@ -20,6 +21,22 @@ inline void open_scene(const TemporaryFolder& folder, const std::string& text, s
   auto opened = app::SceneModel::open(std::move(*document), {});
   ASSERT_TRUE(opened) << opened.error().message;
   host.emplace(std::move(*opened));
+}
+
+/// Options of a session with the device; "": the mouse or the scene's device.
+inline app::HapticSession::Options quiet_session(const std::string& device) {
+  app::HapticSession::Options options;
+  if (!device.empty()) options.device = device;
+  options.realtime = {.fifo = false, .lock_memory = false, .cpu = haptics::RealtimeOptions::kUnbound};
+  return options;
+}
+
+/// -1 to 1 along each axis.
+inline Bounds cube_bounds() {
+  Bounds bounds;
+  bounds.extend(Vec3(-1.0));
+  bounds.extend(Vec3(1.0));
+  return bounds;
 }
 
 }  // namespace catena::test

@@ -1,47 +1,39 @@
 // SPDX-License-Identifier: MIT
 // Write errors on standard output and standard error: lost output is an error, and nothing else changes.
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 
-#include <algorithm>
 #include <cstdlib>
 
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/program_in_folder.h"
 
-namespace catena {
-namespace output_write_failure_test {
+namespace catena::output_write_failure_test {
 
-class LostOutput : public testing::Test {
+class LostOutput : public test::ProgramInFolder {
  protected:
-  LostOutput() {
-    const auto made = test::run_catena({"generate", "sphere", "-o", folder_ / "g.vdb", "--resolution", "8"});
-    EXPECT_EQ(made.exit_code, 0) << made.err;
-  }
+  LostOutput() { succeed("generate sphere -o {g.vdb} --resolution 8"); }
   /// Runs "catena WORDS" with a shell's `redirection`, and returns the exit code.
-  int run(const std::string& words, const std::string& redirection) {
+  int redirected(const std::string& words, const std::string& redirection) {
     const std::string command = "cd " + folder_.path() + " && " + test::program_path() + " " + words + " 2> err " + redirection;
     const int status = std::system(("bash -c '" + command + "'").c_str());
-    err_ = test::read_file(folder_ / "err");
+    err_ = read("err");
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
 
-  test::TemporaryFolder folder_;
   std::string err_;
 };
 
 TEST_F(LostOutput, IsAnError) {
   for (const char* words : {"info g.vdb", "devices --json", "--help", "info --colormaps", "--version"}) {
-    EXPECT_EQ(run(words, "> /dev/full"), 1) << words;
+    EXPECT_EQ(redirected(words, "> /dev/full"), 1) << words;
     EXPECT_TRUE(err_.starts_with("catena: standard output cannot be written")) << words << ": " << err_;
-    EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_;
+    test::expect_one_line(err_);
   }
-  EXPECT_EQ(run("info g.vdb", ">&-"), 1);
+  EXPECT_EQ(redirected("info g.vdb", ">&-"), 1);
   EXPECT_TRUE(err_.starts_with("catena: standard output cannot be written")) << err_;
-  EXPECT_EQ(run("info g.vdb", "> out"), 0) << err_;
+  EXPECT_EQ(redirected("info g.vdb", "> out"), 0) << err_;
   EXPECT_EQ(err_, "");
-  EXPECT_EQ(run("info none.vdb", "> /dev/full"), 2);
-  EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_;
+  EXPECT_EQ(redirected("info none.vdb", "> /dev/full"), 2);
+  test::expect_one_line(err_);
 }
 
 TEST_F(LostOutput, AClosedPipeEndsTheProgramWithoutAMessage) {
@@ -51,22 +43,21 @@ TEST_F(LostOutput, AClosedPipeEndsTheProgramWithoutAMessage) {
     const int status = std::system(("cd " + folder_.path() + " && bash -c '(" + late + ") | true; exit ${PIPESTATUS[0]}'").c_str());
     // If SIGPIPE is ignored, the write itself fails.
     EXPECT_EQ(WEXITSTATUS(status), ignored ? 1 : 128 + 13);
-    EXPECT_EQ(test::read_file(folder_ / "err"), "");
+    EXPECT_EQ(read("err"), "");
   }
 }
 
 // An error that cannot be printed must keep its exit code.
 TEST_F(LostOutput, AnErrorThatCannotBePrintedKeepsItsExitCode) {
   for (const char* redirection : {"2> /dev/full", "2>&-"}) {
-    EXPECT_EQ(run("info none.vdb", redirection), 2) << redirection;
-    EXPECT_EQ(run("info --nonsense", redirection), 2) << redirection;
-    EXPECT_EQ(run("info g.vdb > out", redirection), 0) << redirection;
+    EXPECT_EQ(redirected("info none.vdb", redirection), 2) << redirection;
+    EXPECT_EQ(redirected("info --nonsense", redirection), 2) << redirection;
+    EXPECT_EQ(redirected("info g.vdb > out", redirection), 0) << redirection;
   }
   // A closed standard error must not become the descriptor of an opened file.
-  EXPECT_EQ(run("import g.vdb -o h.vdb --grid absent", "2>&-"), 2);
-  EXPECT_EQ(run("generate sphere -o i.vdb --resolution 8", ">&- 2>&- <&-"), 1) << "its line on standard output is lost";
-  EXPECT_EQ(run("info i.vdb", "> out"), 0) << err_;
+  EXPECT_EQ(redirected("import g.vdb -o h.vdb --grid absent", "2>&-"), 2);
+  EXPECT_EQ(redirected("generate sphere -o i.vdb --resolution 8", ">&- 2>&- <&-"), 1) << "its line on standard output is lost";
+  EXPECT_EQ(redirected("info i.vdb", "> out"), 0) << err_;
 }
 
-}  // namespace output_write_failure_test
-}  // namespace catena
+}  // namespace catena::output_write_failure_test

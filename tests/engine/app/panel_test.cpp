@@ -4,9 +4,8 @@
 
 #include <gtest/gtest.h>
 
-namespace panel_test {
+namespace catena::panel_test {
 
-using namespace catena;
 using namespace catena::xr_interaction;
 
 const Panel kPanel{{0.3, 1.4, -1.0}, rotation_from_vector({0, 0.4, 0}), 0.8, 0.6, 800, 600};
@@ -64,4 +63,4 @@ TEST(PanelPointer, APressStaysWithThePanelOrTheDataWhereItBegan) {
   EXPECT_TRUE(at(400, 300, false).has_pointer);
 }
 
-}  // namespace panel_test
+}  // namespace catena::panel_test

@@ -10,8 +10,7 @@
 
 #include "engine/field/grid/grid.h"
 
-namespace catena::app {
-namespace pick_test {
+namespace catena::app::pick_test {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
@@ -43,31 +42,26 @@ render::FramePacket packet_with(const std::function<double(const Vec3&)>& f, con
 const render::Ray kAlongX{{-6, 0, 0}, {1, 0, 0}};
 
 TEST(Pick, AUniformVolumeIsPickedAtHalfOpacity) {
-  const double sigma = 0.4;
-  const auto packet = packet_with([](const Vec3&) { return 1.0; }, {{0, sigma}, {2, sigma}});
-  const auto place = pick_volume(packet, kAlongX, kNone);
-  ASSERT_TRUE(place);
-  EXPECT_TRUE(place->is_volume);
-  EXPECT_NEAR(place->world.x, -2 + std::log(2) / sigma, 1e-6);
-  EXPECT_EQ(object_label(packet, place->id), "volume f");
+  const auto packet = packet_with([](const Vec3&) { return 1.0; }, {{0, 0.4}, {2, 0.4}});
+  const PickHit place = pick_volume(packet, kAlongX, kNone).value();
+  EXPECT_TRUE(place.is_volume);
+  EXPECT_NEAR(place.world.x, -2 + std::log(2) / 0.4, 1e-6);
+  EXPECT_EQ(object_label(packet, place.id), "volume f");
 }
 
 TEST(Pick, ALinearExtinctionIsPickedAtHalfOpacity) {
   // With sigma = a (x + 2), the opacity is half where 1 - exp(-a t^2 / 2) = 1/2.
   const double a = 0.3;
   const auto packet = packet_with([](const Vec3& p) { return p.x; }, {{-2, 0}, {2, 4 * a}});
-  const auto place = pick_volume(packet, kAlongX, kNone);
-  ASSERT_TRUE(place);
-  EXPECT_NEAR(place->world.x, -2 + std::sqrt(2 * std::log(2) / a), 2e-3);
+  EXPECT_NEAR(pick_volume(packet, kAlongX, kNone).value().world.x, -2 + std::sqrt(2 * std::log(2) / a), 2e-3);
 }
 
 TEST(Pick, AFaintShellIsPickedAtItsMaximumContribution) {
   // A peak of sigma at x = 0.7, with an opacity below a half.
   const auto packet = packet_with([](const Vec3& p) { return p.x; }, {{0.2, 0}, {0.7, 0.3}, {1.2, 0}});
-  const auto place = pick_volume(packet, kAlongX, kNone);
-  ASSERT_TRUE(place);
-  EXPECT_NEAR(place->world.x, 0.7, 0.07);
-  EXPECT_NEAR(place->opacity, 1 - std::exp(-0.15), 2e-3);
+  const PickHit place = pick_volume(packet, kAlongX, kNone).value();
+  EXPECT_NEAR(place.world.x, 0.7, 0.07);
+  EXPECT_NEAR(place.opacity, 1 - std::exp(-0.15), 2e-3);
   const auto nothing = packet_with([](const Vec3& p) { return p.x; }, {{0.2, 0}, {0.7, 0.02}, {1.2, 0}});
   EXPECT_FALSE(pick_volume(nothing, kAlongX, kNone));
 }
@@ -75,9 +69,7 @@ TEST(Pick, AFaintShellIsPickedAtItsMaximumContribution) {
 TEST(Pick, AMaximumProjectionIsPickedAtTheMaximum) {
   auto packet = packet_with([](const Vec3& p) { return -(p.x - 0.5) * (p.x - 0.5); }, {{-10, 0}, {0, 9}});
   packet.volumes[0].projection = render::Projection::maximum;
-  const auto place = pick_volume(packet, kAlongX, kNone);
-  ASSERT_TRUE(place);
-  EXPECT_NEAR(place->world.x, 0.5, 0.07);
+  EXPECT_NEAR(pick_volume(packet, kAlongX, kNone).value().world.x, 0.5, 0.07);
 }
 
 TEST(Pick, ClipPlanesApplyUnlessTheVolumeIgnoresThem) {
@@ -91,13 +83,12 @@ TEST(Pick, ClipPlanesApplyUnlessTheVolumeIgnoresThem) {
 TEST(Pick, ASurfaceIsPickedInFrontOfHalfOpacityOnly) {
   const auto packet = packet_with([](const Vec3&) { return 1.0; }, {{0, 0.4}, {2, 0.4}});
   // The volume is half opaque at -2 + 1.73: a surface at x = -1 is nearer, and one at x = 1 is hidden.
-  const auto before = pick(packet, 50.5, 50.5, 5, 7), behind = pick(packet, 50.5, 50.5, 7, 7);
-  ASSERT_TRUE(before && behind);
-  EXPECT_FALSE(before->is_volume);
-  EXPECT_EQ(before->id, 7u);
-  EXPECT_NEAR(before->world.x, -1, 1e-9);
-  EXPECT_TRUE(behind->is_volume);
-  EXPECT_NEAR(behind->world.x, -2 + std::log(2) / 0.4, 1e-6);
+  const PickHit before = pick(packet, 50.5, 50.5, 5, 7).value(), behind = pick(packet, 50.5, 50.5, 7, 7).value();
+  EXPECT_FALSE(before.is_volume);
+  EXPECT_EQ(before.id, 7u);
+  EXPECT_NEAR(before.world.x, -1, 1e-9);
+  EXPECT_TRUE(behind.is_volume);
+  EXPECT_NEAR(behind.world.x, -2 + std::log(2) / 0.4, 1e-6);
 }
 
 TEST(Pick, DepthsBecomePositionsOnASphereAndAPlane) {
@@ -112,9 +103,7 @@ TEST(Pick, DepthsBecomePositionsOnASphereAndAPlane) {
     // The intersection with the unit sphere: |o + t d| = 1.
     const double b = dot(ray.origin, ray.direction), c = dot(ray.origin, ray.origin) - 1, t = -b - std::sqrt(b * b - c);
     const Vec3 truth = ray.origin + t * ray.direction;
-    const auto sphere = pick(packet, x, y, -dot(camera.back, truth - camera.position), 3);
-    ASSERT_TRUE(sphere);
-    EXPECT_NEAR(norm(sphere->world - truth), 0, 1e-12);
+    EXPECT_NEAR(norm(pick(packet, x, y, -dot(camera.back, truth - camera.position), 3).value().world - truth), 0, 1e-12);
     const Vec3 on_plane = ray.origin + (0.4 - ray.origin.z) / ray.direction.z * ray.direction;
     EXPECT_NEAR(pick(packet, x, y, -dot(camera.back, on_plane - camera.position), 3)->world.z, 0.4, 1e-12);
   }
@@ -131,17 +120,13 @@ TEST(Pick, AnArrowIsPickedOnItsShaftAndItsHead) {
   item.id = packet.add_object("glyphs", "v", "glyphs[0]");
   packet.glyphs = {item};
   const auto met = [&](double y, double z) { return pick_solid(packet, {{-6, y, z}, {1, 0, 0}}, kNone); };
-  const auto shaft = met(0, 0);
-  ASSERT_TRUE(shaft);
-  EXPECT_NEAR(shaft->world.x, -0.2, 1e-9);
-  EXPECT_EQ(object_label(packet, shaft->id), "glyphs v");
-  ASSERT_TRUE(met(1.5, 0.25));
+  EXPECT_NEAR(met(0, 0).value().world.x, -0.2, 1e-9);
+  EXPECT_EQ(object_label(packet, met(0, 0)->id), "glyphs v");
+  EXPECT_TRUE(met(1.5, 0.25));
   EXPECT_FALSE(met(0, 0.25));
   EXPECT_FALSE(met(2.7, 0));
   packet.clip_planes = {{{1, 0, 0}, {1, 0, 0}}};
-  ASSERT_TRUE(met(0, 0));
-  EXPECT_NEAR(met(0, 0)->world.x, 2.9, 1e-9) << "the first one is cut away";
+  EXPECT_NEAR(met(0, 0).value().world.x, 2.9, 1e-9) << "the first one is cut away";
 }
 
-}  // namespace pick_test
-}  // namespace catena::app
+}  // namespace catena::app::pick_test

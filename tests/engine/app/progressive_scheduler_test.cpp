@@ -2,18 +2,15 @@
 /// The window's next image, from measured render times; and the phase of animated bands, from the clock.
 #include "engine/app/viewer/window/progressive_scheduler.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/results.h"
 
-namespace catena::app {
-namespace progressive_scheduler_test {
+namespace catena::app::progressive_scheduler_test {
+
+using test::value_of;
 
 constexpr RayWorkload kFast{true, true, false}, kExact{true, false, false}, kNoRays{false, false, false};
 
-ProgressiveScheduler pacing(const std::string& words) {
-  auto quality = parse_quality(words);
-  EXPECT_TRUE(quality);
-  return ProgressiveScheduler(*quality);
-}
+ProgressiveScheduler pacing(const std::string& words) { return ProgressiveScheduler(value_of(parse_quality(words))); }
 
 /// The render time on a machine where a unit of cost takes `unit_ms` for an image of full size.
 double time_of(const FrameRequest& next, double unit_ms) {
@@ -118,7 +115,7 @@ TEST(ProgressiveScheduler, AStatedErrorEndsTheRefinement) {
   EXPECT_TRUE(p.needs_estimate());
   p.set_estimate(1.7);
   p.on_rendered(100);
-  EXPECT_NE(p.status_text().find("error 1.70"), std::string::npos) << p.status_text();
+  EXPECT_TRUE(test::has(p.status_text(), "error 1.70"));
   ASSERT_TRUE(p.refined_frame(kFast));
   p.set_estimate(0.9);
   p.on_rendered(200);
@@ -202,12 +199,11 @@ TEST(ProgressiveScheduler, TheErrorAtRestMayBeEstimatedForAnyTarget) {
     p.set_estimate(0.4);
     EXPECT_EQ(p.rmse(), 0.4);
     EXPECT_FALSE(p.may_estimate()) << "once";
-    EXPECT_NE(p.status_text().find("error 0.40"), std::string::npos) << p.status_text();
+    EXPECT_TRUE(test::has(p.status_text(), "error 0.40"));
     EXPECT_FALSE(p.refined_frame(kFast)) << "and nothing is drawn for it";
     p.on_rendered(time_of(p.interactive_frame(kFast), 400));
     EXPECT_FALSE(p.rmse());
   }
 }
 
-}  // namespace progressive_scheduler_test
-}  // namespace catena::app
+}  // namespace catena::app::progressive_scheduler_test

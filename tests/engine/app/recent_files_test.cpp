@@ -5,13 +5,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 
+#include "tests/engine/app/environment_variable.h"
 #include "tests/support/support.h"
 
-namespace catena::app {
-namespace recent_files_test {
+namespace catena::app::recent_files_test {
 
 using Names = std::vector<std::string>;
 
@@ -95,32 +94,17 @@ TEST(RecentFiles, AnUnwritablePathIsNotAnError) {
   EXPECT_EQ(test::read_file(folder / "a.json"), "");
 }
 
-/// Sets an environment variable for the lifetime of the object.
-class Environment {
- public:
-  Environment(const char* name, const char* value) : name_(name) {
-    if (const char* before = std::getenv(name)) before_ = before;
-    value == nullptr ? unsetenv(name) : setenv(name, value, 1);
-  }
-  ~Environment() { before_.empty() ? unsetenv(name_) : setenv(name_, before_.c_str(), 1); }
-
- private:
-  const char* name_;
-  std::string before_;
-};
-
 TEST(RecentFiles, TheListIsInTheUsersStateFolder) {
   {
-    const Environment state("XDG_STATE_HOME", "/state"), home("HOME", "/home/me");
+    const test::EnvironmentVariable state("XDG_STATE_HOME", "/state"), home("HOME", "/home/me");
     EXPECT_EQ(RecentFiles().path(), "/state/catena/recent.json");
   }
-  for (const char* none : {"", "relative", static_cast<const char*>(nullptr)}) {
-    const Environment state("XDG_STATE_HOME", none), home("HOME", "/home/me");
+  for (const std::optional<std::string>& none : {std::optional<std::string>(""), {"relative"}, {}}) {
+    const test::EnvironmentVariable state("XDG_STATE_HOME", none), home("HOME", "/home/me");
     EXPECT_EQ(RecentFiles().path(), "/home/me/.local/state/catena/recent.json");
   }
-  const Environment state("XDG_STATE_HOME", nullptr), home("HOME", nullptr);
+  const test::EnvironmentVariable state("XDG_STATE_HOME", std::nullopt), home("HOME", std::nullopt);
   EXPECT_EQ(RecentFiles().path(), "");
 }
 
-}  // namespace recent_files_test
-}  // namespace catena::app
+}  // namespace catena::app::recent_files_test

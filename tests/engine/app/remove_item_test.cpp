@@ -9,10 +9,10 @@
 #include "engine/base/json_edit.h"
 #include "tests/engine/app/open_scene_model.h"
 #include "tests/support/mesh_shapes.h"
+#include "tests/support/results.h"
 #include "tests/support/support.h"
 
-namespace catena::app {
-namespace remove_item_test {
+namespace catena::app::remove_item_test {
 
 class ItemRemoval : public testing::Test {
  protected:
@@ -22,10 +22,9 @@ class ItemRemoval : public testing::Test {
     ASSERT_TRUE(done) << item << ": " << done.error().message;
   }
   void feel_item(const std::string& item, const std::optional<Vec3>& at = {}) {
-    const auto thing = make_haptic_binding(host_->scene(), item, at, Vec3(5, 6, 7), 4);
-    ASSERT_TRUE(thing) << thing.error().message;
-    if (!find_bound_link(host_->scene(), *thing).empty()) return;
-    const Outcome done = host_->apply(make_binding_edits(host_->scene(), item, *thing), "feel");
+    const auto thing = test::value_of(make_haptic_binding(host_->scene(), item, at, Vec3(5, 6, 7), 4));
+    if (!find_bound_link(host_->scene(), thing).empty()) return;
+    const Outcome done = host_->apply(make_binding_edits(host_->scene(), item, thing), "feel");
     ASSERT_TRUE(done) << done.error().message;
   }
   /// The value at a JSON pointer in the text, on one line; empty if there is none.
@@ -138,5 +137,4 @@ TEST_F(ItemRemoval, ASecondFeelUpdatesTheExistingLink) {
   EXPECT_NE(at("/chain/2/seed"), seed);
 }
 
-}  // namespace remove_item_test
-}  // namespace catena::app
+}  // namespace catena::app::remove_item_test

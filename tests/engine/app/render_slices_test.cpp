@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: MIT
 /// `catena render` of slices and translucent meshes.
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "render/image/image.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/program_in_folder.h"
 
 namespace render_slices_test {
 
 using namespace catena;
 
-test::ProgramResult program(const std::vector<std::string>& arguments) { return test::run_catena(arguments); }
+class RenderSlices : public test::ProgramInFolder {};
 
 /// A slice of z at y = 0, -2..2, black to blue, with a white contour at 1; in front of the right half a red mesh of opacity 0.5.
 const std::string kScene = R"({"fields": {"z": {"analytic": "plane", "resolution": 17}},
@@ -21,18 +17,15 @@ const std::string kScene = R"({"fields": {"z": {"analytic": "plane", "resolution
   "meshes": [{"name": "m", "file": "quad.obj", "color": [1, 0, 0], "opacity": 0.5, "shading": "smooth"}],
   "camera": {"position": [0, -10, 0], "target": [0, 0, 0], "up": [0, 0, 1], "projection": "orthographic", "height": 4.8}})";
 
-TEST(RenderSlices, ASliceWithAContourBehindATranslucentMesh) {
+TEST_F(RenderSlices, ASliceWithAContourBehindATranslucentMesh) {
+  write("quad.obj", "v 0 -1 -3\nv 3 -1 -3\nv 3 -1 3\nv 0 -1 3\nf 1 2 3 4\n");
   for (const double opacity : {1.0, 0.5}) {
-    const test::TemporaryFolder folder;
     std::string scene = kScene;
     scene.replace(scene.find("OPACITY"), 7, "\"opacity\": " + std::to_string(opacity) + ",");
-    test::write_file(folder / "s.json", scene);
-    test::write_file(folder / "quad.obj", "v 0 -1 -3\nv 3 -1 -3\nv 3 -1 3\nv 0 -1 3\nf 1 2 3 4\n");
-    const auto run =
-        program({"render", folder / "s.json", "-o", folder / "o.png", "--size", "128x96", "--validation", "--stats", folder / "o.json"});
-    ASSERT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_NE(test::read_file(folder / "o.json").find("\"validation_messages\": 0"), std::string::npos);
-    const auto picture = render::read_png(folder / "o.png");
+    write("s.json", scene);
+    succeed("render {s.json} -o {o.png} --size 128x96 --validation --stats {o.json}");
+    test::expect_parts(read("o.json"), {"\"validation_messages\": 0"});
+    const auto picture = render::read_png(folder_ / "o.png");
     ASSERT_TRUE(picture);
     EXPECT_TRUE(render::write_png(test::binary_dir() + "/app-slice-" + (opacity < 1 ? "half" : "whole") + ".png", *picture, true));
     for (const std::uint32_t y : {10u, 40u, 60u, 84u}) {
@@ -48,14 +41,10 @@ TEST(RenderSlices, ASliceWithAContourBehindATranslucentMesh) {
   }
 }
 
-TEST(RenderSlices, ASliceOutsideTheDomainIsOneErrorLine) {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "s.json", R"({"fields": {"z": {"analytic": "plane", "resolution": 9}},
+TEST_F(RenderSlices, ASliceOutsideTheDomainIsOneErrorLine) {
+  write("s.json", R"({"fields": {"z": {"analytic": "plane", "resolution": 9}},
     "slices": [{"field": "z", "axis": "y", "at": 7}]})");
-  const auto run = program({"render", folder / "s.json", "-o", folder / "o.png"});
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.err.find("s.json:2"), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find("does not meet the domain"), std::string::npos) << run.err;
+  expect_refused("render {s.json} -o {o.png}", {"s.json:2", "does not meet the domain"});
 }
 
 }  // namespace render_slices_test

@@ -10,10 +10,10 @@
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/scene/document.h"
 #include "render/extract/extract.h"
+#include "tests/support/results.h"
 #include "tests/support/support.h"
 
-namespace catena::app {
-namespace scene_items_test {
+namespace catena::app::scene_items_test {
 
 TEST(Histogram, BarsCountEveryValueOnceIncludingBothEnds) {
   const std::vector<float> sorted{0, 0, 0.5f, 1, 1, 1, 2};
@@ -42,12 +42,10 @@ class EditedScene : public testing::Test {
  protected:
   void SetUp() override {
     test::write_file(folder_ / "s.json", kFields);
-    auto document = scene::Document::open(folder_ / "s.json");
-    ASSERT_TRUE(document) << document.error().message;
-    document_ = std::move(*document);
-    auto scene = document_->read();
-    ASSERT_TRUE(scene) << scene.error().message;
-    scene_ = std::move(*scene);
+    auto document = test::value_of(scene::Document::open(folder_ / "s.json"));
+    document_ = std::move(document);
+    auto scene = test::value_of(document_->read());
+    scene_ = std::move(scene);
   }
   SortedSamples values_of(scene::Entity field) {
     SortedSamples values;
@@ -83,27 +81,24 @@ TEST_F(EditedScene, HistogramValuesAreCachedUntilTheirFieldIsRemoved) {
 TEST_F(EditedScene, EveryPresentationOfAFieldIsDrawn) {
   int items = 0;
   for (const char* name : {"ball", "flow", "flat", "exact"}) {
-    const auto drawn = scene::resolve_rendered_field(scene_, scene::find_field(scene_, name), {});
-    ASSERT_TRUE(drawn) << drawn.error().message;
+    const auto drawn = test::value_of(scene::resolve_rendered_field(scene_, scene::find_field(scene_, name), {}));
     for (const ShowAs as : {ShowAs::volume, ShowAs::isosurface, ShowAs::slice, ShowAs::streamlines, ShowAs::glyphs}) {
-      if (!can_show(*drawn, as)) continue;
+      if (!can_show(drawn, as)) continue;
       ++items;
       const Outcome done =
-          document_->set(new_item_pointer(as), make_item_json(scene_, scene::find_field(scene_, name), *drawn, as, {}), to_string(as));
+          document_->set(new_item_pointer(as), make_item_json(scene_, scene::find_field(scene_, name), drawn, as, {}), to_string(as));
       ASSERT_TRUE(done) << name << " as " << to_string(as) << ": " << done.error().message;
     }
   }
   EXPECT_EQ(items, 3 + 3 + 3 + 3);
-  auto scene = document_->read();
-  ASSERT_TRUE(scene) << scene.error().message;
-  const auto packet = render::make_frame(*scene, 32, 32);
-  ASSERT_TRUE(packet) << packet.error().message;
-  EXPECT_EQ(packet->volumes.size(), 3u);
-  EXPECT_EQ(packet->isosurfaces.size(), 2u + 3);
-  EXPECT_EQ(packet->slices.size(), 4u);
-  EXPECT_GT(packet->tubes.size(), 20u);
-  ASSERT_EQ(packet->glyphs.size(), 1u);
-  EXPECT_GT(packet->glyphs[0].glyphs.size(), 100u) << "on the first slice";
+  auto scene = test::value_of(document_->read());
+  const auto packet = test::value_of(render::make_frame(scene, 32, 32));
+  EXPECT_EQ(packet.volumes.size(), 3u);
+  EXPECT_EQ(packet.isosurfaces.size(), 2u + 3);
+  EXPECT_EQ(packet.slices.size(), 4u);
+  EXPECT_GT(packet.tubes.size(), 20u);
+  ASSERT_EQ(packet.glyphs.size(), 1u);
+  EXPECT_GT(packet.glyphs[0].glyphs.size(), 100u) << "on the first slice";
 }
 
 TEST_F(EditedScene, LinkLevelsOfASurfaceHaveItsFieldAndLevel) {
@@ -117,18 +112,15 @@ TEST_F(EditedScene, LinkLevelsOfASurfaceHaveItsFieldAndLevel) {
 }
 
 TEST_F(EditedScene, ANewIsosurfaceHasTheLevelOfTheFirstLink) {
-  const auto drawn = scene::resolve_rendered_field(scene_, scene::find_field(scene_, "ball"), {});
-  ASSERT_TRUE(drawn);
+  const auto drawn = test::value_of(scene::resolve_rendered_field(scene_, scene::find_field(scene_, "ball"), {}));
   const std::string level = first_link_level(scene_, "ball");
   EXPECT_EQ(level, "1.25") << "the first link's";
-  EXPECT_EQ(make_item_json(scene_, scene::find_field(scene_, "ball"), *drawn, ShowAs::isosurface, {}),
+  EXPECT_EQ(make_item_json(scene_, scene::find_field(scene_, "ball"), drawn, ShowAs::isosurface, {}),
             R"({"field": "ball", "level": 1.25})");
   EXPECT_TRUE(first_link_level(scene_, "flow").empty());
-  auto without_links = scene::parse_scene(R"({"fields": {"ball": {"analytic": "sphere"}}})", "s.json");
-  ASSERT_TRUE(without_links);
-  const std::string item = make_item_json(*without_links, scene::find_field(*without_links, "ball"), *drawn, ShowAs::isosurface, {});
+  auto without_links = test::value_of(scene::parse_scene(R"({"fields": {"ball": {"analytic": "sphere"}}})", "s.json"));
+  const std::string item = make_item_json(without_links, scene::find_field(without_links, "ball"), drawn, ShowAs::isosurface, {});
   EXPECT_EQ(item.find("1.25"), std::string::npos) << "else of its own range: " << item;
 }
 
-}  // namespace scene_items_test
-}  // namespace catena::app
+}  // namespace catena::app::scene_items_test

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
 /// `catena study analyse` and `study power`: each kind of finding, rejected trials with their reasons, subjects with missing trials,
 /// invalid rows, errors in the analysis plan, and the commands.
-#include <gtest/gtest.h>
-
 #include <filesystem>
 
 #include "engine/base/json.h"
 #include "engine/base/memory_limit.h"
+#include "tests/engine/app/program_runs.h"
 #include "tests/engine/app/trial_table_fixtures.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
 
 namespace study_analyze_test {
 
 using namespace study_tables;
+using test::has;
+using test::run_ok;
+using test::run_refused;
 
 TEST(StudyFindings, AreJudgedByTheirTests) {
   std::mt19937_64 random(5);
@@ -38,7 +38,7 @@ TEST(StudyFindings, AreJudgedByTheirTests) {
   for (const char* paper : {"held is more accurate", "to follow is less accurate", "haste costs accuracy", "less so when held",
                             "the gain is largest when tracing", "the times' intervals overlap"})
     EXPECT_EQ(find_finding(one, paper).verdict, Verdict::not_testable) << paper;
-  EXPECT_NE(find_finding(one, "held is more accurate").text().find("at least 2 values are required, but there is 1"), std::string::npos);
+  EXPECT_TRUE(has(find_finding(one, "held is more accurate").text(), "at least 2 values are required, but there is 1"));
 }
 
 TEST(StudyRejections, AreCountedByReasonAndExcluded) {
@@ -77,7 +77,7 @@ TEST(StudyMissingTrials, SubjectsWithoutTrialsAreExcludedByNumber) {
   ASSERT_EQ(a.missing_data.size(), 3u);
   EXPECT_EQ(a.missing_data[0], "subject 40: no accepted trial of trace, held (10 done)");
   EXPECT_EQ(a.missing_data[1], "subject 70: no accepted trial of follow, free (0 done)");
-  EXPECT_NE(tests_csv(study_fixture().study, a).find(",40 70,"), std::string::npos);
+  EXPECT_TRUE(has(tests_csv(study_fixture().study, a), ",40 70,"));
 }
 
 TEST(StudyRows, RowsOfAnotherDesignAreRefusedInOneLine) {
@@ -89,7 +89,7 @@ TEST(StudyRows, RowsOfAnotherDesignAreRefusedInOneLine) {
     const auto result = analyze(study_fixture().study, study_fixture().inquiry, rows, "DIR");
     ASSERT_FALSE(result) << words;
     EXPECT_TRUE(result.error().message.starts_with("DIR: subject ")) << result.error().message;
-    EXPECT_NE(result.error().message.find(words), std::string::npos) << result.error().message;
+    EXPECT_TRUE(has(result.error().message, words));
     EXPECT_EQ(result.error().message.find('\n'), std::string::npos);
   };
   says([](TrialRow& row) { row.task = "tracce"; }, "no task \"tracce\" (did you mean \"trace\"?); trace or follow was expected");
@@ -115,7 +115,7 @@ TEST(StudyAnalysisPlan, ErrorsNameTheLine) {
     const auto study = study::parse_study(text, "s.json");
     ASSERT_FALSE(study) << to;
     EXPECT_TRUE(study.error().message.starts_with("s.json:")) << study.error().message;
-    EXPECT_NE(study.error().message.find(words), std::string::npos) << study.error().message;
+    EXPECT_TRUE(has(study.error().message, words));
   };
   says("\"test\": \"weaker_correlation\"", "\"test\": \"weakest\"", "weaker_correlation");
   says("\"rejected\": 1, \"trials\": 400", "\"rejected\": 3, \"trials\": 2", "is no share");
@@ -148,10 +148,9 @@ TEST(StudyAnalyse, WritesTablesAndASelfContainedPage) {
   for (const auto& [name, text] :
        {std::pair{"001", "hard,a bit\nhow,\"so, \"\"so\"\" <b>\"\n"}, {"003", "hard,a bit\n"}, {"004", "hard,yes\nho"}})
     test::write_file(folder / ("data/questionnaire/" + std::string(name) + ".csv"), "question,answer\n" + std::string(text));
-  const auto run = test::run_catena({"study", "analyse", folder / "data", "-o", folder / "out"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("20 subjects, 780 trials, 0 rejected"), std::string::npos) << run.out;
-  EXPECT_NE(run.out.find("supported: held is more accurate"), std::string::npos) << run.out;
+  const auto run = run_ok({"study", "analyse", folder / "data", "-o", folder / "out"});
+  EXPECT_TRUE(has(run.out, "20 subjects, 780 trials, 0 rejected"));
+  EXPECT_TRUE(has(run.out, "supported: held is more accurate"));
   EXPECT_EQ(run.out.find("model"), std::string::npos) << run.out;
 
   const test::Table tests = test::Table::read(folder / "out/tests.csv");
@@ -164,7 +163,8 @@ TEST(StudyAnalyse, WritesTablesAndASelfContainedPage) {
   EXPECT_EQ(test::read_file(folder / "out/trials.csv"), test::read_file(folder / "data/trials.csv"));
   const std::string json = test::read_file(folder / "out/results.json");
   ASSERT_TRUE(json::parse(json, "results.json"));
-  EXPECT_NE(json.find("\"simulated\": false"), std::string::npos);
+  EXPECT_TRUE(has(json, "\"simulated\": false"));
+  EXPECT_TRUE(has(json, R"({"subject": 1, "question": "how", "answer": "so, \"so\" <b>"})"));
 
   EXPECT_NE(json.find(R"({"subject": 1, "question": "how", "answer": "so, \"so\" <b>"})"), std::string::npos);
   EXPECT_EQ(test::read_file(folder / "out/answers.csv"),
@@ -172,22 +172,19 @@ TEST(StudyAnalyse, WritesTablesAndASelfContainedPage) {
 
   const std::string page = test::read_file(folder / "out/report.html");
   for (const char* words : {"Was it &lt;hard&gt;?", "<td>no</td><td class=\"n\">0</td>", "<td>a bit</td><td class=\"n\">2</td>",
-                            "<td>yes</td><td class=\"n\">1</td>", "<li>subject 1: so, &quot;so&quot; &lt;b&gt;</li>"})
-    EXPECT_NE(page.find(words), std::string::npos) << words;
+                            "<td>yes</td><td class=\"n\">1</td>", "<li>subject 1: so, &quot;so&quot; &lt;b&gt;</li>",
+                            "prefers-color-scheme: dark", "subject 5: no accepted trial of follow, free", "1 of 400 was rejected"})
+    EXPECT_TRUE(has(page, words));
   EXPECT_EQ(page.find("<script"), std::string::npos);
   for (const char* away : {"src=", "href=\"http", "url(", "@import"}) EXPECT_EQ(page.find(away), std::string::npos) << away;
-  EXPECT_NE(page.find("prefers-color-scheme: dark"), std::string::npos);
-  EXPECT_NE(page.find("subject 5: no accepted trial of follow, free"), std::string::npos);
-  EXPECT_NE(page.find("1 of 400 was rejected"), std::string::npos);
 
   // The same data give bit-identical tables; results of a model are marked as such everywhere.
   test::write_file(folder / "data/simulated.json", "{}");
-  const auto again = test::run_catena({"study", "analyse", folder / "data", "-o", folder / "again"});
-  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const auto again = run_ok({"study", "analyse", folder / "data", "-o", folder / "again"});
   for (const char* name : {"tests.csv", "means.csv", "correlations.csv", "slopes.csv", "rejections.csv", "findings.csv", "subjects.csv"})
     EXPECT_EQ(test::read_file(folder / ("out/" + std::string(name))), test::read_file(folder / ("again/" + std::string(name)))) << name;
   for (const std::string& text : {again.out, test::read_file(folder / "again/report.html"), test::read_file(folder / "again/results.json")})
-    EXPECT_NE(text.find("do not replace results of people"), std::string::npos);
+    EXPECT_TRUE(has(text, "do not replace results of people"));
 }
 
 TEST(StudyAnalyse, BadInputIsOneLineAndWritesNothing) {
@@ -195,10 +192,7 @@ TEST(StudyAnalyse, BadInputIsOneLineAndWritesNothing) {
   std::mt19937_64 random(10);
   const std::vector<TrialRow> rows = make_trial_table(random, {.subjects = 2, .trials = 2});
   const auto refused = [&](const std::string& data, const std::string& out, const std::string& words) {
-    const auto run = test::run_catena({"study", "analyse", data, "-o", out});
-    EXPECT_EQ(run.exit_code, 2) << run.out;
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-    EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
+    run_refused({"study", "analyse", data, "-o", out}, words);
   };
   refused(folder / "nothing", folder / "out", "study.json");
   write_data(folder / "empty", {});
@@ -206,8 +200,6 @@ TEST(StudyAnalyse, BadInputIsOneLineAndWritesNothing) {
   write_data(folder / "data", rows);
   refused(folder / "data", folder / "data", "trials.csv");
   const std::string text = test::read_file(folder / "data/trials.csv");
-  test::write_file(folder / "data/trials.csv", "subject,time\n1,2\n");
-  refused(folder / "data", folder / "out", "trials.csv:1: ");
   test::write_file(folder / "data/trials.csv", text + "1,2,3\n");
   refused(folder / "data", folder / "out", "trials.csv:18: the row has 3 cells");
   std::string inf = text;
@@ -220,19 +212,14 @@ TEST(StudyAnalyse, BadInputIsOneLineAndWritesNothing) {
 TEST(StudyPower, ReportsTheNumberOfSubjectsOfADesign) {
   test::TemporaryFolder folder;
   test::write_file(folder / "study.json", kStudy);
-  const auto run = test::run_catena({"study", "power", folder / "study.json", "--effect", "0.5"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("one test at alpha = 0.05: 34 subjects for a power of 0.8; the design's 20 subjects have a power of 0.565"),
-            std::string::npos)
-      << run.out;
-  EXPECT_NE(run.out.find("the strictest of 8 tests"), std::string::npos) << run.out;
+  const auto run = run_ok({"study", "power", folder / "study.json", "--effect", "0.5"});
+  EXPECT_TRUE(has(run.out, "one test at alpha = 0.05: 34 subjects for a power of 0.8; the design's 20 subjects have a power of 0.565"));
+  EXPECT_TRUE(has(run.out, "the strictest of 8 tests"));
   for (const auto& [option, value] :
        {std::pair{"--effect", "0"}, {"--effect", "nan"}, {"--power", "1"}, {"--alpha", "0"}, {"--power", "0.01"}}) {
-    std::vector<std::string> words{"study", "power", folder / "study.json", option, value};
-    if (std::string(option) != "--effect") words.insert(words.end(), {"--effect", "0.5"});
-    const auto bad = test::run_catena(words);
-    EXPECT_EQ(bad.exit_code, 2) << option << " " << value << bad.out;
-    EXPECT_NE(bad.err.find("expected"), std::string::npos) << bad.err;
+    test::Words words{"study", "power", folder / "study.json", option, value};
+    if (std::string(option) != "--effect") words = test::joined(words, {"--effect", "0.5"});
+    run_refused(words, "expected");
   }
 }
 

@@ -16,10 +16,10 @@
 
 #include "haptics/servo/log/reader.h"
 #include "tests/support/child_test.h"
+#include "tests/support/results.h"
 #include "tests/support/support.h"
 
-namespace catena::app {
-namespace study_live_test {
+namespace catena::app::study_live_test {
 
 using Stage = Procedure::Stage;
 namespace fs = std::filesystem;
@@ -37,24 +37,21 @@ TEST(StudySession, TheSceneBeforeATrialDoesNotRevealTheCondition) {
                    {"name": "held", "chain": [{"name": "line", "type": "streamline", "field": "flow", "seed": "$start"},
                                               {"name": "floor", "type": "plane", "point": "$start", "normal": [0, 0, 1]}]}]
   })");
-  const auto study = study::read_study(folder / "study.json");
-  ASSERT_TRUE(study) << study.error().message;
+  const auto study = test::value_of(study::read_study(folder / "study.json"));
   std::vector<json::Node> before;
   std::vector<std::size_t> links;
-  for (const study::Trial& trial : study::make_session(*study, 1)) {
-    LiveTrial live(*study);
-    auto host = live.open(trial, {});
-    ASSERT_TRUE(host) << host.error().message;
-    const auto text = json::parse(host->document().text(), "scene");
-    ASSERT_TRUE(text);
-    before.push_back(*text);
-    EXPECT_EQ(host->scene().entities.count<scene::Link>(), 1u) << "what both feel";
-    EXPECT_EQ(host->scene().entities.count<scene::StreamlineSet>(), 1u) << "the ball at the start";
+  for (const study::Trial& trial : study::make_session(study, 1)) {
+    LiveTrial live(study);
+    auto host = test::value_of(live.open(trial, {}));
+    const auto text = test::value_of(json::parse(host.document().text(), "scene"));
+    before.push_back(text);
+    EXPECT_EQ(host.scene().entities.count<scene::Link>(), 1u) << "what both feel";
+    EXPECT_EQ(host.scene().entities.count<scene::StreamlineSet>(), 1u) << "the ball at the start";
     EXPECT_TRUE(live.is_at_start(live.start_position()));
     EXPECT_FALSE(live.is_at_start(live.start_position() + Vec3(0.1, 0, 0)));
-    ASSERT_TRUE(host->undo());
-    EXPECT_EQ(host->scene().entities.count<scene::StreamlineSet>(), 0u);
-    links.push_back(host->scene().entities.count<scene::Link>());
+    ASSERT_TRUE(host.undo());
+    EXPECT_EQ(host.scene().entities.count<scene::StreamlineSet>(), 0u);
+    links.push_back(host.scene().entities.count<scene::Link>());
   }
   ASSERT_EQ(before.size(), 2u);
   EXPECT_TRUE(json::is_equal_value(before[0], before[1]));
@@ -84,17 +81,15 @@ std::string swinging_path() {
 
 /// Runs a session that begins each trial as soon as the hand is at the start.
 void go_through(const std::string& folder) {
-  auto study = study::read_study(folder + "/study.json");
-  ASSERT_TRUE(study) << study.error().message;
-  auto subject = SubjectFolder::open(folder + "/data", *study, 7);
-  ASSERT_TRUE(subject) << subject.error().message;
-  Procedure procedure(*study, {}, subject->trials(), subject->finished_trials(), subject->answered_questions());
+  auto study = test::value_of(study::read_study(folder + "/study.json"));
+  auto subject = test::value_of(SubjectFolder::open(folder + "/data", study, 7));
+  Procedure procedure(study, {}, subject.trials(), subject.finished_trials(), subject.answered_questions());
   HapticSession::Options options;
   options.device = "simulated:" + folder + "/path.csv";
   options.start_with_forces = true;
   options.realtime = {.fifo = false, .lock_memory = false, .cpu = haptics::RealtimeOptions::kUnbound};
   HapticSession hand(options);
-  LiveSession session(*study, *subject, procedure, {});
+  LiveSession session(study, subject, procedure, {});
   const auto load = [&]() -> std::optional<LoadedScene> {
     auto next = session.next_scene();
     EXPECT_TRUE(next) << next.error().message;
@@ -103,11 +98,10 @@ void go_through(const std::string& folder) {
     EXPECT_TRUE(loaded) << loaded.error().message;
     return loaded ? std::optional(std::move(*loaded)) : std::nullopt;
   };
-  auto first = load();
-  ASSERT_TRUE(first);
-  SceneModel scene = std::move(first->model);
+  auto first = test::value_of(load());
+  SceneModel scene = std::move(first.model);
   ASSERT_TRUE(hand.open_device(scene.scene()));
-  ASSERT_TRUE(hand.prepare(scene.scene(), first->bounds, {}));
+  ASSERT_TRUE(hand.prepare(scene.scene(), first.bounds, {}));
   ASSERT_TRUE(hand.start());
   while (procedure.stage() != Stage::finished) {
     hand.pull_state(scene.scene());
@@ -181,34 +175,30 @@ TEST(StudySession, KilledTwentyTimesLosesNoFinishedTrial) {
   waitpid(pid, &status, 0);
   ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 
-  const auto study = study::read_study(folder / "study.json");
-  ASSERT_TRUE(study);
-  const auto rows = study::parse_rows(test::read_file(rows_file), rows_file);
-  ASSERT_TRUE(rows) << rows.error().message;
-  const std::vector<study::Trial> trials = study::make_session(*study, 7);
-  ASSERT_EQ(rows->size(), trials.size());
+  const auto study = test::value_of(study::read_study(folder / "study.json"));
+  const auto rows = test::value_of(study::parse_rows(test::read_file(rows_file), rows_file));
+  const std::vector<study::Trial> trials = study::make_session(study, 7);
+  ASSERT_EQ(rows.size(), trials.size());
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    EXPECT_EQ((*rows)[i].index, static_cast<int>(i));
-    EXPECT_GT((*rows)[i].time_s, 0);
+    EXPECT_EQ(rows[i].index, static_cast<int>(i));
+    EXPECT_GT(rows[i].time_s, 0);
     // The trial has a complete recording with its metadata.
-    auto log = haptics::log::LogReader::open(folder / fmt::format("data/recordings/007-{:03}.catlog", i));
-    ASSERT_TRUE(log) << log.error().message;
-    EXPECT_EQ(log->header().about, trial_metadata_json(*study, trials[i]));
+    auto log = test::value_of(haptics::log::LogReader::open(folder / fmt::format("data/recordings/007-{:03}.catlog", i)));
+    EXPECT_EQ(log.header().about, trial_metadata_json(study, trials[i]));
     // The ticks span the trial's time; some ticks may be missing on a busy machine.
     std::optional<double> first_s;
     double last_s = 0;
-    for (auto event = log->next(); event != haptics::log::LogEvent::done; event = log->next()) {
+    for (auto event = log.next(); event != haptics::log::LogEvent::done; event = log.next()) {
       if (event != haptics::log::LogEvent::tick) continue;
-      last_s = log->tick().output.t_s;
+      last_s = log.tick().output.t_s;
       if (!first_s) first_s = last_s;
     }
     ASSERT_TRUE(first_s) << i;
-    EXPECT_GE(last_s - *first_s, (*rows)[i].time_s - 1e-9) << i;
-    EXPECT_EQ(log->end_summary().find("ends cleanly"), 0u) << log->end_summary();
+    EXPECT_GE(last_s - *first_s, rows[i].time_s - 1e-9) << i;
+    EXPECT_EQ(log.end_summary().find("ends cleanly"), 0u) << log.end_summary();
   }
   EXPECT_FALSE(is_recording(folder.path(), fs::file_time_type::min()));
   EXPECT_EQ(test::read_file(folder / "data/questionnaire/007.csv"), "question,answer\nhard,yes\n");
 }
 
-}  // namespace study_live_test
-}  // namespace catena::app
+}  // namespace catena::app::study_live_test

@@ -2,16 +2,14 @@
 // A study session without a window: instructions, the procedure, and the files of a subject.
 #include "engine/app/study/procedure.h"
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 
 #include "engine/app/study/subject_folder.h"
 #include "engine/app/study/tick_observer.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/program_runs.h"
+#include "tests/support/results.h"
 
-namespace catena::app {
-namespace study_procedure_test {
+namespace catena::app::study_procedure_test {
 
 using Stage = Procedure::Stage;
 
@@ -67,17 +65,16 @@ TEST(StudyInstructions, PagesHaveAHeadingAndParagraphs) {
 }
 
 TEST(StudyInstructions, ErrorsNameTheLine) {
-  const auto error = [](const std::string& text) {
+  for (const auto& [text, message] :
+       {std::pair{"hello\n", "i.txt:1: text before the first section"},
+        {"# introduction\nA\n# before tracee\nB\n", "i.txt:3: there is no section \"before tracee\" (did you mean \"before trace\"?)"},
+        {"# end\n---\nA\n", "i.txt:2: a page without text"},
+        {"# end\nA\n---\n", "i.txt:3: a page without text"},
+        {"# end\nA\n# end\nB\n", "i.txt:3: the section \"end\" is repeated"}}) {
     const auto parsed = parse_instructions(text, "i.txt", {"trace"});
-    return parsed ? std::string("nothing") : parsed.error().message;
-  };
-  EXPECT_EQ(error("hello\n").find("i.txt:1: text before the first section"), 0u);
-  EXPECT_NE(error("# introduction\nA\n# before tracee\nB\n")
-                .find("i.txt:3: there is no section \"before tracee\" (did you mean \"before trace\"?)"),
-            std::string::npos);
-  EXPECT_EQ(error("# end\n---\nA\n").find("i.txt:2: a page without text"), 0u);
-  EXPECT_EQ(error("# end\nA\n---\n").find("i.txt:3: a page without text"), 0u);
-  EXPECT_EQ(error("# end\nA\n# end\nB\n").find("i.txt:3: the section \"end\" is repeated"), 0u);
+    ASSERT_FALSE(parsed) << text;
+    EXPECT_TRUE(parsed.error().message.starts_with(message)) << parsed.error().message;
+  }
 }
 
 TEST(StudyProcedure, GoesFromTheFirstPageToTheLast) {
@@ -110,9 +107,8 @@ TEST(StudyProcedure, GoesFromTheFirstPageToTheLast) {
   for (const char key : {'4', '0', 'x', '2', '3'}) procedure.handle_key(letter(key), false);
   EXPECT_EQ(procedure.typed_answer(), "very");
   procedure.handle_key(kEnter, false);
-  const auto hard = procedure.take_answer();
-  ASSERT_TRUE(hard);
-  EXPECT_EQ(hard->question + "=" + hard->answer, "hard=very");
+  const auto hard = test::value_of(procedure.take_answer());
+  EXPECT_EQ(hard.question + "=" + hard.answer, "hard=very");
   EXPECT_FALSE(procedure.take_answer()) << "once";
   for (const char32_t c : {U'a', U' ', U'\u00e9', U'b'}) procedure.handle_key(letter(c), false);
   procedure.handle_key(kSpace, false);
@@ -203,8 +199,7 @@ class StudyFolder : public testing::Test {
 
 TEST_F(StudyFolder, OnlyOneSessionAtATimeWritesToAFolder) {
   {
-    auto first = open();
-    ASSERT_TRUE(first) << first.error().message;
+    auto first = test::value_of(open());
     const auto second = open(8);
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().message, folder_ / "data: another session writes to it; its end was expected, or another folder");
@@ -214,22 +209,20 @@ TEST_F(StudyFolder, OnlyOneSessionAtATimeWritesToAFolder) {
 
 TEST_F(StudyFolder, ARowNeedsItsRecordingAndTheNextSessionContinues) {
   {
-    auto folder = open();
-    ASSERT_TRUE(folder) << folder.error().message;
-    ASSERT_EQ(folder->trials().size(), 4u);
-    const std::string unfinished = folder->unfinished_recording(folder->trials()[0]);
+    auto folder = test::value_of(open());
+    ASSERT_EQ(folder.trials().size(), 4u);
+    const std::string unfinished = folder.unfinished_recording(folder.trials()[0]);
     test::write_file(unfinished, "ticks");
     study::TrialResult measured;
     measured.time_s = 1.25;
-    ASSERT_TRUE(folder->save_trial(folder->trials()[0], measured, unfinished));
+    ASSERT_TRUE(folder.save_trial(folder.trials()[0], measured, unfinished));
     EXPECT_FALSE(test::exists(unfinished));
     EXPECT_EQ(read("recordings/007-000.catlog"), "ticks");
     // Without a recording, no row is written.
-    EXPECT_FALSE(folder->save_trial(folder->trials()[1], measured, unfinished));
+    EXPECT_FALSE(folder.save_trial(folder.trials()[1], measured, unfinished));
   }
-  auto again = open();
-  ASSERT_TRUE(again) << again.error().message;
-  EXPECT_EQ(again->finished_trials(), 1u);
+  auto again = test::value_of(open());
+  EXPECT_EQ(again.finished_trials(), 1u);
   const std::string rows = read("subjects/007.csv");
   EXPECT_EQ(std::ranges::count(rows, '\n'), 2) << rows;
 }
@@ -261,15 +254,14 @@ TEST_F(StudyFolder, RowsAndAnswersOfAnotherSessionAreRefused) {
   test::write_file(folder_ / "data/questionnaire/007.csv", "question,answer\nother,1\n");
   const auto answers = open();
   ASSERT_FALSE(answers);
-  EXPECT_NE(answers.error().message.find("007.csv:2: the row is not an answer to question 1"), std::string::npos)
-      << answers.error().message;
+  EXPECT_TRUE(test::has(answers.error().message, "007.csv:2: the row is not an answer to question 1"));
   std::filesystem::remove(folder_ / "data/questionnaire/007.csv");
   study::Trial second = study::make_session(study_, 7)[1];
   second.index = 1;
   test::write_file(folder_ / "data/subjects/007.csv", study::table_header() + study::format_row(study::make_row(study_, second, {})));
   const auto rows = open();
   ASSERT_FALSE(rows);
-  EXPECT_NE(rows.error().message.find("007.csv:2: the row is not trial 0"), std::string::npos) << rows.error().message;
+  EXPECT_TRUE(test::has(rows.error().message, "007.csv:2: the row is not trial 0"));
 }
 
 TEST(StudyTickObserver, ForwardsEveryTickAndReportsLostTicks) {
@@ -305,5 +297,4 @@ TEST(StudyTickObserver, ForwardsEveryTickAndReportsLostTicks) {
   EXPECT_FALSE(tap.has_lost_ticks() || tap.pop());
 }
 
-}  // namespace study_procedure_test
-}  // namespace catena::app
+}  // namespace catena::app::study_procedure_test

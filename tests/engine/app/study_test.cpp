@@ -1,101 +1,93 @@
 // SPDX-License-Identifier: MIT
 // `catena study`: simulate, shard, merge, continue after a kill, a custom study, and errors.
-#include <gtest/gtest.h>
-
 #include <filesystem>
+#include <map>
 
 #include "engine/base/json.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/program_runs.h"
 
 namespace study_test {
 
 using namespace catena;
+using test::has;
+using test::run_ok;
+using test::run_refused;
 namespace fs = std::filesystem;
 
-/// Writes the paper's study with few trials, so that a session is short, and returns its path.
-std::string short_study(const test::TemporaryFolder& folder) {
-  std::string text = test::read_file(test::source_dir() + "/assets/studies/proxy-chain.json");
-  const auto replace = [&](const std::string& from, const std::string& to) { text.replace(text.find(from), from.size(), to); };
-  replace("\"trials\": 10", "\"trials\": 2");
-  const std::string path = folder / "short.json";
-  test::write_file(path, text);
-  return path;
-}
-
-test::ProgramResult study(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "study");
-  return test::run_catena(arguments);
-}
-
-TEST(Study, MergedShardsEqualTheWholeBitExactly) {
-  const test::TemporaryFolder folder;
-  const std::string path = short_study(folder);
-  const auto whole = study({"simulate", path, "--subjects", "2", "-o", folder / "whole"});
-  ASSERT_EQ(whole.exit_code, 0) << whole.err;
-  EXPECT_NE(whole.out.find("2 simulated subjects, 32 trials"), std::string::npos) << whole.out;
-  for (const char* shard : {"1/2", "2/2"}) {
-    const auto part = study({"simulate", path, "--subjects", "2", "-o", folder / ("part" + std::string(1, shard[0])), "--shard", shard});
-    ASSERT_EQ(part.exit_code, 0) << part.err;
+class Study : public testing::Test {
+ protected:
+  /// Writes the paper's study with few trials, so that a session is short, and with one more text replaced; returns its path.
+  std::string short_study(const std::string& from = "", const std::string& to = "") const {
+    std::string text = test::read_file(paper_);
+    for (const auto& [old, now] : {std::pair<std::string, std::string>{"\"trials\": 10", "\"trials\": 2"}, {from, to}}) {
+      const auto at = text.find(old);
+      EXPECT_NE(at, std::string::npos) << old;
+      if (at != std::string::npos) text.replace(at, old.size(), now);
+    }
+    test::write_file(folder_ / "short.json", text);
+    return folder_ / "short.json";
   }
-  fs::create_directories(folder / "part2/questionnaire");
-  test::write_file(folder / "part2/questionnaire/002.csv", "question,answer\n");
-  const auto merged = study({"merge", folder / "part2", folder / "part1", "-o", folder / "merged"});
-  ASSERT_EQ(merged.exit_code, 0) << merged.err;
-  const std::string table = test::read_file(folder / "whole/trials.csv");
+  /// Arguments that simulate one subject into a folder.
+  test::Words one_subject(const std::string& study, const std::string& out) const {
+    return {"study", "simulate", study, "--subjects", "1", "-o", folder_ / out};
+  }
+  const std::string paper_ = test::source_dir() + "/assets/studies/proxy-chain.json";
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Study, MergedShardsEqualTheWholeBitExactly) {
+  const std::string path = short_study();
+  const test::Words simulate{"study", "simulate", path, "--subjects", "2", "-o"};
+  EXPECT_TRUE(has(run_ok(simulate, {folder_ / "whole"}).out, "2 simulated subjects, 32 trials"));
+  run_ok(simulate, {folder_ / "part1", "--shard", "1/2"});
+  run_ok(simulate, {folder_ / "part2", "--shard", "2/2"});
+  fs::create_directories(folder_ / "part2/questionnaire");
+  test::write_file(folder_ / "part2/questionnaire/002.csv", "question,answer\n");
+  const test::Words merge{"study", "merge", folder_ / "part2", folder_ / "part1", "-o", folder_ / "merged"};
+  run_ok(merge);
+  const std::string table = test::read_file(folder_ / "whole/trials.csv");
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 33);
-  EXPECT_EQ(table, test::read_file(folder / "merged/trials.csv"));
-  EXPECT_EQ(test::read_file(folder / "whole/subjects/002.csv"), test::read_file(folder / "merged/subjects/002.csv"));
-  EXPECT_EQ(test::read_file(folder / "merged/study.json"), test::read_file(path));
-  EXPECT_EQ(test::read_file(folder / "merged/questionnaire/002.csv"), "question,answer\n");
+  EXPECT_EQ(table, test::read_file(folder_ / "merged/trials.csv"));
+  EXPECT_EQ(test::read_file(folder_ / "whole/subjects/002.csv"), test::read_file(folder_ / "merged/subjects/002.csv"));
+  EXPECT_EQ(test::read_file(folder_ / "merged/study.json"), test::read_file(path));
+  EXPECT_EQ(test::read_file(folder_ / "merged/questionnaire/002.csv"), "question,answer\n");
   // A repeated merge changes nothing; folders with different trials are refused.
-  EXPECT_EQ(study({"merge", folder / "part2", folder / "part1", "-o", folder / "merged"}).exit_code, 0);
-  std::string other = test::read_file(folder / "part1/subjects/001.csv");
+  run_ok(merge);
+  std::string other = test::read_file(folder_ / "part1/subjects/001.csv");
   other.replace(other.rfind(",target,"), 8, ",limit,");
-  fs::create_directories(folder / "bad/subjects");
-  test::write_file(folder / "bad/study.json", test::read_file(path));
-  test::write_file(folder / "bad/subjects/001.csv", other);
-  const auto mixed = study({"merge", folder / "part1", folder / "bad", "-o", folder / "never"});
-  EXPECT_EQ(mixed.exit_code, 2);
-  EXPECT_NE(mixed.err.find("trials of a model"), std::string::npos) << mixed.err;
-  test::write_file(folder / "bad/simulated.json", "{}");
-  const auto refused = study({"merge", folder / "part1", folder / "bad", "-o", folder / "never"});
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.err.find("the trials of subject 1 differ"), std::string::npos) << refused.err;
-  EXPECT_FALSE(test::exists(folder / "never"));
+  fs::create_directories(folder_ / "bad/subjects");
+  test::write_file(folder_ / "bad/study.json", test::read_file(path));
+  test::write_file(folder_ / "bad/subjects/001.csv", other);
+  const test::Words mixed{"study", "merge", folder_ / "part1", folder_ / "bad", "-o", folder_ / "never"};
+  run_refused(mixed, "trials of a model");
+  test::write_file(folder_ / "bad/simulated.json", "{}");
+  run_refused(mixed, "the trials of subject 1 differ");
+  EXPECT_FALSE(test::exists(folder_ / "never"));
 }
 
-TEST(Study, ContinuesAfterTheLastCompleteTrial) {
-  const test::TemporaryFolder folder;
-  const std::string path = short_study(folder);
-  ASSERT_EQ(study({"simulate", path, "--subjects", "1", "-o", folder / "a"}).exit_code, 0);
-  const std::string whole = test::read_file(folder / "a/subjects/001.csv");
+TEST_F(Study, ContinuesAfterTheLastCompleteTrial) {
+  const std::string path = short_study();
+  run_ok(one_subject(path, "a"));
+  const std::string whole = test::read_file(folder_ / "a/subjects/001.csv");
   // The state after a kill: nine trials and a part of the tenth.
   std::size_t at = 0;
   for (int line = 0; line < 10; ++line) at = whole.find('\n', at) + 1;
-  fs::create_directories(folder / "b/subjects");
-  test::write_file(folder / "b/study.json", test::read_file(path));
-  test::write_file(folder / "b/subjects/001.csv", whole.substr(0, at + 17));
-  EXPECT_EQ(study({"simulate", path, "--subjects", "1", "-o", folder / "b"}).exit_code, 2)
-      << "a person's session is not finished by a model";
-  test::write_file(folder / "b/simulated.json", "{}");
-  const auto on = study({"simulate", path, "--subjects", "1", "-o", folder / "b"});
-  ASSERT_EQ(on.exit_code, 0) << on.err;
-  EXPECT_NE(on.out.find("16 trials, 7 of them computed in this run"), std::string::npos) << on.out;
-  EXPECT_EQ(test::read_file(folder / "b/subjects/001.csv"), whole);
+  fs::create_directories(folder_ / "b/subjects");
+  test::write_file(folder_ / "b/study.json", test::read_file(path));
+  test::write_file(folder_ / "b/subjects/001.csv", whole.substr(0, at + 17));
+  run_refused(one_subject(path, "b"));  // a person's session is not finished by a model
+  test::write_file(folder_ / "b/simulated.json", "{}");
+  EXPECT_TRUE(has(run_ok(one_subject(path, "b")).out, "16 trials, 7 of them computed in this run"));
+  EXPECT_EQ(test::read_file(folder_ / "b/subjects/001.csv"), whole);
 }
 
-TEST(Study, ACustomStudyRuns) {
-  const test::TemporaryFolder folder;
-  fs::copy_file(test::source_dir() + "/assets/studies/friction.json", folder / "friction.json");
-  const auto missing = study({"simulate", folder / "friction.json", "--subjects", "1", "-o", folder / "d"});
-  EXPECT_EQ(missing.exit_code, 2);
-  EXPECT_NE(missing.err.find("flow.vdb"), std::string::npos) << missing.err;
-  EXPECT_FALSE(test::exists(folder / "d")) << "no incomplete file";
-  ASSERT_EQ(test::run_catena({"generate", "abc", "-o", folder / "flow.vdb", "--resolution", "32"}).exit_code, 0);
-  const auto run = study({"simulate", folder / "friction.json", "--subjects", "1", "-o", folder / "d"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  const test::Table table = test::Table::read(folder / "d/trials.csv");
+TEST_F(Study, ACustomStudyRuns) {
+  fs::copy_file(test::source_dir() + "/assets/studies/friction.json", folder_ / "friction.json");
+  run_refused(one_subject(folder_ / "friction.json", "d"), "flow.vdb");
+  EXPECT_FALSE(test::exists(folder_ / "d")) << "no incomplete file";
+  run_ok({"generate", "abc", "-o", folder_ / "flow.vdb", "--resolution", "32"});
+  run_ok(one_subject(folder_ / "friction.json", "d"));
+  const test::Table table = test::Table::read(folder_ / "d/trials.csv");
   ASSERT_EQ(table.rows(), 18u);
   std::map<std::string, double> force;
   for (std::size_t i = 0; i < table.rows(); ++i) force[table.text(i, "condition")] += table.number(i, "peak_force_n");
@@ -105,10 +97,8 @@ TEST(Study, ACustomStudyRuns) {
   EXPECT_GT(force["across"], 0.1);
 }
 
-TEST(Study, TheSchemaHasTheKeysOfTheBundledStudies) {
-  const auto printed = study({"keys", "--schema"});
-  ASSERT_EQ(printed.exit_code, 0) << printed.err;
-  const auto schema = json::parse(printed.out, "schema");
+TEST_F(Study, TheSchemaHasTheKeysOfTheBundledStudies) {
+  const auto schema = json::parse(run_ok({"study", "keys", "--schema"}).out, "schema");
   ASSERT_TRUE(schema) << schema.error().message;
   const json::Node& properties = *schema->find("properties");
   for (const char* name : {"proxy-chain", "friction"}) {
@@ -120,107 +110,62 @@ TEST(Study, TheSchemaHasTheKeysOfTheBundledStudies) {
   }
 }
 
-TEST(Study, ATrialIsWrittenAsAScene) {
-  const test::TemporaryFolder folder;
-  const std::string path = test::source_dir() + "/assets/studies/proxy-chain.json";
+TEST_F(Study, ATrialIsWrittenAsAScene) {
   for (const char* trial : {"0", "30", "55", "80"}) {
-    const auto made = study({"scene", path, "--subject", "3", "--trial", trial, "-o", folder / "t.json"});
-    ASSERT_EQ(made.exit_code, 0) << made.err;
-    const auto info = test::run_catena({"info", folder / "t.json"});
-    EXPECT_EQ(info.exit_code, 0) << info.err;
-    EXPECT_NE(info.out.find("field flow: vector vortices"), std::string::npos) << info.out;
-    EXPECT_NE(info.out.find("1 world unit is 0.05 m"), std::string::npos) << info.out;
+    run_ok({"study", "scene", paper_, "--subject", "3", "--trial", trial, "-o", folder_ / "t.json"});
+    const auto info = run_ok({"info", folder_ / "t.json"});
+    EXPECT_TRUE(has(info.out, "field flow: vector vortices"));
+    EXPECT_TRUE(has(info.out, "1 world unit is 0.05 m"));
   }
-  EXPECT_EQ(study({"scene", path, "--trial", "96", "-o", folder / "u.json"}).exit_code, 2);
-  EXPECT_FALSE(test::exists(folder / "u.json"));
+  run_refused({"study", "scene", paper_, "--trial", "96", "-o", folder_ / "u.json"});
+  EXPECT_FALSE(test::exists(folder_ / "u.json"));
 }
 
-TEST(Study, ARecordedTrialReplaysBitExactly) {
-  const test::TemporaryFolder folder;
-  std::string text = test::read_file(short_study(folder));
-  text.replace(text.find("\"trials\": 2"), 11, "\"trials\": 1");
-  test::write_file(folder / "one.json", text);
-  ASSERT_EQ(study({"simulate", folder / "one.json", "--subjects", "1", "-o", folder / "d", "--record"}).exit_code, 0);
-  const test::Table table = test::Table::read(folder / "d/trials.csv");
-  for (std::size_t i = 0; i < table.rows(); i += 3) {
-    const std::string name = fmt::format("d/recordings/001-{:03}.catlog", static_cast<int>(table.number(i, "index")));
-    const auto again = test::run_catena({"replay", "--log", folder / name});
-    EXPECT_EQ(again.exit_code, 0) << again.err;
+TEST_F(Study, ARecordedTrialReplaysBitExactly) {
+  run_ok(one_subject(short_study("\"trials\": 2", "\"trials\": 1"), "d"), {"--record"});
+  const test::Table table = test::Table::read(folder_ / "d/trials.csv");
+  for (std::size_t i = 0; i < table.rows(); i += 3)
+    run_ok({"replay", "--log", folder_ / fmt::format("d/recordings/001-{:03}.catlog", static_cast<int>(table.number(i, "index")))});
+}
+
+TEST_F(Study, AnotherModelInTheSameFolderIsRefused) {
+  const std::string path = short_study();
+  run_ok(one_subject(path, "d"), {"--model", "depth_noise_mm=0", "--model", "tremor_mm=0.1"});
+  const std::string stored_study = test::read_file(folder_ / "d/study.json");
+  EXPECT_TRUE(has(stored_study, "\"depth_noise_mm\": 0,"));
+  EXPECT_TRUE(has(stored_study, "\"tremor_mm\": 0.1,"));
+  run_refused(one_subject(path, "d"), "another study");
+}
+
+TEST_F(Study, ImpossibleValuesInTheFileAreRefused) {
+  for (const auto& [from, to, part] : {std::tuple{"\"name\": \"iso\"", "\"name\": \"i\\nso\"", "\"name\""},
+                                       {"\"name\": \"iso\"", "\"name\": \"\"", "\"name\""},
+                                       {"\"metres_per_unit\": 0.05", "\"metres_per_unit\": 1e-9", "times the diagonal of the field's box"},
+                                       {"\"stimulus\": {", "\"stimulus\": {\"turn_deg\": 180, \"candidates\": 1, ", "turn too little"}}) {
+    run_refused({"study", "scene", short_study(from, to), "-o", folder_ / "d.json"}, part);
+    EXPECT_FALSE(test::exists(folder_ / "d.json")) << to;
   }
 }
 
-TEST(Study, AnotherModelInTheSameFolderIsRefused) {
-  const test::TemporaryFolder folder;
-  const std::string path = short_study(folder);
-  const auto calm =
-      study({"simulate", path, "--subjects", "1", "-o", folder / "d", "--model", "depth_noise_mm=0", "--model", "tremor_mm=0.1"});
-  ASSERT_EQ(calm.exit_code, 0) << calm.err;
-  const std::string stored_study = test::read_file(folder / "d/study.json");
-  EXPECT_NE(stored_study.find("\"depth_noise_mm\": 0,"), std::string::npos);
-  EXPECT_NE(stored_study.find("\"tremor_mm\": 0.1,"), std::string::npos);
-  const auto other = study({"simulate", path, "--subjects", "1", "-o", folder / "d"});
-  EXPECT_EQ(other.exit_code, 2);
-  EXPECT_NE(other.err.find("another study"), std::string::npos) << other.err;
+TEST_F(Study, WithoutContextStreamlinesTheSceneIsValid) {
+  run_ok({"study", "scene", short_study("\"context_streamlines\": 14", "\"context_streamlines\": 0"), "-o", folder_ / "d.json"});
+  run_ok({"info", folder_ / "d.json"});
 }
 
-/// Replaces a text in the paper's study, and returns the error of `study scene`.
-std::string refusal(const test::TemporaryFolder& folder, const std::string& from, const std::string& to) {
-  std::string text = test::read_file(short_study(folder));
-  const auto at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  text.replace(at, from.size(), to);
-  test::write_file(folder / "changed.json", text);
-  const auto run = study({"scene", folder / "changed.json", "-o", folder / "d.json"});
-  EXPECT_EQ(run.exit_code, 2) << to << run.err;
-  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-  EXPECT_FALSE(test::exists(folder / "d.json"));
-  return run.err;
-}
-
-TEST(Study, ImpossibleValuesInTheFileAreRefused) {
-  const test::TemporaryFolder folder;
-  EXPECT_NE(refusal(folder, "\"name\": \"iso\"", "\"name\": \"i\\nso\"").find("\"name\""), std::string::npos);
-  EXPECT_NE(refusal(folder, "\"name\": \"iso\"", "\"name\": \"\"").find("\"name\""), std::string::npos);
-  EXPECT_NE(refusal(folder, "\"metres_per_unit\": 0.05", "\"metres_per_unit\": 1e-9").find("times the diagonal of the field's box"),
-            std::string::npos);
-  EXPECT_NE(refusal(folder, "\"stimulus\": {", "\"stimulus\": {\"turn_deg\": 180, \"candidates\": 1, ").find("turn too little"),
-            std::string::npos);
-}
-
-TEST(Study, WithoutContextStreamlinesTheSceneIsValid) {
-  const test::TemporaryFolder folder;
-  std::string text = test::read_file(short_study(folder));
-  text.replace(text.find("\"context_streamlines\": 14"), 25, "\"context_streamlines\": 0");
-  test::write_file(folder / "none.json", text);
-  const auto run = study({"scene", folder / "none.json", "-o", folder / "d.json"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  const auto info = test::run_catena({"info", folder / "d.json"});
-  EXPECT_EQ(info.exit_code, 0) << info.err;
-}
-
-TEST(Study, ErrorsAreOneLine) {
-  const test::TemporaryFolder folder;
-  const std::string path = short_study(folder);
-  const std::vector<std::vector<std::string>> mistakes = {
-      {"simulate", folder / "none.json", "-o", folder / "d"},
-      {"simulate", path, "--subjects", "0", "-o", folder / "d"},
-      {"simulate", path, "--subjects", "1", "--shard", "3/2", "-o", folder / "d"},
-      {"simulate", path, "--subjects", "1", "--shard", "half", "-o", folder / "d"},
-      {"simulate", path, "--subjects", "1", "--shard", "", "-o", folder / "d"},
-      {"simulate", path, "--subjects", "1", "--model", "tremor_mm=1e300", "-o", folder / "d"},
-      {"simulate", path, "--subjects", "1", "--model", "tremor_mm", "-o", folder / "d"},
-      {"simulate", path, "--subjects", "1", "--model", "tremor=1", "-o", folder / "d"},
-      {"simulate", path, "--subjects", "1", "--model", "tremor_mm=-1", "-o", folder / "d"},
-      {"merge", folder / "nothing", "-o", folder / "d"},
-      {"keys", "taks"},
-      {},
+TEST_F(Study, ErrorsAreOneLine) {
+  const std::string path = short_study();
+  const auto refused = [&](const test::Words& words) {
+    run_refused(test::joined({"study"}, words));
+    EXPECT_FALSE(test::exists(folder_ / "d")) << testing::PrintToString(words);
   };
-  for (const auto& mistake : mistakes) {
-    const auto run = study(mistake);
-    EXPECT_EQ(run.exit_code, 2) << run.err;
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-    EXPECT_FALSE(test::exists(folder / "d")) << run.err;
-  }
+  refused({"simulate", folder_ / "none.json", "-o", folder_ / "d"});
+  refused({"simulate", path, "--subjects", "0", "-o", folder_ / "d"});
+  for (const char* shard : {"3/2", "half", ""}) refused({"simulate", path, "--subjects", "1", "--shard", shard, "-o", folder_ / "d"});
+  for (const char* model : {"tremor_mm=1e300", "tremor_mm", "tremor=1", "tremor_mm=-1"})
+    refused({"simulate", path, "--subjects", "1", "--model", model, "-o", folder_ / "d"});
+  refused({"merge", folder_ / "nothing", "-o", folder_ / "d"});
+  refused({"keys", "taks"});
+  refused({});
 }
 
 }  // namespace study_test

@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: MIT
 // `catena study run` in a window on a virtual display, with real key events and a scripted mouse that follows each path.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 
 #include "engine/app/study/live_trial.h"
 #include "engine/study/trial_table.h"
 #include "render/frame/camera.h"
-#include "tests/support/drive_window.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/program_runs.h"
+#include "tests/engine/app/window_fixture.h"
+#include "tests/support/results.h"
 
-namespace catena::app {
-namespace study_window_test {
+namespace catena::app::study_window_test {
+
+using test::has;
 
 constexpr std::uint32_t kWidth = 640, kHeight = 480;
 
@@ -69,17 +68,13 @@ std::string way_of(const study::Study& study, const study::Trial& trial, std::si
   return script + "\n";
 }
 
-class StudyWindowTest : public testing::Test {
+class StudyWindowTest : public test::DrivenWindow {
  protected:
-  void SetUp() override {
-    if (!test::can_drive_windows()) GTEST_SKIP() << "no Xvfb or no xdotool here";
-  }
   void write_study(const std::string& text, const std::string& pages) {
     test::write_file(folder_ / "study.json", text);
     test::write_file(folder_ / "pages.txt", pages);
-    auto read = study::read_study(folder_ / "study.json");
-    ASSERT_TRUE(read) << read.error().message;
-    study_ = std::move(*read);
+    auto read = test::value_of(study::read_study(folder_ / "study.json"));
+    study_ = std::move(read);
   }
   /// Runs the script; `$CATENA_PICTURE NAME`, where set, is called to capture the display for review.
   int drive(const std::string& script) {
@@ -90,7 +85,6 @@ class StudyWindowTest : public testing::Test {
         kWidth, kHeight);
     return test::drive_windows(folder_, start + script);
   }
-  std::string log() const { return test::read_file(folder_ / "log"); }
   std::vector<study::TrialRow> rows() const {
     const std::string file = folder_ / "data/subjects/007.csv";
     auto rows = study::parse_rows(test::read_file(file), file);
@@ -98,7 +92,6 @@ class StudyWindowTest : public testing::Test {
     return rows ? *rows : std::vector<study::TrialRow>();
   }
 
-  test::TemporaryFolder folder_;
   study::Study study_;
 };
 
@@ -115,9 +108,8 @@ TEST_F(StudyWindowTest, AScriptedMouseCompletesAStudyInTwoSessions) {
             0)
       << log();
   EXPECT_EQ(log().find("never"), std::string::npos) << log();
-  EXPECT_NE(log().find("subject 7: 1 of 2 trials and 0 of 2 questions are done; the same command continues the session"), std::string::npos)
-      << log();
-  EXPECT_NE(log().find("subject 7: 2 of 2 trials and 2 of 2 questions are done"), std::string::npos) << log();
+  EXPECT_TRUE(has(log(), "subject 7: 1 of 2 trials and 0 of 2 questions are done; the same command continues the session"));
+  EXPECT_TRUE(has(log(), "subject 7: 2 of 2 trials and 2 of 2 questions are done"));
   EXPECT_EQ(log().find("condition_"), std::string::npos) << "neither titles nor the terminal tell the condition";
   const std::vector<study::TrialRow> done = rows();
   ASSERT_EQ(done.size(), 2u);
@@ -175,25 +167,19 @@ TEST_F(StudyWindowTest, DISABLED_AScriptedMouseCompletesAllFourTasks) {
 TEST(StudyRunCommand, ErrorsAreReportedBeforeAnyWindowAndWriteNothing) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "study.json", kStudy);
-  const auto error = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> arguments{"study", "run", folder / "study.json", "-o", folder / "data"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const test::ProgramResult result = test::run_catena(arguments);
-    EXPECT_EQ(result.exit_code, 2) << result.err;
-    EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+  const auto refused = [&](const test::Words& options, const std::string& part) {
+    test::run_refused(test::joined({"study", "run", folder / "study.json", "-o", folder / "data"}, options), part);
     EXPECT_FALSE(test::exists(folder / "data"));
-    return result.err;
   };
-  EXPECT_NE(error({"--subject", "7", "--device", "mouse"}).find("pages.txt: "), std::string::npos);
+  refused({"--subject", "7", "--device", "mouse"}, "pages.txt: ");
   test::write_file(folder / "pages.txt", "# before nothing\n");
-  EXPECT_NE(error({"--subject", "7", "--device", "mouse"}).find("pages.txt:1: there is no section \"before nothing\""), std::string::npos);
+  refused({"--subject", "7", "--device", "mouse"}, "pages.txt:1: there is no section \"before nothing\"");
   test::write_file(folder / "pages.txt", "# introduction\nHello\n");
-  EXPECT_NE(error({"--subject", "0", "--device", "mouse"}).find("--subject"), std::string::npos);
-  EXPECT_NE(error({"--subject", "7", "--device", "falcon:7"}).find("catena: "), std::string::npos);
-  EXPECT_NE(error({"--subject", "7", "--device", "simulated"}).find("can exert forces; --forces on"), std::string::npos);
-  EXPECT_NE(error({"--subject", "7", "--device", "mouse", "--forces", "on"}).find("cannot exert forces"), std::string::npos);
-  EXPECT_NE(error({"--subject", "7"}).find("--device"), std::string::npos);
+  refused({"--subject", "0", "--device", "mouse"}, "--subject");
+  refused({"--subject", "7", "--device", "falcon:7"}, "catena: ");
+  refused({"--subject", "7", "--device", "simulated"}, "can exert forces; --forces on");
+  refused({"--subject", "7", "--device", "mouse", "--forces", "on"}, "cannot exert forces");
+  refused({"--subject", "7"}, "--device");
 }
 
-}  // namespace study_window_test
-}  // namespace catena::app
+}  // namespace catena::app::study_window_test

@@ -2,22 +2,15 @@
 // A tracked head in front of a screen: smoothing of a head that moves, jumps or is lost, and the window's image against that of render.
 #include "engine/app/viewer/input/tracked_head.h"
 
-#include <gtest/gtest.h>
-
-#include <sys/wait.h>
-
 #include <chrono>
-#include <cstdlib>
 #include <thread>
 
 #include "engine/scene/document.h"
-#include "render/image/image.h"
-#include "tests/support/drive_window.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/program_runs.h"
+#include "tests/engine/app/window_fixture.h"
+#include "tests/support/results.h"
 
-namespace catena::app {
-namespace tracked_head_test {
+namespace catena::app::tracked_head_test {
 
 const scene::DisplayScreen kDesk{"desk", {-2, -2, -1.5}, {2, -2, -1.5}, {-2, -2, 1.5}};  // diagonal 5; heads are at y < -2
 constexpr double kDt = 1.0 / 60;
@@ -77,17 +70,12 @@ std::string scene(const std::string& workspace = "") {
   return text;
 }
 
-class HeadTrackedWindow : public testing::Test {
+class HeadTrackedWindow : public test::WindowTest {
  protected:
-  int view(const std::string& options) {
-    test::write_file(folder_ / "script.sh", "export HOME=" + folder_.path() + "\nexec " + test::program_path() + " view " +
-                                                (folder_ / "s.json") + " --screen desk --size 160x120 --no-panels " + options + "\n");
-    const int status = std::system(
-        ("timeout 60 " + test::on_display("640x480") + "sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  int view(const std::string& options) const {
+    return run_on_display("export HOME=" + folder_.path() + "\nexec " + test::program_path() + " view " + (folder_ / "s.json") +
+                          " --screen desk --size 160x120 --no-panels " + options + "\n");
   }
-  std::string log() const { return test::read_file(folder_ / "log"); }
-  test::TemporaryFolder folder_;
 };
 
 TEST_F(HeadTrackedWindow, ShowsTheImageOfRender) {
@@ -95,20 +83,17 @@ TEST_F(HeadTrackedWindow, ShowsTheImageOfRender) {
   // The head moves to the right and nearer, and rests.
   test::write_file(folder_ / "head.csv", "t,x,y,z\n10,0,-8,2\n10.1,0.8,-7.5,1.5\n10.2,1.6,-6,0.5\n");
   ASSERT_EQ(view("--head " + (folder_ / "head.csv") + " --seconds 1.5 --screenshot " + (folder_ / "w.png")), 0) << log();
-  const auto run = test::run_catena({"render", folder_ / "s.json", "-o", folder_ / "r_%d.png", "--size", "160x120", "--screen", "desk",
-                                     "--head", folder_ / "head.csv", "--frames", "2"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  const auto window = render::read_png(folder_ / "w.png"), first = render::read_png(folder_ / "r_0.png"),
-             last = render::read_png(folder_ / "r_1.png");
-  ASSERT_TRUE(window && first && last) << log();
-  ASSERT_EQ(window->width, 160u);
+  test::run_ok({"render", folder_ / "s.json", "-o", folder_ / "r_%d.png", "--size", "160x120", "--screen", "desk", "--head",
+                folder_ / "head.csv", "--frames", "2"});
+  const render::Image8 window = picture("w.png"), first = picture("r_0.png"), last = picture("r_1.png");
+  ASSERT_EQ(window.width, 160u);
   const auto differing = [&](const render::Image8& other) {
     int count = 0;
-    for (std::size_t i = 0; i < window->rgba.size(); ++i) count += std::abs(window->rgba[i] - other.rgba[i]) > 1;
+    for (std::size_t i = 0; i < window.rgba.size(); ++i) count += std::abs(window.rgba[i] - other.rgba[i]) > 1;
     return count;
   };
-  EXPECT_EQ(differing(*last), 0);
-  EXPECT_GT(differing(*first), 2000);
+  EXPECT_EQ(differing(last), 0);
+  EXPECT_GT(differing(first), 2000);
 }
 
 /// A device position in metres, mapped by the workspace: 0.1 m to the right, 0.05 m above and 0.6 m in front of the screen's center.
@@ -117,17 +102,14 @@ TEST_F(HeadTrackedWindow, ADevicesPositionIsTheHeads) {
     "device": {"type": "simulated", "friction": 0},)";
   test::write_file(folder_ / "s.json", scene(workspace));
   test::write_file(folder_ / "hand.csv", "t,x,y,z\n0,0.1,0.05,0.6\n");
-  auto document = scene::Document::open(folder_ / "s.json");
-  ASSERT_TRUE(document) << document.error().message;
-  auto read = document->read();
-  ASSERT_TRUE(read) << read.error().message;
-  read->stereo.screen_index = 0;
-  auto head = TrackedHead::open("simulated:" + (folder_ / "hand.csv"), *read);
-  ASSERT_TRUE(head) << head.error().message;
-  ASSERT_TRUE((*head)->start(0));
+  auto document = test::value_of(scene::Document::open(folder_ / "s.json"));
+  auto read = test::value_of(document.read());
+  read.stereo.screen_index = 0;
+  auto head = test::value_of(TrackedHead::open("simulated:" + (folder_ / "hand.csv"), read));
+  ASSERT_TRUE(head->start(0));
   std::optional<Vec3> at;
   for (int k = 0; k < 5000 && !at; ++k) {
-    at = (*head)->position_at(1e-3 * k);
+    at = head->position_at(1e-3 * k);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   ASSERT_TRUE(at);
@@ -140,9 +122,8 @@ TEST_F(HeadTrackedWindow, InvalidHeadsAreOneErrorLine) {
   test::write_file(folder_ / "nan.csv", "t,x,y,z\n0,0,-8,nan\n");
   const auto refused = [&](const std::string& head, const std::string& words) {
     EXPECT_EQ(view("--frames 2 --head " + head), 2) << head;
-    EXPECT_NE(log().find(words), std::string::npos) << log();
-    const std::string output = log();
-    EXPECT_EQ(std::count(output.begin(), output.end(), '\n'), 1) << output;
+    EXPECT_TRUE(test::has(log(), words));
+    EXPECT_TRUE(test::is_one_line(log()));
   };
   refused(folder_ / "behind.csv", "first position: screen \"desk\": ");
   refused(folder_ / "nan.csv", "nan.csv:2: \"nan\" in column \"z\"");
@@ -151,5 +132,4 @@ TEST_F(HeadTrackedWindow, InvalidHeadsAreOneErrorLine) {
   refused("mouse", "expected");
 }
 
-}  // namespace tracked_head_test
-}  // namespace catena::app
+}  // namespace catena::app::tracked_head_test

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// `catena tradeoff SCENE`: the discretization error, the Pareto front, the choice of a setting, interleaved timing, the report, and
 /// the command.
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "engine/app/tuning/measure/discretization_error.h"
 #include "engine/app/tuning/measure/haptics/streamline.h"
@@ -17,18 +17,22 @@
 #include "engine/field/analytic/analytic.h"
 #include "engine/geometry/flow/curve.h"
 #include "render/quality/refinement.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/program_runs.h"
+#include "tests/support/results.h"
 
 namespace tradeoff_measure_test {
 
 using namespace catena;
 using namespace catena::app::tuning;
+using test::has;
 using test::Table;
 
+double squared_difference(double a, double b) { return (a - b) * (a - b); }
+double squared_difference(const Vec3& a, const Vec3& b) { return dot(a - b, a - b); }
+
 /// The root mean square of grid - formula on a lattice that coincides with no voxels.
-template <class Grid, class Formula, class Off>
-double true_error(const Grid& grid, const Formula& formula, const Off& off) {
+template <class Grid, class Formula>
+double true_error(const Grid& grid, const Formula& formula) {
   field::Cursor a, b;
   const field::Box& box = grid.index_box();
   double sum = 0, count = 0;
@@ -36,40 +40,35 @@ double true_error(const Grid& grid, const Formula& formula, const Off& off) {
     for (double y = box.lo.y + 0.13; y < box.hi.y; y += 1.37)
       for (double x = box.lo.x + 0.17; x < box.hi.x; x += 1.37) {
         const Vec3 p = grid.mapping().world_from_index({x, y, z});
-        sum += off(grid.sample(p, a).value, formula.sample(p, b).value);
+        sum += squared_difference(grid.sample(p, a).value, formula.sample(p, b).value);
         ++count;
       }
   return std::sqrt(sum / count);
 }
 
-TEST(TradeoffDiscretizationError, IsWithinAFactorOfTwoForScalarFormulas) {
-  for (const char* name : {"gaussian", "torus", "tanh", "sphere"}) {
-    const auto formula = field::make_analytic(name);
-    ASSERT_TRUE(formula);
-    const auto grid = field::sample_on_grid(*formula->scalar, 41, -2, 2);
-    for (const auto& read : {grid, grid->as_cubic().value()}) {
-      const auto floor = estimate_interpolation_error({read, nullptr});
-      ASSERT_TRUE(floor) << name;
-      const double truth = true_error(*read, *formula->scalar, [](double a, double b) { return (a - b) * (a - b); });
-      EXPECT_GT(floor->at_h.error, truth / 2) << name << (read == grid ? "" : ", cubic");
-      EXPECT_LT(floor->at_h.error, truth * 2) << name << (read == grid ? "" : ", cubic");
-      EXPECT_GT(floor->at_4h, floor->at_2h) << name;
-    }
+/// `estimate` of a formula's grid with linear and with cubic interpolation.
+template <class Formula, class Estimate>
+void expect_within_a_factor_of_two(const Formula& formula, const Estimate& estimate) {
+  const auto grid = field::sample_on_grid(formula, 41, -2, 2);
+  for (const auto& read : {grid, grid->as_cubic().value()}) {
+    SCOPED_TRACE(read == grid ? "linear" : "cubic");
+    const auto floor = test::value_of(estimate(read));
+    const double truth = true_error(*read, formula);
+    EXPECT_GT(floor.at_h.error, truth / 2);
+    EXPECT_LT(floor.at_h.error, truth * 2);
+    EXPECT_GT(floor.at_4h, floor.at_2h);
   }
 }
 
-TEST(TradeoffDiscretizationError, IsWithinAFactorOfTwoForVectorFormulas) {
-  for (const char* name : {"lamb-oseen", "abc"}) {
+TEST(TradeoffDiscretizationError, IsWithinAFactorOfTwoForScalarAndVectorFormulas) {
+  for (const char* name : {"gaussian", "torus", "tanh", "sphere", "lamb-oseen", "abc"}) {
+    SCOPED_TRACE(name);
     const auto formula = field::make_analytic(name);
     ASSERT_TRUE(formula);
-    const auto grid = field::sample_on_grid(*formula->vector, 41, -2, 2);
-    for (const auto& read : {grid, grid->as_cubic().value()}) {
-      const auto floor = estimate_interpolation_error({nullptr, read});
-      ASSERT_TRUE(floor) << name;
-      const double truth = true_error(*read, *formula->vector, [](const Vec3& a, const Vec3& b) { return dot(a - b, a - b); });
-      EXPECT_GT(floor->at_h.error, truth / 2) << name << (read == grid ? "" : ", cubic");
-      EXPECT_LT(floor->at_h.error, truth * 2) << name << (read == grid ? "" : ", cubic");
-    }
+    if (formula->scalar)
+      expect_within_a_factor_of_two(*formula->scalar, [](const auto& read) { return estimate_interpolation_error({read, nullptr}); });
+    else
+      expect_within_a_factor_of_two(*formula->vector, [](const auto& read) { return estimate_interpolation_error({nullptr, read}); });
   }
 }
 
@@ -105,6 +104,17 @@ Point made(double error, double time, double spread = 0.01) {
   return p;
 }
 
+Curve choose(std::vector<Point> points, double discretization_error = kNotMeasured, double reference_error = kNotMeasured,
+             int current = -1) {
+  Curve curve;
+  curve.points = std::move(points);
+  curve.discretization_error = discretization_error;
+  curve.reference_error = reference_error;
+  curve.current = current;
+  choose_setting(curve);
+  return curve;
+}
+
 TEST(TradeoffDiscretizationError, ReportsDifferencesThatDoNotConverge) {
   const ExtrapolatedError e = extrapolate_from_differences(3, 3.5);
   EXPECT_FALSE(e.is_converged);
@@ -112,26 +122,23 @@ TEST(TradeoffDiscretizationError, ReportsDifferencesThatDoNotConverge) {
   EXPECT_DOUBLE_EQ(extrapolate_from_differences(3, 15).error, 1);
   EXPECT_DOUBLE_EQ(extrapolate_from_errors(4, 16).error, 1);
   EXPECT_EQ(describe_order(e).rfind("at least 1: a third of the difference with every 2nd voxel", 0), 0u) << describe_order(e);
-  Curve curve;
-  curve.points = {made(8, 1), made(2, 5), made(0.9, 10), made(0.1, 20)};
-  curve.discretization_error = 1;
+  Curve curve = choose({made(8, 1), made(2, 5), made(0.9, 10), made(0.1, 20)}, 1);
   curve.discretization_error_name += ", at least";
   choose_setting(curve);
-  EXPECT_NE(curve.choice_reason.find("is not above the discretization error, at least 1;"), std::string::npos) << curve.choice_reason;
+  EXPECT_TRUE(has(curve.choice_reason, "is not above the discretization error, at least 1;"));
 }
 
 TEST(TradeoffDiscretizationError, CoarserGridsHaveTheSameDomain) {
   const auto formula = field::make_analytic("linear");
   ASSERT_TRUE(formula);
   const auto grid = field::sample_on_grid(*formula->scalar, 20, -2, 2);
-  const auto levels = make_resolution_levels(*grid);
-  ASSERT_TRUE(levels);
-  for (const auto& level : levels->grids) {
-    EXPECT_LT(max_abs(level->world_bounds().lo - levels->grids[0]->world_bounds().lo), 1e-12);
-    EXPECT_LT(max_abs(level->world_bounds().hi - levels->grids[0]->world_bounds().hi), 1e-12);
-    EXPECT_LT(true_error(*level, *formula->scalar, [](double a, double b) { return (a - b) * (a - b); }), 1e-6);
+  const auto levels = test::value_of(make_resolution_levels(*grid));
+  for (const auto& level : levels.grids) {
+    EXPECT_LT(max_abs(level->world_bounds().lo - levels.grids[0]->world_bounds().lo), 1e-12);
+    EXPECT_LT(max_abs(level->world_bounds().hi - levels.grids[0]->world_bounds().hi), 1e-12);
+    EXPECT_LT(true_error(*level, *formula->scalar), 1e-6);
   }
-  EXPECT_EQ(levels->grids[2]->index_box().hi.x, 4);
+  EXPECT_EQ(levels.grids[2]->index_box().hi.x, 4);
   EXPECT_FALSE(make_resolution_levels(*field::sample_on_grid(*formula->scalar, 8, -2, 2)));
 }
 
@@ -142,42 +149,28 @@ TEST(TradeoffParetoChoice, TheFrontHasTheNonDominatedPoints) {
 }
 
 TEST(TradeoffParetoChoice, TakesTheCheapestBelowTheDiscretizationError) {
-  Curve curve;
-  curve.points = {made(8, 1), made(2, 5), made(0.9, 10), made(0.1, 20)};
-  curve.discretization_error = 1;
-  choose_setting(curve);
-  EXPECT_EQ(curve.chosen, 2);
-  curve.reference_error = 3;  // errors below the reference's error do not count
-  choose_setting(curve);
+  const std::vector<Point> points{made(8, 1), made(2, 5), made(0.9, 10), made(0.1, 20)};
+  EXPECT_EQ(choose(points, 1).chosen, 2);
+  const Curve curve = choose(points, 1, 3);  // errors below the reference's error do not count
   EXPECT_EQ(curve.chosen, 1);
-  EXPECT_NE(curve.choice_reason.find("the error of the reference"), std::string::npos) << curve.choice_reason;
-  curve.discretization_error = 0.01, curve.reference_error = kNotMeasured;
-  choose_setting(curve);
-  EXPECT_NE(curve.choice_reason.find("No setting reaches"), std::string::npos) << curve.choice_reason;
+  EXPECT_TRUE(has(curve.choice_reason, "the error of the reference"));
+  EXPECT_TRUE(has(choose(points, 0.01).choice_reason, "No setting reaches"));
 }
 
 TEST(TradeoffParetoChoice, ErrorsBelowTheReferencesAreEqual) {
-  Curve curve;
-  curve.points = {made(100, 1), made(0.5, 1.5), made(0.2, 100)};
-  curve.reference_error = 1;
-  choose_setting(curve);
-  EXPECT_EQ(curve.chosen, 1);
-  EXPECT_EQ(curve.front, (std::vector<int>{0, 1})) << "what costs more shows nothing";
-  EXPECT_NE(curve.choice_reason.find("not above the error of the reference, 1;"), std::string::npos) << curve.choice_reason;
+  const Curve unresolved = choose({made(100, 1), made(0.5, 1.5), made(0.2, 100)}, kNotMeasured, 1);
+  EXPECT_EQ(unresolved.chosen, 1);
+  EXPECT_EQ(unresolved.front, (std::vector<int>{0, 1})) << "what costs more shows nothing";
+  EXPECT_TRUE(has(unresolved.choice_reason, "not above the error of the reference, 1;"));
   // Ratios of errors below the reference's error are not reported.
-  curve.points = {made(100, 1), made(2, 1.5), made(0.01, 100)};
-  choose_setting(curve);
-  EXPECT_EQ(curve.chosen, 1);
-  EXPECT_NE(curve.choice_reason.find("has 2 times less error. Errors below 1 cannot be resolved."), std::string::npos)
-      << curve.choice_reason;
+  const Curve ratios = choose({made(100, 1), made(2, 1.5), made(0.01, 100)}, kNotMeasured, 1);
+  EXPECT_EQ(ratios.chosen, 1);
+  EXPECT_TRUE(has(ratios.choice_reason, "has 2 times less error. Errors below 1 cannot be resolved."));
   // With all errors below the reference's, the scene's setting is kept.
-  curve.points = {made(0.1, 2), made(0.9, 2), made(0.4, 2)};
-  curve.current = 1;
-  choose_setting(curve);
-  EXPECT_EQ(curve.chosen, 1);
-  EXPECT_TRUE(curve.is_flat);
-  EXPECT_NE(curve.choice_reason.find("No setting has a larger error than the error of the reference, 1"), std::string::npos)
-      << curve.choice_reason;
+  const Curve flat = choose({made(0.1, 2), made(0.9, 2), made(0.4, 2)}, kNotMeasured, 1, 1);
+  EXPECT_EQ(flat.chosen, 1);
+  EXPECT_TRUE(flat.is_flat);
+  EXPECT_TRUE(has(flat.choice_reason, "No setting has a larger error than the error of the reference, 1"));
 }
 
 TEST(TradeoffParetoChoice, TheReasonForBytesDoesNotSayCheap) {
@@ -188,16 +181,11 @@ TEST(TradeoffParetoChoice, TheReasonForBytesDoesNotSayCheap) {
   curve.discretization_error = 1;
   choose_setting(curve);
   EXPECT_EQ(curve.chosen, 1);
-  EXPECT_NE(curve.choice_reason.find("fewest bytes"), std::string::npos) << curve.choice_reason;
+  EXPECT_TRUE(has(curve.choice_reason, "fewest bytes"));
   EXPECT_EQ(curve.choice_reason.find("cheap"), std::string::npos) << curve.choice_reason;
 }
 
-TEST(TradeoffParetoChoice, ReasonsHaveNumbersInTheFormatOfScenes) {
-  Curve curve;
-  curve.points = {made(1.5e-6, 1)};
-  choose_setting(curve);
-  EXPECT_NE(curve.choice_reason.find(" 1.5e-6."), std::string::npos) << curve.choice_reason;
-}
+TEST(TradeoffParetoChoice, ReasonsHaveNumbersInTheFormatOfScenes) { EXPECT_TRUE(has(choose({made(1.5e-6, 1)}).choice_reason, " 1.5e-6.")); }
 
 /// The advice names keys that must be removed because a scene cannot have them together with the setting.
 TEST(TradeoffAdvice, NamesTheKeysToReplace) {
@@ -219,31 +207,22 @@ TEST(TradeoffAdvice, NamesTheKeysToReplace) {
 }
 
 TEST(TradeoffParetoChoice, EqualTimesWithinNoiseAreDecidedByWork) {
-  Curve curve;
-  curve.points = {made(0.5, 10, 2), made(0.4, 9.5, 2), made(0.3, 10.5, 2)};
-  for (std::size_t i = 0; i < 3; ++i) curve.points[i].work = i == 2 ? 7 : 8;
-  curve.discretization_error = 1;
-  choose_setting(curve);
-  EXPECT_EQ(curve.chosen, 2);
+  std::vector<Point> points{made(0.5, 10, 2), made(0.4, 9.5, 2), made(0.3, 10.5, 2)};
+  for (std::size_t i = 0; i < 3; ++i) points[i].work = i == 2 ? 7 : 8;
+  EXPECT_EQ(choose(points, 1).chosen, 2);
 }
 
 TEST(TradeoffParetoChoice, TakesTheKneeOrTheScenesSetting) {
-  Curve curve;
-  curve.points = {made(100, 1), made(1, 1.5), made(0.5, 100)};
-  choose_setting(curve);
-  EXPECT_EQ(curve.chosen, 1);
+  const Curve knee = choose({made(100, 1), made(1, 1.5), made(0.5, 100)});
+  EXPECT_EQ(knee.chosen, 1);
   // The reason compares the knee with both neighbors.
-  EXPECT_NE(curve.choice_reason.find("costs 1.5 times less and has 1e+02 times the error"), std::string::npos) << curve.choice_reason;
-  EXPECT_NE(curve.choice_reason.find("costs 67 times as much and has 2 times less error"), std::string::npos) << curve.choice_reason;
-  curve.points = {made(8, 1), made(4, 2), made(2, 4), made(1, 8)};  // a straight line has no knee
-  curve.current = 2;
-  choose_setting(curve);
-  EXPECT_EQ(curve.chosen, 2);
-  curve.points = {made(0, 1), made(0, 2)};
-  curve.current = -1;
-  choose_setting(curve);
-  EXPECT_EQ(curve.chosen, 0);
-  EXPECT_NE(curve.choice_reason.find("No setting changes"), std::string::npos);
+  EXPECT_TRUE(has(knee.choice_reason, "costs 1.5 times less and has 1e+02 times the error"));
+  EXPECT_TRUE(has(knee.choice_reason, "costs 67 times as much and has 2 times less error"));
+  // A straight line has no knee.
+  EXPECT_EQ(choose({made(8, 1), made(4, 2), made(2, 4), made(1, 8)}, kNotMeasured, kNotMeasured, 2).chosen, 2);
+  const Curve equal = choose({made(0, 1), made(0, 2)});
+  EXPECT_EQ(equal.chosen, 0);
+  EXPECT_TRUE(has(equal.choice_reason, "No setting changes"));
 }
 
 TEST(TradeoffTiming, ALateRunHasFewerRepeats) {
@@ -258,12 +237,11 @@ TEST(TradeoffTiming, ALateRunHasFewerRepeats) {
 
 TEST(TradeoffTiming, InterleavesTheSettings) {
   std::string order;
-  const auto times = time_interleaved(
-      {[&]() -> Result<double> { return order += 'a', 1.0; }, [&]() -> Result<double> { return order += 'b', 2.0; }}, 1000, 3);
-  ASSERT_TRUE(times);
+  const auto times = test::value_of(time_interleaved(
+      {[&]() -> Result<double> { return order += 'a', 1.0; }, [&]() -> Result<double> { return order += 'b', 2.0; }}, 1000, 3));
   EXPECT_EQ(order, "abbaabba");  // the first round is a warm-up
-  EXPECT_EQ((*times)[1].median, 2);
-  EXPECT_EQ((*times)[0].repeats, 3);
+  EXPECT_EQ((times)[1].median, 2);
+  EXPECT_EQ((times)[0].repeats, 3);
   const Timing t = compute_timing({5, 1, 4, 2, 3});
   EXPECT_EQ(t.lower_quartile, 2);
   EXPECT_EQ(t.median, 3);
@@ -314,14 +292,12 @@ TEST(TradeoffReport, ReadsBackAsWritten) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "tradeoff.json", to_json(report));
   EXPECT_TRUE(is_report(folder / "tradeoff.json"));
-  const auto back = read_report(folder / "tradeoff.json");
-  ASSERT_TRUE(back) << back.error().message;
-  EXPECT_EQ(to_json(*back), to_json(report));
-  const std::string page = to_html(*back, &*back, {{}});
-  EXPECT_NE(page.find("Q &amp; A"), std::string::npos);
-  EXPECT_NE(page.find("<td><code>a&lt;b</code> in place of <code>c</code></td>"), std::string::npos);
-  EXPECT_NE(page.find("time of the other report"), std::string::npos);
-  EXPECT_NE(page.find("gnuplot is not installed"), std::string::npos);
+  const auto back = test::value_of(read_report(folder / "tradeoff.json"));
+  EXPECT_EQ(to_json(back), to_json(report));
+  const std::string page = to_html(back, &back, {{}});
+  for (const char* part :
+       {"Q &amp; A", "<td><code>a&lt;b</code> in place of <code>c</code></td>", "time of the other report", "gnuplot is not installed"})
+    EXPECT_TRUE(has(page, part));
   EXPECT_EQ(page.find("http"), std::string::npos);  // the page needs no network
   // Only terms that the page uses are explained.
   EXPECT_NE(page.find("<dt>front</dt>"), std::string::npos);
@@ -336,44 +312,40 @@ constexpr const char* kScene = R"({"fields": {"flow": {"analytic": "helix"}, "ba
   "volumes": [{"field": "ball", "color": [[0, 1, 0, 0], [2, 0, 0, 1]], "extinction": [[0, 0.5], [2, 0]]}],
   "workspace": {"metres_per_unit": 0.05}})";
 
+/// Measures some curves of a source in the folder, into its folder "out".
+test::ProgramResult measure(const test::TemporaryFolder& folder, const std::string& source, const std::string& curves) {
+  return test::run_ok({"tradeoff", folder / source, "-o", folder / "out", "--effort", "quick", "--only", curves});
+}
+
 TEST(TradeoffScene, IsMeasuredAndCompared) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", kScene);
-  const auto run = test::run_catena({"tradeoff", folder / "s.json", "-o", folder / "out", "--effort", "quick", "--only",
-                                     "interpolation,streamline,isosurface,chain length"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  measure(folder, "s.json", "interpolation,streamline,isosurface,chain length");
   const Table line = Table::read(folder / "out/hand-streamline-curve.csv");
-  double linear = 0, rk4 = 1, selected = 1;
-  for (std::size_t row = 0; row < line.rows(); ++row) {
-    if (line.text(row, "setting") == "linear") linear = line.number(row, "error");
-    if (line.text(row, "setting") == "rk4") rk4 = line.number(row, "error");
-    if (line.text(row, "setting") == "selected") selected = line.number(row, "error");
-  }
-  EXPECT_GT(linear, 1e-5);
-  EXPECT_LT(rk4, 1e-8);
-  EXPECT_LT(selected, 1e-9);
+  std::map<std::string, double> error;
+  for (std::size_t row = 0; row < line.rows(); ++row) error[line.text(row, "setting")] = line.number(row, "error");
+  EXPECT_GT(error.at("linear"), 1e-5);
+  EXPECT_LT(error.at("rk4"), 1e-8);
+  EXPECT_LT(error.at("selected"), 1e-9);
   const Table skin = Table::read(folder / "out/hand-isosurface-skin.csv");
   EXPECT_LT(skin.number(0, "error"), 1e-10);
   EXPECT_EQ(Table::read(folder / "out/hand-chain.csv").rows(), 2u);
-  EXPECT_NE(test::read_file(folder / "out/report.html").find("(chosen)"), std::string::npos);
+  EXPECT_TRUE(has(test::read_file(folder / "out/report.html"), "(chosen)"));
 
   // A report compared with itself is written without a measurement.
   const std::string report = folder / "out/tradeoff.json";
-  const auto again = test::run_catena({"tradeoff", report, "-o", folder / "again", "--compare", report});
-  ASSERT_EQ(again.exit_code, 0) << again.err;
-  EXPECT_EQ(test::read_file(folder / "again/tradeoff.json"), test::read_file(report));
-  EXPECT_NE(test::read_file(folder / "again/report.html").find("time of the other report"), std::string::npos);
+  test::run_ok({"tradeoff", report, "-o", folder / "again", "--compare", report});
   const std::string before = test::read_file(report);
-  const auto onto = test::run_catena({"tradeoff", report, "-o", folder / "out"});
-  EXPECT_EQ(onto.exit_code, 2) << onto.out;
+  EXPECT_EQ(test::read_file(folder / "again/tradeoff.json"), before);
+  EXPECT_TRUE(has(test::read_file(folder / "again/report.html"), "time of the other report"));
+  test::run_refused({"tradeoff", report, "-o", folder / "out"});
   EXPECT_EQ(test::read_file(report), before);
 }
 
 TEST(TradeoffScene, OneServoRateIsChosen) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", kScene);
-  const auto run = test::run_catena({"tradeoff", folder / "s.json", "-o", folder / "out", "--effort", "quick", "--only", "servo rate"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto run = measure(folder, "s.json", "servo rate");
   std::string chosen[2];
   for (const int k : {0, 1}) {
     const Table table = Table::read(folder / (k == 0 ? "out/hand-rate-force.csv" : "out/hand-rate-stability.csv"));
@@ -383,14 +355,12 @@ TEST(TradeoffScene, OneServoRateIsChosen) {
   EXPECT_NE(chosen[0], "");
   EXPECT_EQ(chosen[0], chosen[1]);
   // If no rate stands out, the report does not require one.
-  const bool even = run.out.find("no setting stands out") != std::string::npos;
-  EXPECT_FALSE(even && run.out.find("the force needs") != std::string::npos) << run.out;
-  const std::string page = test::read_file(folder / "out/report.html");
-  EXPECT_NE(page.find("The reference is a servo at 10 kHz; it differs from one at 20 kHz by "), std::string::npos);
+  const bool even = has(run.out, "no setting stands out");
+  EXPECT_FALSE(even && has(run.out, "the force needs")) << run.out;
+  EXPECT_TRUE(has(test::read_file(folder / "out/report.html"), "The reference is a servo at 10 kHz; it differs from one at 20 kHz by "));
   test::write_file(folder / "eye.json", R"({"fields": {"ball": {"analytic": "sphere"}}, "volumes": [{"field": "ball"}]})");
-  const auto none = test::run_catena({"tradeoff", folder / "eye.json", "-o", folder / "none", "--effort", "quick", "--only", "servo rate"});
-  EXPECT_EQ(none.exit_code, 2) << none.out;
-  EXPECT_NE(none.err.find("there is nothing to measure"), std::string::npos) << none.err;
+  test::run_refused({"tradeoff", folder / "eye.json", "-o", folder / "none", "--effort", "quick", "--only", "servo rate"},
+                    "there is nothing to measure");
   EXPECT_FALSE(test::exists(folder / "none"));
 }
 
@@ -400,39 +370,33 @@ TEST(TradeoffScene, QualityIsOmittedWithoutSamplingAlongRays) {
     test::write_file(folder / "s.json", std::string(R"({"fields": {"ball": {"analytic": "sphere", "resolution": 24}},
       "isosurfaces": [{"field": "ball", "level": 1, "opacity": )") +
                                             opacity + "}]}");
-    const auto run = test::run_catena(
-        {"tradeoff", folder / "s.json", "-o", folder / "out", "--effort", "quick", "--only", "interpolation,quality,step"});
-    ASSERT_EQ(run.exit_code, 0) << run.err;
-    if (run.out.find("not measured: Rendering:") != std::string::npos) GTEST_SKIP() << run.out;
-    for (const char* name : {"Quality", "Step"})
-      EXPECT_NE(run.out.find(std::string(name) + ": nothing in the image is sampled along rays, so that --quality has no effect."),
-                std::string::npos)
-          << opacity << run.out;
+    const auto run = measure(folder, "s.json", "interpolation,quality,step");
+    if (has(run.out, "not measured: Rendering:")) GTEST_SKIP() << run.out;
+    for (const std::string name : {"Quality", "Step"})
+      EXPECT_TRUE(has(run.out, name + ": nothing in the image is sampled along rays, so that --quality has no effect.")) << opacity;
   }
 }
 
 /// Cubic interpolation is not recommended where a volume would lose its fast rays.
 TEST(TradeoffScene, CubicInterpolationIsNotRecommendedForAVolume) {
   const test::TemporaryFolder folder;
-  ASSERT_EQ(test::run_catena({"generate", "gaussian", "-o", folder / "g.vdb", "--resolution", "24"}).exit_code, 0);
+  test::run_ok({"generate", "gaussian", "-o", folder / "g.vdb", "--resolution", "24"});
   for (const bool volume : {false, true}) {
     test::write_file(folder / "s.json",
                      std::string(R"({"fields": {"g": {"file": "g.vdb"}}, )") +
                          (volume ? R"("volumes": [{"field": "g"}]})" : R"("isosurfaces": [{"field": "g", "level": 0.5}]})"));
-    const auto run = test::run_catena({"tradeoff", folder / "s.json", "-o", folder / "out", "--effort", "quick", "--only", "cells"});
-    ASSERT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_EQ(run.out.find("a cubic volume has no fast rays") != std::string::npos, volume) << run.out;
-    EXPECT_NE(run.out.find(volume ? ": linear. " : ": cubic. "), std::string::npos) << run.out;
+    const auto run = measure(folder, "s.json", "cells");
+    EXPECT_EQ(bool(has(run.out, "a cubic volume has no fast rays")), volume) << run.out;
+    EXPECT_TRUE(has(run.out, volume ? ": linear. " : ": cubic. "));
   }
 }
 
 TEST(TradeoffScene, ImagesOfADataFileAreMeasured) {
   const test::TemporaryFolder folder;
-  ASSERT_EQ(test::run_catena({"generate", "gaussian", "-o", folder / "g.vdb", "--resolution", "24"}).exit_code, 0);
-  const auto run = test::run_catena({"tradeoff", folder / "g.vdb", "-o", folder / "out", "--effort", "quick", "--only", "memory budget"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("not measured: Haptics:"), std::string::npos) << run.out;
-  if (run.out.find("not measured: Rendering:") != std::string::npos) GTEST_SKIP() << run.out;
+  test::run_ok({"generate", "gaussian", "-o", folder / "g.vdb", "--resolution", "24"});
+  const auto run = measure(folder, "g.vdb", "memory budget");
+  EXPECT_TRUE(has(run.out, "not measured: Haptics:"));
+  if (has(run.out, "not measured: Rendering:")) GTEST_SKIP() << run.out;
   const Table budget = Table::read(folder / "out/eye-budget.csv");
   EXPECT_LT(budget.number(0, "error"), 3);
 }
@@ -453,28 +417,16 @@ TEST(TradeoffScene, BadInputIsOneLineAndNothingIsWritten) {
   test::write_file(folder / "many.json", report_of("x", "eye", 3000));
   test::write_file(folder / "worse.json", R"({"catena_tradeoff": 1, "source": "s", "left_out": [], "curves": [{"id": 4}]})");
   const std::string out = folder / "out", scene = folder / "s.json";
-  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{folder / "none.json"},
-                                                                                     {folder / "none.vdb"},
-                                                                                     {folder / "bad.json"},
-                                                                                     {folder / "worse.json"},
-                                                                                     {folder / "away.json"},
-                                                                                     {folder / "nose.json"},
-                                                                                     {folder / "many.json"},
-                                                                                     {scene, "--compare", folder / "bad.json"},
-                                                                                     {scene, "--compare", folder / "worse.json"},
-                                                                                     {scene, "--compare", folder / "none.json"},
-                                                                                     {scene, "--probe", folder / "none.csv"},
-                                                                                     {scene, "--effort", "slow"},
-                                                                                     {scene, "--only", "luck"},
-                                                                                     {scene, "--figure", "2"}}) {
-    std::vector<std::string> all{"tradeoff"};
-    all.insert(all.end(), words.begin(), words.end());
-    all.insert(all.end(), {"-o", out});
-    const auto run = test::run_catena(all);
-    EXPECT_EQ(run.exit_code, 2) << words.back() << run.err;
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  const auto refused = [&](const test::Words& words) {
+    test::run_refused(test::joined(test::joined({"tradeoff"}, words), {"-o", out}));
     EXPECT_FALSE(std::filesystem::exists(out)) << words.back();
-  }
+  };
+  for (const char* name : {"none.json", "none.vdb", "bad.json", "worse.json", "away.json", "nose.json", "many.json"})
+    refused({folder / name});
+  for (const char* name : {"bad.json", "worse.json", "none.json"}) refused({scene, "--compare", folder / name});
+  refused({scene, "--probe", folder / "none.csv"});
+  for (const auto& [option, value] : {std::pair{"--effort", "slow"}, {"--only", "luck"}, {"--figure", "2"}})
+    refused({scene, option, value});
 }
 
 }  // namespace tradeoff_measure_test

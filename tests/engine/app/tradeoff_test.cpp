@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// `catena tradeoff --figure N`: the figures of the paper, and the command's outputs and errors.
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
 
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/environment_variable.h"
+#include "tests/engine/app/program_in_folder.h"
 
 namespace tradeoff_test {
 
@@ -16,11 +15,10 @@ using namespace catena;
 using test::Table;
 namespace fs = std::filesystem;
 
-test::ProgramResult tradeoff(const std::vector<std::string>& arguments) {
-  std::vector<std::string> all{"tradeoff"};
-  all.insert(all.end(), arguments.begin(), arguments.end());
-  return test::run_catena(all);
-}
+class Tradeoff : public test::ProgramInFolder {
+ protected:
+  int files_in(const std::string& name) const { return int(std::distance(fs::directory_iterator(folder_ / name), {})); }
+};
 
 bool has_gnuplot() { return std::system("command -v gnuplot >/dev/null 2>&1") == 0; }
 
@@ -32,17 +30,9 @@ void expect_plot(const std::string& path) {
   EXPECT_GT(bytes.size(), 10000u) << path;
 }
 
-int files_in(const std::string& folder) {
-  int count = 0;
-  for (const auto& entry : fs::directory_iterator(folder)) count += entry.exists() ? 1 : 0;
-  return count;
-}
-
-TEST(Tradeoff, Figure2MeasuresTheDriftOfEveryMethod) {
-  const test::TemporaryFolder folder;
-  const std::string out = folder / "new/folder";
-  const auto run = tradeoff({"--figure", "2", "-o", out});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+TEST_F(Tradeoff, Figure2MeasuresTheDriftOfEveryMethod) {
+  const std::string out = folder_ / "new/folder";
+  succeed("tradeoff --figure 2 -o {new/folder}");
   const Table drift = Table::read(out + "/figure2-drift.csv");
   std::map<std::string, std::map<double, double>> lap;
   for (std::size_t row = 0; row < drift.rows(); ++row) {
@@ -73,19 +63,18 @@ TEST(Tradeoff, Figure2MeasuresTheDriftOfEveryMethod) {
   EXPECT_NEAR(std::hypot(path.number(last, "selected_x_mm"), path.number(last, "selected_y_mm")), 50, 1e-7);
 
   const Table tremor = Table::read(out + "/figure2-tremor.csv");
-  EXPECT_EQ(tremor.number(tremor.rows() - 1, "t_s"), 60);
-  EXPECT_NEAR(tremor.number(tremor.rows() - 1, "linear_drift_mm"), 1.2, 0.02);
-  EXPECT_NEAR(tremor.number(tremor.rows() - 1, "euler_drift_mm"), 1.2, 0.02);
-  EXPECT_LE(tremor.number(tremor.rows() - 1, "rkf34_drift_mm"), 1e-11);
-  EXPECT_LE(tremor.number(tremor.rows() - 1, "selected_drift_mm"), 5e-8);
+  const auto final_number = [&](const char* column) { return tremor.number(tremor.rows() - 1, column); };
+  EXPECT_EQ(final_number("t_s"), 60);
+  EXPECT_NEAR(final_number("linear_drift_mm"), 1.2, 0.02);
+  EXPECT_NEAR(final_number("euler_drift_mm"), 1.2, 0.02);
+  EXPECT_LE(final_number("rkf34_drift_mm"), 1e-11);
+  EXPECT_LE(final_number("selected_drift_mm"), 5e-8);
   for (const char* name : {"/figure2-drift.png", "/figure2-path.png", "/figure2-tremor.png"}) expect_plot(out + name);
 }
 
-TEST(Tradeoff, Figure3MeasuresTheDepthOfRelease) {
-  const test::TemporaryFolder folder;
-  const auto run = tradeoff({"--figure", "3", "-o", folder / "out"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  const Table table = Table::read(folder / "out/figure3-release.csv");
+TEST_F(Tradeoff, Figure3MeasuresTheDepthOfRelease) {
+  succeed("tradeoff --figure 3 -o {out}");
+  const Table table = Table::read(folder_ / "out/figure3-release.csv");
   ASSERT_EQ(table.rows(), 2u * 18 * 5);
   double max_off_curve = 0, min_off_curve = 1;
   for (std::size_t row = 0; row < table.rows(); ++row) {
@@ -120,19 +109,17 @@ TEST(Tradeoff, Figure3MeasuresTheDepthOfRelease) {
   EXPECT_NEAR(max_off_curve, 0.025, 0.003);
   EXPECT_NEAR(min_off_curve, 0.006, 0.001);
 
-  const Table series = Table::read(folder / "out/figure3-series.csv");
+  const Table series = Table::read(folder_ / "out/figure3-series.csv");
   EXPECT_GT(series.rows(), 1000u);
   EXPECT_EQ(series.number(0, "chain_active"), 1);
   EXPECT_EQ(series.number(series.rows() - 1, "chain_active"), 0);
   for (const char* name : {"release-flat", "release-curved", "off-curve", "force", "path"})
-    expect_plot(folder / "out/figure3-" + std::string(name) + ".png");
+    expect_plot(folder_ / "out/figure3-" + std::string(name) + ".png");
 }
 
-TEST(Tradeoff, FigureStiffnessMeasuresTheMaximumStiffness) {
-  const test::TemporaryFolder folder;
-  const auto run = tradeoff({"--figure", "stiffness", "-o", folder / "out"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  const Table damping = Table::read(folder / "out/stiffness-damping.csv");
+TEST_F(Tradeoff, FigureStiffnessMeasuresTheMaximumStiffness) {
+  succeed("tradeoff --figure stiffness -o {out}");
+  const Table damping = Table::read(folder_ / "out/stiffness-damping.csv");
   ASSERT_EQ(damping.rows(), 4u * 9);
   for (std::size_t row = 0; row < damping.rows(); ++row) {
     const double b = damping.number(row, "device_damping_ns_per_m"), rate = damping.number(row, "rate_hz");
@@ -146,7 +133,7 @@ TEST(Tradeoff, FigureStiffnessMeasuresTheMaximumStiffness) {
       EXPECT_GT(damping.number(row, "controlled_n_per_m"), 2.9 * passive) << row;
     }
   }
-  const Table virtuals = Table::read(folder / "out/stiffness-virtual.csv");
+  const Table virtuals = Table::read(folder_ / "out/stiffness-virtual.csv");
   const std::map<double, std::pair<double, double>> expected{
       {0, {994, 332}}, {5, {10585, 3535}}, {20, {36061, 11660}}, {50, {73324, 21522}}};
   int seen = 0;
@@ -159,77 +146,54 @@ TEST(Tradeoff, FigureStiffnessMeasuresTheMaximumStiffness) {
   }
   EXPECT_EQ(seen, 4);
   EXPECT_EQ(virtuals.number(virtuals.rows() - 1, "stable_delayed_n_per_m"), 0) << "200 N s/m with a delay: nothing";
-  EXPECT_EQ(Table::read(folder / "out/stiffness-delay.csv").rows(), 9u);
-  for (const char* name : {"damping", "delay", "virtual"}) expect_plot(folder / "out/stiffness-" + std::string(name) + ".png");
+  EXPECT_EQ(Table::read(folder_ / "out/stiffness-delay.csv").rows(), 9u);
+  for (const char* name : {"damping", "delay", "virtual"}) expect_plot(folder_ / "out/stiffness-" + std::string(name) + ".png");
 }
 
-TEST(Tradeoff, WrongArgumentsAreOneLine) {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "file", "x");
-  const std::string out = folder / "out";
-  const std::vector<std::pair<std::vector<std::string>, const char*>> cases{{{"-o", out}, "--figure 2"},
-                                                                            {{"--figure", "4", "-o", out}, "--figure"},
-                                                                            {{"--figure", "two", "-o", out}, "--figure"},
-                                                                            {{"--figure", "2"}, "--output"},
-                                                                            {{"--figure", "3", "-o", folder / "file"}, "is a file"},
-                                                                            {{"--figure", "3", "-o", folder / "file/below"}, "file/below"},
-                                                                            {{"--figure", "3", "-o", ""}, "empty"}};
-  for (const auto& [arguments, part] : cases) {
-    const auto run = tradeoff(arguments);
-    EXPECT_EQ(run.exit_code, 2) << run.out << run.err;
-    EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
-    EXPECT_EQ(run.err.find('\n'), run.err.size() - 1) << run.err;
-    EXPECT_FALSE(test::exists(out));
-  }
-  EXPECT_EQ(test::read_file(folder / "file"), "x");
+TEST_F(Tradeoff, WrongArgumentsAreOneLine) {
+  write("file", "x");
+  for (const auto& [arguments, part] : {std::pair{"-o {out}", "--figure 2"},
+                                        {"--figure 4 -o {out}", "--figure"},
+                                        {"--figure two -o {out}", "--figure"},
+                                        {"--figure 2", "--output"},
+                                        {"--figure 3 -o {file}", "is a file"},
+                                        {"--figure 3 -o {file/below}", "file/below"}})
+    expect_refused(std::string("tradeoff ") + arguments, {part});
+  expect_refused("tradeoff --figure 3", {"empty"}, {"-o", ""});
+  EXPECT_EQ(read("file"), "x");
 }
 
-/// Runs the command with PATH set to one folder.
-test::ProgramResult tradeoff_among(const std::string& programs, const std::vector<std::string>& arguments) {
-  const char* path = std::getenv("PATH");
-  const std::string before = path ? path : "";
-  ::setenv("PATH", programs.c_str(), 1);
-  const auto run = tradeoff(arguments);
-  ::setenv("PATH", before.c_str(), 1);
-  return run;
+TEST_F(Tradeoff, WithoutGnuplotTheTablesAreComplete) {
+  const test::EnvironmentVariable none("PATH", folder_.path());
+  test::expect_parts(succeed("tradeoff --figure 3 -o {out}").out, {"gnuplot is not installed"});
+  EXPECT_EQ(files_in("out"), 3);
+  EXPECT_TRUE(exists("out/figure3.gp"));
 }
 
-TEST(Tradeoff, WithoutGnuplotTheTablesAreComplete) {
-  const test::TemporaryFolder folder;
-  const auto run = tradeoff_among(folder.path(), {"--figure", "3", "-o", folder / "out"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("gnuplot is not installed"), std::string::npos) << run.out;
-  EXPECT_EQ(files_in(folder / "out"), 3);
-  EXPECT_TRUE(test::exists(folder / "out/figure3.gp"));
+TEST_F(Tradeoff, LeavesNoPartialOutput) {
+  fs::create_directories(folder_ / "out/figure3.gp");  // blocks a file
+  expect_refused("tradeoff --figure 3 -o {out}", {"figure3.gp"});
+  EXPECT_EQ(files_in("out"), 1);
 }
 
-TEST(Tradeoff, LeavesNoPartialOutput) {
-  const test::TemporaryFolder folder;
-  fs::create_directories(folder / "out/figure3.gp");  // blocks a file
-  const auto run = tradeoff({"--figure", "3", "-o", folder / "out"});
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.err.find("figure3.gp"), std::string::npos) << run.err;
-  EXPECT_EQ(files_in(folder / "out"), 1);
-}
-
-TEST(Tradeoff, RemainsOfAKilledRunAreRemovedByTheNext) {
-  const test::TemporaryFolder folder, programs;
+TEST_F(Tradeoff, RemainsOfAKilledRunAreRemovedByTheNext) {
+  const test::TemporaryFolder programs;
   test::write_file(programs / "gnuplot", "#!/bin/sh\nkill -9 $PPID\n");
   fs::permissions(programs / "gnuplot", fs::perms::owner_all);
-  const std::string out = folder / "out";
-  EXPECT_EQ(tradeoff_among(programs.path(), {"--figure", "3", "-o", out}).exit_code, 128 + 9);
-  ASSERT_EQ(files_in(out), 1);
-  EXPECT_TRUE(fs::directory_iterator(out)->path().filename().string().starts_with("tables.part"));
-  ASSERT_EQ(tradeoff_among(folder.path(), {"--figure", "3", "-o", out}).exit_code, 0);
-  EXPECT_EQ(files_in(out), 3) << "two tables and the script";
+  {
+    const test::EnvironmentVariable killer("PATH", programs.path());
+    EXPECT_EQ(run("tradeoff --figure 3 -o {out}").exit_code, 128 + 9);
+  }
+  ASSERT_EQ(files_in("out"), 1);
+  EXPECT_TRUE(fs::directory_iterator(folder_ / "out")->path().filename().string().starts_with("tables.part"));
+  const test::EnvironmentVariable none("PATH", folder_.path());
+  succeed("tradeoff --figure 3 -o {out}");
+  EXPECT_EQ(files_in("out"), 3) << "two tables and the script";
 }
 
-TEST(Tradeoff, RepeatedRunsAreEqual) {
-  const test::TemporaryFolder folder;
-  ASSERT_EQ(tradeoff({"--figure", "3", "-o", folder / "a"}).exit_code, 0);
-  ASSERT_EQ(tradeoff({"--figure", "3", "-o", folder / "b"}).exit_code, 0);
-  for (const char* name : {"/figure3-release.csv", "/figure3-series.csv"})
-    EXPECT_EQ(test::read_file((folder / "a") + name), test::read_file((folder / "b") + name));
+TEST_F(Tradeoff, RepeatedRunsAreEqual) {
+  for (const std::string out : {"a", "b"}) succeed("tradeoff --figure 3 -o {" + out + "}");
+  for (const std::string name : {"/figure3-release.csv", "/figure3-series.csv"}) EXPECT_EQ(read("a" + name), read("b" + name));
 }
 
 }  // namespace tradeoff_test

@@ -9,10 +9,10 @@
 #include "engine/base/json_edit.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/to_json.h"
+#include "tests/support/results.h"
 #include "tests/support/support.h"
 
-namespace catena::app {
-namespace transfer_editing_test {
+namespace catena::app::transfer_editing_test {
 
 constexpr PlotTransform kFrame{10, 0, 210, 100, 0, 1};
 
@@ -33,18 +33,9 @@ TEST(PlotFrame, PositionsAndValuesAreInverse) {
 
 TEST(PlotFrame, AnyRangeBecomesAPlottableRange) {
   const double nan = std::nan(""), inf = HUGE_VAL;
-  for (const auto& [lo, hi] : std::vector<std::pair<double, double>>{{nan, nan},
-                                                                     {nan, 3},
-                                                                     {2, nan},
-                                                                     {0, inf},
-                                                                     {-inf, inf},
-                                                                     {5, 5},
-                                                                     {0, 0},
-                                                                     {-3, -3},
-                                                                     {7, 2},
-                                                                     {1e300, 1.7e308},
-                                                                     {-1.7e308, 1.7e308},
-                                                                     {1, 1 + 1e-15}}) {
+  const std::pair<double, double> ranges[] = {{nan, nan}, {nan, 3}, {2, nan}, {0, inf},         {-inf, inf},         {5, 5},
+                                              {0, 0},     {-3, -3}, {7, 2},   {1e300, 1.7e308}, {-1.7e308, 1.7e308}, {1, 1 + 1e-15}};
+  for (const auto& [lo, hi] : ranges) {
     const auto range = make_plot_range(lo, hi);
     EXPECT_TRUE(std::isfinite(range[1] - range[0]) && range[0] < range[1]) << lo << " " << hi << ": " << range[0] << " " << range[1];
     if (std::isfinite(lo) && std::isfinite(hi) && std::fabs(lo) < 1e300) {
@@ -81,16 +72,15 @@ TEST(TransferEdits, AMappingIsSetWhereTheVolumesValuesAllowIt) {
   volume.where.label = "volumes[0]";
   volume.transfer.colors = {{1, {0, 0, 0}}, {100, {1, 1, 1}}};
   volume.transfer.opacities = {{1, 0}, {100, 0.5}};
-  const auto edit = make_transfer_edit(volume, 1);
-  ASSERT_TRUE(edit);
+  const auto edit = test::value_of(make_transfer_edit(volume, 1));
   const auto find = [](const TextEdits& edits, const std::string& end) -> std::string {
     for (const auto& e : edits)
       if (e.pointer.ends_with(end)) return e.value.value_or("removed");
     return "none";
   };
-  EXPECT_EQ(find(make_mapping_edits(volume, *edit, {scene::ValueMapping::Kind::log, 0}), "/mapping"), "\"log\"");
-  EXPECT_EQ(find(make_mapping_edits(volume, *edit, {scene::ValueMapping::Kind::symlog, 2}), "/linear_below"), "2");
-  EXPECT_EQ(find(make_mapping_edits(volume, *edit, {}), "/mapping"), "removed");
+  EXPECT_EQ(find(make_mapping_edits(volume, edit, {scene::ValueMapping::Kind::log, 0}), "/mapping"), "\"log\"");
+  EXPECT_EQ(find(make_mapping_edits(volume, edit, {scene::ValueMapping::Kind::symlog, 2}), "/linear_below"), "2");
+  EXPECT_EQ(find(make_mapping_edits(volume, edit, {}), "/mapping"), "removed");
   volume.transfer.opacities.front().value = 0;
   EXPECT_TRUE(make_mapping_edits(volume, *make_transfer_edit(volume, 1), {scene::ValueMapping::Kind::log, 0}).empty());
 }
@@ -207,26 +197,24 @@ class EditedVolume : public testing::Test {
  protected:
   void open(const std::string& keys, const std::string& transfer_file = {}) {
     if (!transfer_file.empty()) test::write_file(folder_ / "t.json", transfer_file);
-    test::write_file(
-        folder_ / "s.json",
-        "{\"fields\": {\"ball\": {\"analytic\": \"sphere\", \"resolution\": 17}},\n \"volumes\": [{\"field\": \"ball\"" + keys + "}]}\n");
-    auto document = scene::Document::open(folder_ / "s.json");
-    ASSERT_TRUE(document) << document.error().message;
-    document_ = std::move(*document);
+    open_text("{\"fields\": {\"ball\": {\"analytic\": \"sphere\", \"resolution\": 17}},\n \"volumes\": [{\"field\": \"ball\"" + keys +
+              "}]}\n");
+  }
+  void open_text(const std::string& text) {
+    test::write_file(folder_ / "s.json", text);
+    auto document = test::value_of(scene::Document::open(folder_ / "s.json"));
+    document_ = std::move(document);
     read();
   }
   void read() {
-    auto scene = document_->read();
-    ASSERT_TRUE(scene) << scene.error().message;
-    scene_ = std::move(*scene);
+    auto scene = test::value_of(document_->read());
+    scene_ = std::move(scene);
     const scene::Entity field = scene::find_field(scene_, "ball");
-    const auto drawn = scene::resolve_rendered_field(scene_, field, {});
-    ASSERT_TRUE(drawn) << drawn.error().message;
-    edge_ = drawn->get()->mapping().min_voxel_edge();
+    const auto drawn = test::value_of(scene::resolve_rendered_field(scene_, field, {}));
+    edge_ = drawn.get()->mapping().min_voxel_edge();
     scene_.entities.each<scene::Volume>([&](scene::Entity, const scene::Volume& volume) { volume_ = volume; });
-    const auto edit = make_transfer_edit(volume_, edge_);
-    ASSERT_TRUE(edit);
-    edit_ = *edit;
+    const auto edit = test::value_of(make_transfer_edit(volume_, edge_));
+    edit_ = edit;
   }
   void apply(const TextEdits& edits) {
     const Outcome done = document_->apply(edits, "test");
@@ -236,9 +224,8 @@ class EditedVolume : public testing::Test {
   /// The extinction at a value.
   double sigma_at(double value) const {
     const auto& t = volume_.transfer;
-    OpacityPoints points = t.opacities;
     const double unit = t.opacities.empty() || t.opacity_unit > 0 ? t.opacity_unit : edge_;
-    if (!points.empty()) return -std::log1p(-evaluate_alpha(points, value)) / unit;
+    if (!t.opacities.empty()) return -std::log1p(-evaluate_alpha(t.opacities, value)) / unit;
     for (std::size_t i = 1; i < t.extinctions.size(); ++i)
       if (value <= t.extinctions[i].value) {
         const auto &a = t.extinctions[i - 1], &b = t.extinctions[i];
@@ -348,12 +335,7 @@ TEST_F(EditedVolume, ANamedMapTakesTheRangeOfThePreviousColours) {
 }
 
 TEST_F(EditedVolume, AConstantFieldHasOnePointAndCanBeEdited) {
-  test::write_file(folder_ / "s.json",
-                   R"({"fields": {"ball": {"analytic": "constant", "resolution": 5}}, "volumes": [{"field": "ball"}]})");
-  auto document = scene::Document::open(folder_ / "s.json");
-  ASSERT_TRUE(document) << document.error().message;
-  document_ = std::move(*document);
-  read();
+  open_text(R"({"fields": {"ball": {"analytic": "constant", "resolution": 5}}, "volumes": [{"field": "ball"}]})");
   ASSERT_EQ(edit_.opacities.size(), 1u);
   const auto range = make_plot_range(edit_.opacities[0].value, edit_.opacities[0].value);
   const PlotTransform frame{0, 0, 100, 100, range[0], range[1]};
@@ -362,5 +344,4 @@ TEST_F(EditedVolume, AConstantFieldHasOnePointAndCanBeEdited) {
   EXPECT_EQ(edit_.opacities.size(), 2u);
 }
 
-}  // namespace transfer_editing_test
-}  // namespace catena::app
+}  // namespace catena::app::transfer_editing_test

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
 /// Untrusted files: escape sequences in terminal output, and memory use.
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstring>
 
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/program_runs.h"
 
 namespace untrusted_file_test {
 
 using namespace catena;
+using test::has;
+using test::run_ok;
+using test::run_refused;
 
 const std::string kRaw = "{\"file\": \"a.raw\", \"shape\": [192, 192, 192], \"type\": \"float32\"}";
 
@@ -51,17 +51,13 @@ std::uint64_t peak_of(const std::vector<std::string>& arguments, const std::stri
 TEST(UntrustedFile, EscapeSequencesInGridNamesAreNotPrinted) {
   const test::TemporaryFolder folder;
   const std::string name = "den\033[31msity\033]0;title\007\xc2\x9b";
-  const auto generated = test::run_catena({"generate", "sphere", "-o", folder / "a.vdb", "--resolution", "8"});
-  ASSERT_EQ(generated.exit_code, 0) << generated.err;
-  const auto imported = test::run_catena({"import", folder / "a.vdb", "-o", folder / "b.vdb", "--name", name});
-  ASSERT_EQ(imported.exit_code, 0) << imported.err;
+  run_ok({"generate", "sphere", "-o", folder / "a.vdb", "--resolution", "8"});
+  const auto imported = run_ok({"import", folder / "a.vdb", "-o", folder / "b.vdb", "--name", name});
   ASSERT_NE(test::read_file(folder / "b.vdb").find(name), std::string::npos);
-  const auto info = test::run_catena({"info", folder / "b.vdb"});
-  const auto absent = test::run_catena({"import", folder / "b.vdb", "-o", folder / "c.vdb", "--grid", "absent"});
-  EXPECT_EQ(absent.exit_code, 2);
-  EXPECT_EQ(std::count(absent.err.begin(), absent.err.end(), '\n'), 1);
+  const auto info = run_ok({"info", folder / "b.vdb"});
+  const auto absent = run_refused({"import", folder / "b.vdb", "-o", folder / "c.vdb", "--grid", "absent"});
   for (const std::string& text : {imported.out, info.out, absent.err}) {
-    EXPECT_NE(text.find("[31msity"), std::string::npos) << text;
+    EXPECT_TRUE(has(text, "[31msity"));
     for (const char* bad : {"\033", "\007", "\xc2\x9b"}) EXPECT_EQ(text.find(bad), std::string::npos) << text;
   }
 }
@@ -81,8 +77,7 @@ TEST(UntrustedFile, EscapeSequencesInFileNamesAreNotPrinted) {
       {"render", folder / "s.json", "--size", "16x16", "-o", evil + ".png"},
       {"tradeoff", "--figure", "3", "-o", evil + ".d"}};
   for (const std::vector<std::string>& arguments : runs) {
-    const auto run = test::run_catena(arguments);
-    EXPECT_EQ(run.exit_code, 0) << arguments[0] << ": " << run.err;
+    const auto run = run_ok(arguments);
     EXPECT_EQ((run.out + run.err).find('\033'), std::string::npos) << arguments[0] << ": " << run.out << run.err;
   }
 }
@@ -90,15 +85,11 @@ TEST(UntrustedFile, EscapeSequencesInFileNamesAreNotPrinted) {
 // A magnitude beyond the range of floats must be an error, not a failed assertion.
 TEST(UntrustedFile, AMagnitudeBeyondFloatsIsOneErrorLine) {
   const test::TemporaryFolder folder;
-  const auto made =
-      test::run_catena({"generate", "circle", "-o", folder / "c.vdb", "--resolution", "4", "--scale", "1.6e38", "--box", "2", "2.1"});
-  ASSERT_EQ(made.exit_code, 0) << made.err;
+  run_ok({"generate", "circle", "-o", folder / "c.vdb", "--resolution", "4", "--scale", "1.6e38", "--box", "2", "2.1"});
   test::write_file(folder / "s.json", R"({"fields": {"f": {"file": "c.vdb", "grid": "circle"}},
     "slices": [{"field": "f", "axis": "x", "at": 2.05}]})");
-  const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "o.png", "--size", "24x24"});
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-  EXPECT_NE(run.err.find("s.json:2: the magnitude of \"f\" has no finite value"), std::string::npos) << run.err;
+  run_refused({"render", folder / "s.json", "-o", folder / "o.png", "--size", "24x24"},
+              "s.json:2: the magnitude of \"f\" has no finite value");
 }
 
 TEST(UntrustedFile, RenderAndInfoRespectTheMemoryLimit) {
@@ -109,13 +100,11 @@ TEST(UntrustedFile, RenderAndInfoRespectTheMemoryLimit) {
   test::write_file(folder / "raw.json", "{\"fields\": {\"a\": " + kRaw + "}" + drawn);
   test::write_file(folder / "nodes.json", "{\"fields\": {\"a\": {\"analytic\": \"sphere\", \"resolution\": 1024}}" + drawn);
   for (const std::string& scene : {folder / "raw.json", folder / "nodes.json"}) {
-    const auto run = test::run_catena({"render", scene, "-o", folder / "o.png", "--size", "16x16", "--memory", "5"});
-    EXPECT_EQ(run.exit_code, 2);
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-    EXPECT_NE(run.err.find("MB of memory, expected at most 5 MB (--memory MB allows more)"), std::string::npos) << run.err;
+    run_refused({"render", scene, "-o", folder / "o.png", "--size", "16x16", "--memory", "5"},
+                "MB of memory, expected at most 5 MB (--memory MB allows more)");
     EXPECT_FALSE(test::exists(folder / "o.png"));
   }
-  EXPECT_EQ(test::run_catena({"info", folder / "raw.json", "--memory", "0"}).exit_code, 2);
+  run_refused({"info", folder / "raw.json", "--memory", "0"});
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -157,14 +146,12 @@ TEST(UntrustedFile, ScenesMeshesAndTablesRespectTheMemoryLimit) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"info", folder / "big.json"},
                                                     {"info", folder / "m.stl"},
                                                     {"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "o.csv"}}) {
-    std::vector<std::string> limited = arguments;
-    limited.insert(limited.end(), {"--memory", "20"});
-    EXPECT_LT(peak_of(limited, folder / "log", 2), nothing + 30 * kMb) << arguments[1];
+    EXPECT_LT(peak_of(test::joined(arguments, {"--memory", "20"}), folder / "log", 2), nothing + 30 * kMb) << arguments[1];
     const std::string output_text = test::read_file(folder / "log");
-    EXPECT_NE(output_text.find("MB of memory, expected at most 20 MB (--memory MB allows more)\n"), std::string::npos) << output_text;
-    EXPECT_EQ(std::count(output_text.begin(), output_text.end(), '\n'), 1) << output_text;
+    EXPECT_TRUE(has(output_text, "MB of memory, expected at most 20 MB (--memory MB allows more)\n"));
+    EXPECT_TRUE(test::is_one_line(output_text));
   }
-  EXPECT_EQ(test::run_catena({"info", folder / "s.json", "--memory", "1"}).exit_code, 0);
+  run_ok({"info", folder / "s.json", "--memory", "1"});
   // The estimated memory is sufficient.
   EXPECT_LT(peak_of({"info", folder / "m.stl", "--memory", "220"}, folder / "log"), nothing + 220 * kMb);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Video through ffmpeg: the decoded frames, and runs without ffmpeg, with a failing ffmpeg, and with Ctrl-C.
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,13 +9,12 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
-#include <filesystem>
 #include <thread>
 
 #include "engine/app/render/video_writer.h"
 #include "render/image/image.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/environment_variable.h"
+#include "tests/engine/app/program_in_folder.h"
 
 namespace video_test {
 
@@ -25,16 +23,6 @@ using namespace catena;
 constexpr const char* kScene = R"({"fields": {"s": {"analytic": "torus", "resolution": 24}}, "isosurfaces": [{"field": "s", "level": 0.5}],
   "camera": {"position": [4, -5, 3], "target": [0, 0, 0], "up": [1, 0, 0], "fovy_deg": 40}})";
 
-/// Sets PATH for the lifetime of the object.
-class Path {
- public:
-  explicit Path(const std::string& value) : before_(std::getenv("PATH")) { setenv("PATH", value.c_str(), 1); }
-  ~Path() { setenv("PATH", before_.c_str(), 1); }
-
- private:
-  std::string before_;
-};
-
 /// Writes a fake program called ffmpeg into the folder.
 void make_ffmpeg(const std::string& folder, const std::string& script) {
   test::write_file(folder + "/ffmpeg", "#!/bin/sh\n" + script + "\n");
@@ -42,8 +30,6 @@ void make_ffmpeg(const std::string& folder, const std::string& script) {
 }
 
 bool has_ffmpeg() { return static_cast<bool>(app::check_video("a.mp4", {2, 2, 25, false})); }
-
-int files_in(const std::string& folder) { return int(std::distance(std::filesystem::directory_iterator(folder), {})); }
 
 /// Frame `k` of a video as ffmpeg decodes it.
 render::Image8 frame_of(const std::string& video, int k, const std::string& folder) {
@@ -63,90 +49,76 @@ double rms(const render::Image8& a, const render::Image8& b) {
   return std::sqrt(sum / double(a.rgba.size()));
 }
 
-TEST(Video, FramesEqualTheImagesOfTheSequence) {
+class Video : public test::ProgramInFolder {
+ protected:
+  Video() { write("s.json", kScene); }
+  render::Image8 picture(const std::string& name) const {
+    auto read = render::read_png(folder_ / name);
+    EXPECT_TRUE(read) << name;
+    return read ? std::move(*read) : render::Image8();
+  }
+};
+
+TEST_F(Video, FramesEqualTheImagesOfTheSequence) {
   if (!has_ffmpeg()) GTEST_SKIP() << "ffmpeg is not on PATH";
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "s.json", kScene);
-  const std::vector<std::string> turn{"--size", "128x96", "--frames", "4", "--orbit", "180"};
-  const auto render = [&](const char* name) {
-    std::vector<std::string> arguments{"render", folder / "s.json", "-o", folder / name};
-    arguments.insert(arguments.end(), turn.begin(), turn.end());
-    const auto run = test::run_catena(arguments);
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-  };
+  const auto render = [&](const std::string& name) { succeed("render {s.json} -o {" + name + "} --size 128x96 --frames 4 --orbit 180"); };
   render("p_%d.png");
   for (const char* name : {"v.mp4", "v.webm", "v.gif"}) {
     render(name);
     for (const int k : {0, 2}) {
-      const auto truth = render::read_png(folder / ("p_" + std::to_string(k) + ".png"));
-      ASSERT_TRUE(truth);
-      const render::Image8 seen = frame_of(folder / name, k, folder.path());
-      const render::Image8 other = *render::read_png(folder / ("p_" + std::to_string(3 - k) + ".png"));
+      const render::Image8 seen = frame_of(folder_ / name, k, folder_.path());
+      const render::Image8 truth = picture("p_" + std::to_string(k) + ".png"), other = picture("p_" + std::to_string(3 - k) + ".png");
       // Differences are caused by chroma at half resolution, quantization and the 256 colors of a .gif.
-      EXPECT_LE(rms(seen, *truth), 6) << name << " " << k;
+      EXPECT_LE(rms(seen, truth), 6) << name << " " << k;
       EXPECT_GT(rms(seen, other), 8) << name << " " << k;
     }
     const auto info =
         test::run_program("/usr/bin/env", {"ffprobe", "-v", "error", "-count_frames", "-show_entries",
-                                           "stream=width,height,nb_read_frames,r_frame_rate", "-of", "csv=p=0", folder / name});
+                                           "stream=width,height,nb_read_frames,r_frame_rate", "-of", "csv=p=0", folder_ / name});
     EXPECT_EQ(info.out, "128,96,25/1,4\n") << name;
   }
 }
 
-TEST(Video, WebmKeepsATransparentBackground) {
+TEST_F(Video, WebmKeepsATransparentBackground) {
   if (!has_ffmpeg()) GTEST_SKIP() << "ffmpeg is not on PATH";
-  const test::TemporaryFolder folder;
   std::string scene = kScene;
   scene.insert(scene.rfind('}'), ", \"background\": \"transparent\"");
-  test::write_file(folder / "s.json", scene);
-  const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "v.webm", "--size", "65x49", "--frames", "2"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  const auto decoded = test::run_program("/usr/bin/env", {"ffmpeg", "-v", "error", "-c:v", "libvpx-vp9", "-i", folder / "v.webm",
-                                                          "-frames:v", "1", "-pix_fmt", "rgba", folder / "f.png"});
+  write("s.json", scene);
+  succeed("render {s.json} -o {v.webm} --size 65x49 --frames 2");
+  const auto decoded = test::run_program("/usr/bin/env", {"ffmpeg", "-v", "error", "-c:v", "libvpx-vp9", "-i", folder_ / "v.webm",
+                                                          "-frames:v", "1", "-pix_fmt", "rgba", folder_ / "f.png"});
   ASSERT_EQ(decoded.exit_code, 0) << decoded.err;
-  const auto picture = render::read_png(folder / "f.png");
-  ASSERT_TRUE(picture);
-  EXPECT_EQ(picture->width, 65u);
-  EXPECT_LE(picture->pixel(1, 1)[3], 2);
+  const render::Image8 frame = picture("f.png");
+  ASSERT_EQ(frame.width, 65u);
+  EXPECT_LE(frame.pixel(1, 1)[3], 2);
   int solid = 0;
-  for (std::size_t i = 3; i < picture->rgba.size(); i += 4) solid += picture->rgba[i] > 250;
+  for (std::size_t i = 3; i < frame.rgba.size(); i += 4) solid += frame.rgba[i] > 250;
   EXPECT_GT(solid, 100);
 }
 
-TEST(Video, WithoutFfmpegTheErrorNamesThePackage) {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "s.json", kScene);
-  const Path path(folder.path());
-  const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "v.mp4", "--frames", "2", "--size", "16x16"});
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-  EXPECT_NE(run.err.find("apt-get install ffmpeg"), std::string::npos) << run.err;
-  EXPECT_EQ(files_in(folder.path()), 1);
+TEST_F(Video, WithoutFfmpegTheErrorNamesThePackage) {
+  const test::EnvironmentVariable path("PATH", folder_.path());
+  expect_refused("render {s.json} -o {v.mp4} --frames 2 --size 16x16", {"apt-get install ffmpeg"});
 }
 
-TEST(Video, AFailureOfFfmpegIsReportedWithItsLastLine) {
-  const test::TemporaryFolder folder, tools;
-  test::write_file(folder / "s.json", kScene);
+TEST_F(Video, AFailureOfFfmpegIsReportedWithItsLastLine) {
+  const test::TemporaryFolder tools;
   // Failures at the start, in the middle and at the end.
   for (const char* script : {"echo first >&2; echo no such codec >&2; exit 3", "head -c 500 >/dev/null; echo no such codec >&2; exit 3",
                              "cat >/dev/null; echo no such codec >&2; exit 3"}) {
     make_ffmpeg(tools.path(), script);
-    const Path path(tools.path() + ":" + std::getenv("PATH"));
-    const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "v.mp4", "--frames", "3", "--size", "64x64"});
-    EXPECT_EQ(run.exit_code, 2) << script;
-    EXPECT_NE(run.err.find("v.mp4: ffmpeg failed (exit 3): no such codec"), std::string::npos) << run.err;
-    EXPECT_EQ(files_in(folder.path()), 1) << script;
+    const test::EnvironmentVariable path("PATH", tools.path() + ":" + std::getenv("PATH"));
+    expect_refused("render {s.json} -o {v.mp4} --frames 3 --size 64x64", {"v.mp4: ffmpeg failed (exit 3): no such codec"});
   }
 }
 
-TEST(Video, CtrlCLeavesNoPartialFile) {
-  const test::TemporaryFolder folder, tools;
-  test::write_file(folder / "s.json", kScene);
+TEST_F(Video, CtrlCLeavesNoPartialFile) {
+  const test::TemporaryFolder tools;
   make_ffmpeg(tools.path(), "exec cat >/dev/null");
-  const Path path(tools.path() + ":" + std::getenv("PATH"));
+  const test::EnvironmentVariable path("PATH", tools.path() + ":" + std::getenv("PATH"));
   for (const char* name : {"v.mp4", "big.png"}) {
     const bool video = std::string(name) == "v.mp4";
-    const std::string out = folder / name, scene = folder / "s.json";
+    const std::string out = folder_ / name, scene = folder_ / "s.json";
     const pid_t child = fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
@@ -159,21 +131,21 @@ TEST(Video, CtrlCLeavesNoPartialFile) {
     }
     // Waits until the program writes.
     int status = 0;
-    while (files_in(folder.path()) < 2) {
+    while (files() < 2) {
       ASSERT_EQ(waitpid(child, &status, WNOHANG), 0) << "it ended before it wrote";
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     ASSERT_EQ(kill(child, SIGINT), 0);
     ASSERT_EQ(waitpid(child, &status, 0), child);
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << name << " " << status;
-    EXPECT_EQ(files_in(folder.path()), 1) << name;
+    EXPECT_EQ(files(), 1) << name;
   }
 }
 
-TEST(Video, OddSizesOfMp4AndUnknownFormatsAreRefused) {
+TEST_F(Video, OddSizesOfMp4AndUnknownFormatsAreRefused) {
   const test::TemporaryFolder tools;
   make_ffmpeg(tools.path(), "exit 0");
-  const Path path(tools.path());
+  const test::EnvironmentVariable path("PATH", tools.path());
   const auto odd = app::check_video("v.mp4", {641, 480, 25, false});
   ASSERT_FALSE(odd);
   EXPECT_NE(odd.error().message.find("--size 642x480"), std::string::npos) << odd.error().message;

@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Edits of the transfer function and the isolevel in the window with real pointer events: the saved scene and the undo steps.
-#include <gtest/gtest.h>
-
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <sstream>
 
 #include "engine/scene/scene.h"
-#include "render/image/image.h"
-#include "tests/support/drive_window.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/window_fixture.h"
 
-namespace catena::app {
-namespace viewer_appearance_test {
+namespace catena::app::viewer_appearance_test {
 
 // A scene that renders fast: in a slow frame, ImGui would see a press and a move as one event. The color bar is pure green and the line
 // of the level pure magenta; no other part of the interface has these colors.
@@ -26,8 +18,6 @@ constexpr const char* kScene = R"({
   "volumes": [{"field": "ball", "color": [[0, 0, 1, 0], [4, 0, 1, 0]], "opacity": [[0, 0], [1, 0.25], [4, 0.04]], "opacity_unit": 1,
                "visible": false}],
   "isosurfaces": [{"field": "ball", "level": 1, "color": [1, 0, 1]}] })";
-
-bool has(const std::string& program) { return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0; }
 
 /// The bounding box of the pixels of one color in the side window.
 struct Spot {
@@ -46,17 +36,8 @@ Spot find(const render::Image8& picture, int r, int g, int b) {
   return spot;
 }
 
-class ViewerAppearance : public testing::Test {
+class ViewerAppearance : public test::DrivenWindow {
  protected:
-  std::string view() const { return test::program_path() + " view " + scene_ + " --size 640x720 --quality draft"; }
-  int on_display(const std::string& script) {
-    test::write_file(folder_ / "script.sh", script);
-    const int status = std::system(
-        ("timeout 120 " + test::on_display("640x720") + "sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  std::string log() const { return test::read_file(folder_ / "log"); }
-
   struct Saved {
     scene::TransferFunction transfer;
     double surface_level = 0, link_level = 0;
@@ -71,17 +52,17 @@ class ViewerAppearance : public testing::Test {
     scene->entities.each<scene::Link>([&](scene::Entity, const scene::Link& link) { all.link_level = link.node.find("level")->number; });
     return all;
   }
-  test::TemporaryFolder folder_;
-  std::string scene_ = folder_ / "s.json";
 };
 
 TEST_F(ViewerAppearance, DragsMoveAnOpacityAndALevelAndAreOneUndoStepEach) {
-  if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
-  test::write_file(scene_, kScene);
-  ASSERT_EQ(on_display(view() + " --frames 4 --screenshot-ui " + (folder_ / "w.png")), 0) << log();
-  const auto window = render::read_png(folder_ / "w.png");
-  ASSERT_TRUE(window) << log();
-  const Spot bar = find(*window, 0, 255, 0), line = find(*window, 255, 0, 255);
+  test::write_file(folder_ / "s.json", kScene);
+  const std::string view = "s.json --size 640x720 --quality draft";
+  ASSERT_EQ(run_on_display("cd " + folder_.path() + "\n" + test::program_path() + " view " + view + " --frames 4 --screenshot-ui w.png",
+                           "640x720"),
+            0)
+      << log();
+  const render::Image8 window = picture("w.png");
+  const Spot bar = find(window, 0, 255, 0), line = find(window, 255, 0, 255);
   ASSERT_GT(bar.right - bar.left, 200) << "the colour bar";
   ASSERT_GT(line.bottom - line.top, 20) << "the line of the level";
 
@@ -93,19 +74,12 @@ TEST_F(ViewerAppearance, DragsMoveAnOpacityAndALevelAndAreOneUndoStepEach) {
     return "xdotool mousemove " + from + "; sleep 0.5; xdotool mousedown 1; sleep 0.5; xdotool mousemove " + half +
            "; sleep 0.5; xdotool mousemove " + to + "; sleep 0.5; xdotool mouseup 1; sleep 0.5\n";
   };
-  const auto wait_change = [&](const std::string& of) {
-    return "for i in $(seq 200); do cmp -s " + scene_ + " " + (folder_ / of) + " || break; sleep 0.1; done; sleep 0.2\n";
-  };
-  std::ostringstream script;
-  script << "cp " << scene_ << " " << (folder_ / "0.json") << "\n"
-         << view() << " &\n"
-         << "for i in $(seq 300); do xdotool search --name '^catena  ' > /dev/null 2>&1 && break; sleep 0.1; done; sleep 1\n"
-         << drag(at(bar.x(0.25), bottom - 0.5 * height), at(bar.x(0.4), bottom - 0.6 * height), at(bar.x(0.5), bottom - 0.8 * height))
-         << drag(at(level, middle), at(level + 10, middle), at(level + 40, middle)) << "xdotool key ctrl+s\n"
-         << wait_change("0.json") << "cp " << scene_ << " " << (folder_ / "1.json") << "\n"
-         << "xdotool key ctrl+z; sleep 0.5; xdotool key ctrl+s\n"
-         << wait_change("1.json") << "cp " << scene_ << " " << (folder_ / "2.json") << "\nxdotool key ctrl+q; wait $!\n";
-  ASSERT_EQ(on_display(script.str()), 0) << log();
+  play(view,
+       "cp s.json 0.json\nchanged() { until_ sh -c \"! cmp -s s.json $1\"; sleep 0.2; }\nsleep 1\n" +
+           drag(at(bar.x(0.25), bottom - 0.5 * height), at(bar.x(0.4), bottom - 0.6 * height), at(bar.x(0.5), bottom - 0.8 * height)) +
+           drag(at(level, middle), at(level + 10, middle), at(level + 40, middle)) +
+           "xdotool key ctrl+s\nchanged 0.json\ncp s.json 1.json\n"
+           "xdotool key ctrl+z; sleep 0.5; xdotool key ctrl+s\nchanged 1.json\ncp s.json 2.json\nxdotool key ctrl+q");
 
   const Saved edited = saved("1.json");
   ASSERT_EQ(edited.transfer.opacities.size(), 3u);
@@ -124,5 +98,4 @@ TEST_F(ViewerAppearance, DragsMoveAnOpacityAndALevelAndAreOneUndoStepEach) {
   EXPECT_EQ(back.transfer.opacities[1].alpha, edited.transfer.opacities[1].alpha);
 }
 
-}  // namespace viewer_appearance_test
-}  // namespace catena::app
+}  // namespace catena::app::viewer_appearance_test

@@ -9,8 +9,7 @@
 #include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
-namespace catena::app {
-namespace viewer_random_input_test {
+namespace catena::app::viewer_random_input_test {
 
 constexpr const char* kDensity = R"({ "fields": {"d": {"analytic": "gaussian", "resolution": 24}, "v": {"analytic": "circle"}},
   // a comment
@@ -43,5 +42,4 @@ TEST(ViewerRandomInput, DoesNotCrashTheWindow) {
   EXPECT_EQ(std::system(command.c_str()), 0) << test::read_file(folder / "out") << test::read_file(folder / "monkey.log");
 }
 
-}  // namespace viewer_random_input_test
-}  // namespace catena::app
+}  // namespace catena::app::viewer_random_input_test

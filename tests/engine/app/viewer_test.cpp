@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The window on a virtual display (Xvfb), with real pointer events if xdotool is installed.
-#include <gtest/gtest.h>
 
-#include <sys/wait.h>
-
-#include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <sstream>
 
-#include "render/image/image.h"
-#include "tests/support/drive_window.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/program_runs.h"
+#include "tests/engine/app/window_fixture.h"
 
-namespace catena::app {
-namespace viewer_test {
+namespace catena::app::viewer_test {
+
+using test::has;
 
 constexpr const char* kScene = R"({
   "fields": {"v": {"analytic": "circle"}},
@@ -23,34 +18,37 @@ constexpr const char* kScene = R"({
   "streamlines": [{"field": "v", "seeds": [[1, 0, 0], [0.5, 0, 0.4]], "radius": 0.05}],
   "camera": {"position": [0, -6, 3], "target": [0, 0, 0]} })";
 
-bool has(const std::string& program) { return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0; }
+bool is_installed(const std::string& program) { return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0; }
 
-int exit_code(const std::string& command) {
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-class Viewer : public testing::Test {
+class Viewer : public test::WindowTest {
  protected:
-  void SetUp() override {
-    scene_ = folder_ / "scene.json";
-    test::write_file(scene_, kScene);
-  }
+  Viewer() { test::write_file(scene_, kScene); }
   std::string view() const { return test::program_path() + " view " + scene_ + " --size 320x240"; }
-  int on_display(const std::string& script) {
-    test::write_file(folder_ / "script.sh", script);
-    return exit_code("timeout 60 " + test::on_display("640x480") + "sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1");
+  /// Runs the window without a display; the output is one line that begins with the text.
+  void expect_no_window(const std::string& options, int exit_code, const std::string& begin) const {
+    EXPECT_EQ(run_logged("env -u DISPLAY -u WAYLAND_DISPLAY " + view() + options), exit_code) << options;
+    EXPECT_EQ(log().find("catena: " + begin), 0u) << log();
+    EXPECT_TRUE(test::is_one_line(log()));
   }
-  std::string log() const { return test::read_file(folder_ / "log"); }
-  render::Image8 picture(const std::string& name) {
-    auto read = render::read_png(folder_ / name);
-    EXPECT_TRUE(read) << log();
-    return read ? std::move(*read) : render::Image8();
+  /// Opens the window, waits for a title, moves the pointer to its center, plays the script, and quits.
+  void play(const std::string& options, const std::string& title, const std::string& script) const {
+    EXPECT_EQ(
+        test::drive_windows(folder_, "view scene.json --size 320x240 " + options + "\ntitled '" + title +
+                                         "'\nxdotool mousemove 160 120; sleep 0.3\n" + script + "\nxdotool key ctrl+q; wait $V\nexit $?\n"),
+        0)
+        << log();
+    EXPECT_EQ(log().find("never"), std::string::npos) << log();
   }
-
-  test::TemporaryFolder folder_;
-  std::string scene_;
+  const std::string scene_ = folder_ / "scene.json";
 };
+
+/// The number of reddish pixels in columns from..to.
+int count_red(const render::Image8& p, std::uint32_t from, std::uint32_t to) {
+  int count = 0;
+  for (std::uint32_t y = 0; y < p.height; ++y)
+    for (std::uint32_t x = from; x < to; ++x) count += p.pixel(x, y)[0] > 80 && p.pixel(x, y)[1] < p.pixel(x, y)[0] / 2;
+  return count;
+}
 
 int differing(const render::Image8& a, const render::Image8& b) {
   int count = 0;
@@ -59,95 +57,56 @@ int differing(const render::Image8& a, const render::Image8& b) {
   return count;
 }
 
-TEST_F(Viewer, AMissingDisplayIsOneErrorLine) {
-  const std::string command = "env -u DISPLAY -u WAYLAND_DISPLAY " + view() + " > " + (folder_ / "log") + " 2>&1";
-  EXPECT_EQ(exit_code(command), 1);
-  const std::string text = log();
-  EXPECT_EQ(text.find("catena: no display"), 0u) << text;
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
-}
+TEST_F(Viewer, AMissingDisplayIsOneErrorLine) { expect_no_window("", 1, "no display"); }
 
 TEST_F(Viewer, DrawsTheSceneAndTheProbe) {
-  if (!has("Xvfb")) GTEST_SKIP() << "no Xvfb here";
-  ASSERT_EQ(on_display(view() + " --frames 4 --screenshot " + (folder_ / "a.png")), 0) << log();
+  if (!is_installed("Xvfb")) GTEST_SKIP() << "no Xvfb here";
+  ASSERT_EQ(run_on_display(view() + " --frames 4 --screenshot " + (folder_ / "a.png")), 0) << log();
   const render::Image8 a = picture("a.png");
   ASSERT_EQ(a.width, 320u);
   ASSERT_EQ(a.height, 240u);
-  int red = 0, white = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
-    if (a.rgba[i] > 80 && a.rgba[i + 1] < a.rgba[i] / 2) ++red;
-    if (a.rgba[i] > 150 && a.rgba[i + 1] > 150 && a.rgba[i + 2] > 150) ++white;
-  }
-  EXPECT_GT(red, 500) << "the streamlines";
+  int white = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); i += 4) white += a.rgba[i] > 150 && a.rgba[i + 1] > 150 && a.rgba[i + 2] > 150;
+  EXPECT_GT(count_red(a, 0, 320), 500) << "the streamlines";
   EXPECT_GT(white, 10) << "the probe";
-  EXPECT_NE(log().find("4 frames"), std::string::npos) << log();
+  EXPECT_TRUE(has(log(), "4 frames"));
 }
 
-TEST_F(Viewer, AnUnknownDeviceIsReportedBeforeAnyWindow) {
-  const std::string command = "env -u DISPLAY -u WAYLAND_DISPLAY " + view() + " --device nonsense > " + (folder_ / "log") + " 2>&1";
-  EXPECT_EQ(exit_code(command), 2);
-  const std::string text = log();
-  EXPECT_EQ(text.find("catena: there is no device \"nonsense\""), 0u) << text;
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
-}
+TEST_F(Viewer, AnUnknownDeviceIsReportedBeforeAnyWindow) { expect_no_window(" --device nonsense", 2, "there is no device \"nonsense\""); }
 
 TEST_F(Viewer, ForcesOfAHapticDeviceAreOffUntilF) {
-  if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
-  std::ostringstream script;
-  script << view() << " --device simulated --servo-stats " << (folder_ / "servo.json") << " &\n"
-         << "for i in $(seq 200); do xdotool search --name 'forces off' > /dev/null 2>&1 && break; sleep 0.1; done\n"
-         << "xdotool mousemove 160 120; sleep 0.3; xdotool key f\n"
-         << "for i in $(seq 100); do xdotool search --name 'forces on' > /dev/null 2>&1 && break; sleep 0.1; done\n"
-         << "xdotool key ctrl+q; wait $!\n";
-  ASSERT_EQ(on_display(script.str()), 0) << log();
+  if (!test::can_drive_windows()) GTEST_SKIP() << "no Xvfb or no xdotool here";
+  play("--device simulated --servo-stats servo.json", "forces off", "xdotool key f\ntitled 'forces on'");
   const std::size_t off = log().find("forces off (F turns them on)"), on = log().find("forces on (F turns them off)");
   EXPECT_LT(off, on) << log();
   EXPECT_NE(on, std::string::npos) << log();
-  EXPECT_NE(test::read_file(folder_ / "servo.json").find("\"missed_deadlines\""), std::string::npos);
+  EXPECT_TRUE(has(test::read_file(folder_ / "servo.json"), "\"missed_deadlines\""));
 }
 
 TEST_F(Viewer, StereoFillsTheWindowAndF2SelectsTheNextMode) {
-  if (!has("Xvfb")) GTEST_SKIP() << "no Xvfb here";
-  ASSERT_EQ(on_display(view() + " --stereo side-by-side --frames 2 --screenshot " + (folder_ / "pair.png")), 0) << log();
+  if (!is_installed("Xvfb")) GTEST_SKIP() << "no Xvfb here";
+  ASSERT_EQ(run_on_display(view() + " --stereo side-by-side --frames 2 --screenshot " + (folder_ / "pair.png")), 0) << log();
   const render::Image8 pair = picture("pair.png");
   ASSERT_EQ(pair.width, 320u);
   ASSERT_EQ(pair.height, 240u);
   // Both halves show the streamlines.
-  int red[2] = {0, 0};
-  for (std::size_t i = 0; i < pair.rgba.size(); i += 4)
-    if (pair.rgba[i] > 80 && pair.rgba[i + 1] < pair.rgba[i] / 2) ++red[(i / 4) % 320 / 160];
-  EXPECT_GT(red[0], 200);
-  EXPECT_GT(red[1], 200);
-  if (!has("xdotool")) return;
-  std::ostringstream script;
-  script << view() << " --stereo top-bottom-half &\n"
-         << "for i in $(seq 200); do xdotool search --name 'top-bottom-half' > /dev/null 2>&1 && break; sleep 0.1; done\n"
-         << "xdotool mousemove 160 120; sleep 0.3; xdotool key F2\n"
-         << "for i in $(seq 100); do xdotool search --name '[[]anaglyph[]]' > /dev/null 2>&1 && echo arrived && break; sleep 0.1; done\n"
-         << "xdotool key ctrl+q; wait $!\n";
-  ASSERT_EQ(on_display(script.str()), 0) << log();
-  EXPECT_NE(log().find("arrived"), std::string::npos) << log();
+  EXPECT_GT(count_red(pair, 0, 160), 200);
+  EXPECT_GT(count_red(pair, 160, 320), 200);
+  if (!test::can_drive_windows()) return;
+  play("--stereo top-bottom-half", "top-bottom-half", "xdotool key F2\ntitled '[[]anaglyph[]]'");
 }
 
 TEST_F(Viewer, AChangedShaderIsReloadedAndABrokenOneIsReported) {
-  if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
+  if (!test::can_drive_windows()) GTEST_SKIP() << "no Xvfb or no xdotool here";
   const std::string shaders = folder_ / "shaders", compose = shaders + "/passes/compose.frag";
   std::filesystem::copy(test::source_dir() + "/shaders", shaders, std::filesystem::copy_options::recursive);
   test::write_file(folder_ / "green.frag",
                    "#version 460\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(0.0, 1.0, 0.0, 1.0); }\n");
   test::write_file(folder_ / "broken.frag", "#version 460\nvoid main() { nonsense; }\n");
-  const auto wait_for = [&](const std::string& word) {
-    return "for i in $(seq 200); do grep -q '" + word + "' " + (folder_ / "log") + " && break; sleep 0.1; done\n";
-  };
-  std::ostringstream script;
-  script << view() << " --shaders " << shaders << " --screenshot " << (folder_ / "green.png") << " &\n"
-         << "for i in $(seq 200); do xdotool search --name '^catena  ' > /dev/null 2>&1 && break; sleep 0.1; done\n"
-         << "xdotool mousemove 160 120; sleep 0.6\n"
-         << "cp " << (folder_ / "green.frag") << " " << compose << "\n"
-         << wait_for("compose.frag: reloaded from the file") << "cp " << (folder_ / "broken.frag") << " " << compose << "\n"
-         << wait_for("compose.frag:2: ") << "xdotool key ctrl+q; wait $!\n";
-  ASSERT_EQ(on_display(script.str()), 0) << log();
-  EXPECT_NE(log().find("catena: " + compose + ":2: 'nonsense'"), std::string::npos) << log();
+  play("--shaders shaders --screenshot green.png", "^catena  ",
+       "sleep 0.3\ncp green.frag shaders/passes/compose.frag\nsays 'compose.frag: reloaded from the file'\n"
+       "cp broken.frag shaders/passes/compose.frag\nsays 'compose.frag:2: '");
+  EXPECT_TRUE(has(log(), "catena: shaders/passes/compose.frag:2: 'nonsense'"));
   const render::Image8 green = picture("green.png");
   ASSERT_FALSE(green.rgba.empty());
   int others = 0;
@@ -156,51 +115,33 @@ TEST_F(Viewer, AChangedShaderIsReloadedAndABrokenOneIsReported) {
 }
 
 TEST_F(Viewer, InvalidQualityAndShadersAreOneErrorLine) {
-  for (const auto& [options, text] : {std::pair{" --quality nonsense", "--quality nonsense: expected draft"},
-                                      std::pair{" --shaders /nowhere", "--shaders /nowhere/passes/"}}) {
-    EXPECT_EQ(exit_code("env -u DISPLAY -u WAYLAND_DISPLAY " + view() + options + " > " + (folder_ / "log") + " 2>&1"), 2);
-    EXPECT_NE(log().find(text), std::string::npos) << log();
-    EXPECT_EQ(std::ranges::count(log(), '\n'), 1) << log();
-  }
+  expect_no_window(" --quality nonsense", 2, "--quality nonsense: expected draft");
+  expect_no_window(" --shaders /nowhere", 2, "--shaders /nowhere/passes/");
 }
 
 TEST_F(Viewer, TheTitleHasTheQualityAndKeysChangeTheView) {
-  if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
+  if (!test::can_drive_windows()) GTEST_SKIP() << "no Xvfb or no xdotool here";
   test::write_file(scene_, R"({
     "fields": {"f": {"analytic": "sphere"}},
     "volumes": [{"field": "f"}],
     "camera": {"position": [3, -6, 3], "target": [0, 0, 0]} })");
-  const auto drive = [&](const std::string& keys, const std::string& png) {
-    std::ostringstream script;
-    script
-        << view() << " --quality time=30 --screenshot " << (folder_ / png) << " &\n"
-        << "for i in $(seq 200); do xdotool search --name '[[].*step .* ms[]]' > /dev/null 2>&1 && echo arrived && break; sleep 0.1; done\n"
-        << "xdotool mousemove 160 120; sleep 0.3; " << keys << "\nsleep 0.5; xdotool key ctrl+q; wait $!\n";
-    EXPECT_EQ(on_display(script.str()), 0) << log();
-    EXPECT_NE(log().find("arrived"), std::string::npos) << log();
-  };
-  drive(":", "still.png");
-  drive("xdotool key 1", "along_x.png");
-  drive("xdotool key 1; sleep 0.2; xdotool key o", "flat.png");
+  for (const auto& [keys, png] :
+       {std::pair{"", "still.png"}, {"xdotool key 1", "along_x.png"}, {"xdotool key 1; sleep 0.2; xdotool key o", "flat.png"}})
+    play(std::string("--quality time=30 --screenshot ") + png, "[[].*step .* ms[]]", std::string(keys) + "\nsleep 0.5");
   EXPECT_GT(differing(picture("still.png"), picture("along_x.png")), 500);
   EXPECT_GT(differing(picture("along_x.png"), picture("flat.png")), 50);
 }
 
 TEST_F(Viewer, DrawsForTheRequestedSeconds) {
-  if (!has("Xvfb")) GTEST_SKIP() << "no Xvfb here";
-  ASSERT_EQ(on_display(view() + " --seconds 1 --servo-stats " + (folder_ / "servo.json")), 0) << log();
-  EXPECT_NE(test::read_file(folder_ / "servo.json").find("\"device\": \"mouse\""), std::string::npos);
+  if (!is_installed("Xvfb")) GTEST_SKIP() << "no Xvfb here";
+  ASSERT_EQ(run_on_display(view() + " --seconds 1 --servo-stats " + (folder_ / "servo.json")), 0) << log();
+  EXPECT_TRUE(has(test::read_file(folder_ / "servo.json"), "\"device\": \"mouse\""));
 }
 
 TEST_F(Viewer, DragsOrbitTheViewAndMoveTheProbe) {
-  if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
+  if (!test::can_drive_windows()) GTEST_SKIP() << "no Xvfb or no xdotool here";
   const auto drive = [&](const std::string& events, const std::string& png) {
-    std::ostringstream script;
-    script << view() << " --screenshot " << (folder_ / png) << " &\n"
-           << "for i in $(seq 200); do xdotool search --name '^catena  ' > /dev/null 2>&1 && break; sleep 0.1; done\n"
-           << "xdotool mousemove 160 120; sleep 0.3\n"
-           << events << "\nsleep 0.5; xdotool key ctrl+q; wait $!\n";
-    EXPECT_EQ(on_display(script.str()), 0) << log();
+    play("--screenshot " + png, "^catena  ", events + "\nsleep 0.5");
     return log();
   };
   const std::string still = drive("", "still.png");
@@ -222,5 +163,4 @@ TEST_F(Viewer, DragsOrbitTheViewAndMoveTheProbe) {
   EXPECT_LT(probe(moved), 0) << moved;
 }
 
-}  // namespace viewer_test
-}  // namespace catena::app
+}  // namespace catena::app::viewer_test

@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The window on a virtual display with real pointer and key events: panels, files, confirmations, images and a lost graphics device.
-#include <gtest/gtest.h>
-
-#include <sys/wait.h>
 
 #include <cstdlib>
 #include <filesystem>
-#include <sstream>
 
 #include "engine/app/viewer/viewer.h"
-#include "render/image/image.h"
-#include "tests/support/drive_window.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/window_fixture.h"
 
-namespace catena::app {
-namespace viewer_window_test {
+namespace catena::app::viewer_window_test {
 
 constexpr const char* kScene = R"({
   "fields": {"v": {"analytic": "circle"}},
@@ -28,43 +21,13 @@ constexpr const char* kOther = R"({
   "isosurfaces": [{"field": "d", "level": 1}],
   "background": [0, 0, 0.4] })";
 
-bool has(const std::string& program) { return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0; }
-
-class ViewerWindow : public testing::Test {
+class ViewerWindow : public test::DrivenWindow {
  protected:
-  void SetUp() override {
-    if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
-    scene_ = folder_ / "flow.json";
+  ViewerWindow() {
     test::write_file(scene_, kScene);
     test::write_file(folder_ / "ball.json", kOther);
   }
-  /// Runs `view OPTIONS`, waits for its title, plays the script, and waits for its end.
-  int drive(const std::string& options, const std::string& script, const std::string& environment = "") {
-    std::ostringstream all;
-    all << "cd " << folder_.path() << "\nexport HOME=" << folder_.path() << " XDG_STATE_HOME=" << (folder_ / "state") << "\n"
-        << "titled() { for i in $(seq 300); do xdotool search --name \"$1\" > /dev/null 2>&1 && echo \"titled $1\" && return; sleep 0.1; "
-           "done; "
-           "echo \"never titled $1\"; }\n"
-        << "written() { for i in $(seq 300); do [ -s \"$1\" ] && return; sleep 0.1; done; echo \"never written $1\"; }\n"
-        << "keys() { for k in \"$@\"; do xdotool key $k; sleep 0.25; done; }\n"
-        << environment << " " << test::program_path() << " view " << options << " &\nV=$!\ntitled '^catena  '\n"
-        << "xdotool mousemove 600 300; sleep 0.3\n"
-        << script << "\nwait $V\n";
-    test::write_file(folder_ / "script.sh", all.str());
-    const int status = std::system(
-        ("timeout 90 " + test::on_display("1000x700") + "sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  std::string log() const { return test::read_file(folder_ / "log"); }
-  bool is_there(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
-  render::Image8 picture(const std::string& name) {
-    auto read = render::read_png(folder_ / name);
-    EXPECT_TRUE(read) << name << "\n" << log();
-    return read ? std::move(*read) : render::Image8();
-  }
-
-  test::TemporaryFolder folder_;
-  std::string scene_;
+  const std::string scene_ = folder_ / "flow.json";
 };
 
 bool is_color(const render::Image8& p, std::uint32_t x, std::uint32_t y, int r, int g, int b) {
@@ -73,20 +36,17 @@ bool is_color(const render::Image8& p, std::uint32_t x, std::uint32_t y, int r, 
 }
 
 TEST_F(ViewerWindow, TheImageIsBesideThePanelsAndTabHidesThem) {
-  ASSERT_EQ(drive(scene_ + " --size 900x600 --screenshot end.png",
-                  "keys shift+F12; written flow-001.png\nkeys F12; written flow-002.png\n"
-                  "keys Tab; sleep 0.5; keys F12; written flow-003.png\nkeys ctrl+q"),
-            0)
-      << log();
-  const render::Image8 window = picture("flow-001.png"), beside = picture("flow-002.png"), alone = picture("flow-003.png"),
-                       end = picture("end.png");
+  play(scene_ + " --size 900x600 --screenshot end.png",
+       "keys shift+F12; written flow-001.png\nkeys F12; written flow-002.png\n"
+       "keys Tab; sleep 0.5; keys F12; written flow-003.png\nkeys ctrl+q");
+  const render::Image8 window = picture("flow-001.png"), beside = picture("flow-002.png"), alone = picture("flow-003.png");
   EXPECT_EQ(window.width, 900u);
   EXPECT_EQ(window.height, 600u);
   EXPECT_EQ(beside.width, 580u);
   EXPECT_LT(beside.height, 600u);
   EXPECT_EQ(alone.width, 900u);
   EXPECT_EQ(alone.height, 600u);
-  EXPECT_EQ(end.width, 900u);
+  EXPECT_EQ(picture("end.png").width, 900u);
   ASSERT_FALSE(window.rgba.empty() || beside.rgba.empty() || alone.rgba.empty());
   EXPECT_TRUE(is_color(window, 895, 100, 0, 77, 0)) << "the background right of the panels";
   EXPECT_FALSE(is_color(window, 100, 300, 0, 77, 0)) << "panels";
@@ -96,14 +56,12 @@ TEST_F(ViewerWindow, TheImageIsBesideThePanelsAndTabHidesThem) {
 TEST_F(ViewerWindow, QuitAsksBeforeUnsavedEditsAreLost) {
   // The key O changes the view only. Edits in the side window have their own tests; here the undo step comes from saving the changed view
   // to another file.
-  ASSERT_EQ(drive(scene_ + " --size 900x600",
-                  "keys o ctrl+shift+s; sleep 0.3; xdotool type --delay 60 'copy'; keys Return; written copy.json\n"
-                  "keys ctrl+z; titled 'copy.json [^ ]'\n"
-                  "keys ctrl+q; sleep 0.5; kill -0 $V && echo 'still there'\n"
-                  "keys Escape; sleep 0.3; kill -0 $V && echo 'still open'\n"
-                  "keys ctrl+q; sleep 0.5; keys Return"),
-            0)
-      << log();
+  play(scene_ + " --size 900x600",
+       "keys o ctrl+shift+s; sleep 0.3; xdotool type --delay 60 'copy'; keys Return; written copy.json\n"
+       "keys ctrl+z; titled 'copy.json [^ ]'\n"
+       "keys ctrl+q; sleep 0.5; kill -0 $V && echo 'still there'\n"
+       "keys Escape; sleep 0.3; kill -0 $V && echo 'still open'\n"
+       "keys ctrl+q; sleep 0.5; keys Return");
   EXPECT_NE(log().find("still there"), std::string::npos) << log();
   EXPECT_NE(log().find("still open"), std::string::npos) << log();
   const std::string saved = test::read_file(folder_ / "copy.json");
@@ -112,28 +70,22 @@ TEST_F(ViewerWindow, QuitAsksBeforeUnsavedEditsAreLost) {
 }
 
 TEST_F(ViewerWindow, TheOpenDialogOpensTypedNamesAndAFailureKeepsTheScene) {
-  ASSERT_EQ(drive("--size 900x600 --screenshot-ui end.png",
-                  "titled 'untitled'\n"
-                  "keys ctrl+o; sleep 0.3; xdotool type --delay 60 'flow.js'; keys Tab Return; titled 'flow.json'\n"
-                  "keys ctrl+o; sleep 0.3; xdotool type --delay 60 'none.json'; keys Return; sleep 0.7; titled 'flow.json'\n"
-                  "keys ctrl+o; sleep 0.3; xdotool type --delay 60 'ball.json'; keys Return; titled 'ball.json'\n"
-                  "sleep 0.5; keys ctrl+q"),
-            0)
-      << log();
-  EXPECT_EQ(log().find("never titled"), std::string::npos) << log();
+  play("--size 900x600 --screenshot-ui end.png",
+       "titled 'untitled'\n"
+       "keys ctrl+o; sleep 0.3; xdotool type --delay 60 'flow.js'; keys Tab Return; titled 'flow.json'\n"
+       "keys ctrl+o; sleep 0.3; xdotool type --delay 60 'none.json'; keys Return; sleep 0.7; titled 'flow.json'\n"
+       "keys ctrl+o; sleep 0.3; xdotool type --delay 60 'ball.json'; keys Return; titled 'ball.json'\n"
+       "sleep 0.5; keys ctrl+q");
   const render::Image8 end = picture("end.png");
   ASSERT_FALSE(end.rgba.empty());
   EXPECT_TRUE(is_color(end, 895, 100, 0, 0, 102));
 }
 
 TEST_F(ViewerWindow, RepeatedResizingKeepsTheImagesSizeRight) {
-  ASSERT_EQ(drive(scene_ + " --size 800x500",
-                  "W=$(xdotool search --name '^catena  ' | head -1)\n"
-                  "for s in '300 200' '900 650' '40 30' '1 1' '700 400' '820 610'; do xdotool windowsize $W $s; sleep 0.15; done\n"
-                  "xdotool windowminimize $W; sleep 0.3; xdotool windowmap $W; xdotool windowsize $W 860 560; sleep 1\n"
-                  "xdotool mousemove 600 300; keys shift+F12; written flow-001.png; keys ctrl+q"),
-            0)
-      << log();
+  play(scene_ + " --size 800x500",
+       "for s in '300 200' '900 650' '40 30' '1 1' '700 400' '820 610'; do xdotool windowsize $W $s; sleep 0.15; done\n"
+       "xdotool windowminimize $W; sleep 0.3; xdotool windowmap $W; xdotool windowsize $W 860 560; sleep 1\n"
+       "xdotool mousemove 600 300; keys shift+F12; written flow-001.png; keys ctrl+q");
   const render::Image8 window = picture("flow-001.png");
   EXPECT_EQ(window.width, 860u);
   EXPECT_EQ(window.height, 560u);
@@ -161,23 +113,24 @@ TEST(ViewerDeviceLost, DISABLED_InAWindow) {
 
 TEST_F(ViewerWindow, ALostGraphicsDeviceIsRestarted) {
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-  const std::string command =
-      "env -u GTEST_TOTAL_SHARDS -u GTEST_SHARD_INDEX CATENA_TEST_SCENE=" + scene_ + " timeout 90 " + test::on_display("640x480") + self +
-      " --gtest_also_run_disabled_tests --gtest_filter=ViewerDeviceLost.DISABLED_InAWindow > " + (folder_ / "log") + " 2>&1";
-  EXPECT_EQ(std::system(command.c_str()), 0) << log();
+  EXPECT_EQ(run_logged("env -u GTEST_TOTAL_SHARDS -u GTEST_SHARD_INDEX CATENA_TEST_SCENE=" + scene_ + " timeout 90 " +
+                       test::on_display("640x480") + self +
+                       " --gtest_also_run_disabled_tests --gtest_filter=ViewerDeviceLost.DISABLED_InAWindow"),
+            0)
+      << log();
   EXPECT_NE(log().find("60 frames"), std::string::npos) << log();
   EXPECT_NE(log().find("lost and restarted 4 times"), std::string::npos) << log();
 }
 
 TEST_F(ViewerWindow, WithoutADisplayTheScreenshotIsStillDrawn) {
-  const std::string command = "cd " + folder_.path() + " && env -u DISPLAY -u WAYLAND_DISPLAY " + test::program_path() + " view " + scene_ +
-                              " --size 200x150 --screenshot a.png > log 2>&1";
-  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0) << log();
+  EXPECT_EQ(run_logged("cd " + folder_.path() + " && env -u DISPLAY -u WAYLAND_DISPLAY " + test::program_path() + " view " + scene_ +
+                       " --size 200x150 --screenshot a.png"),
+            0)
+      << log();
   EXPECT_NE(log().find("rendered without a window"), std::string::npos) << log();
   const render::Image8 a = picture("a.png");
   EXPECT_EQ(a.width, 200u);
   EXPECT_EQ(a.height, 150u);
 }
 
-}  // namespace viewer_window_test
-}  // namespace catena::app
+}  // namespace catena::app::viewer_window_test

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 // `catena view --xr` with the scripted runtime (tests/xr_runtime) on a virtual display; and controllers without a display.
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <sstream>
 
 #include "engine/app/haptics/device_file.h"
 #include "engine/app/viewer/scene/scene_model.h"
@@ -15,100 +12,82 @@
 #include "engine/app/viewer/xr/xr_session.h"
 #include "engine/base/clock.h"
 #include "haptics/device/device_settings.h"
-#include "render/image/image.h"
 #include "tests/engine/app/open_scene_model.h"
 #include "tests/engine/app/viewer_xr_fixture.h"
+#include "tests/support/results.h"
 #if __has_include(<openxr/openxr.h>)
 #include "tests/render/xr/xr_fixture.h"
 #endif
 
-namespace catena::app {
-namespace viewer_xr_test {
+namespace catena::app::viewer_xr_test {
 
+using test::has;
 using viewer_xr_fixture::kScene;
-using viewer_xr_fixture::ViewerXr;
+
+class ViewerXr : public viewer_xr_fixture::ViewerXr {
+ protected:
+  /// The screenshot of the first eye: the sphere is straight ahead, and orange.
+  void expect_orange_sphere() const {
+    const render::Image8 eye = picture("eye.png");
+    EXPECT_EQ(eye.width * 80, eye.height * 96);
+    std::size_t orange = 0;
+    for (std::size_t i = 0; i < eye.rgba.size(); i += 4) orange += eye.rgba[i] > eye.rgba[i + 2] + 40;
+    EXPECT_GT(orange, eye.rgba.size() / 4 / 100);
+  }
+};
 
 TEST_F(ViewerXr, BothEyesAreDrawnAndTheFirstIsMirroredInTheWindow) {
   ASSERT_EQ(run_view("--frames 8 --screenshot " + (folder_ / "eye.png"), "size=96x80"), 0) << log();
   EXPECT_GE(runtime_count("pictures"), 7);
   EXPECT_EQ(runtime_count("moved"), 0);
-  EXPECT_EQ(runtime_count("illegal"), 0) << test::read_file(folder_ / "record");
-  EXPECT_EQ(runtime_count("objects"), 0);
-  EXPECT_NE(log().find("headset: "), std::string::npos) << log();
+  expect_clean_runtime();
+  EXPECT_TRUE(has(log(), "headset: "));
   EXPECT_EQ(headset_error_count(), 0) << log();
-  const auto eye = render::read_png(folder_ / "eye.png");
-  ASSERT_TRUE(eye) << eye.error().message;
-  // The sphere is straight ahead, and orange.
-  EXPECT_EQ(eye->width * 80, eye->height * 96);
-  std::size_t orange = 0;
-  for (std::size_t i = 0; i < eye->rgba.size(); i += 4) orange += eye->rgba[i] > eye->rgba[i + 2] + 40;
-  EXPECT_GT(orange, eye->rgba.size() / 4 / 100);
+  expect_orange_sphere();
 }
 
 /// The world is placed in front of the head's position in the first frame, for any origin of the runtime's space.
 TEST_F(ViewerXr, TheWorldIsPlacedInFrontOfTheHead) {
   ASSERT_EQ(run_view("--frames 4 --screenshot " + (folder_ / "eye.png"), "size=96x80 head=3:0.5:-2"), 0) << log();
-  const auto eye = render::read_png(folder_ / "eye.png");
-  ASSERT_TRUE(eye) << eye.error().message;
-  std::size_t orange = 0;
-  for (std::size_t i = 0; i < eye->rgba.size(); i += 4) orange += eye->rgba[i] > eye->rgba[i + 2] + 40;
-  EXPECT_GT(orange, eye->rgba.size() / 4 / 100);
+  expect_orange_sphere();
 }
 
 TEST_F(ViewerXr, AMissingRuntimeIsOneErrorLine) {
   EXPECT_EQ(run_view("--frames 2", "", "/nowhere/runtime.json"), 1) << log();
   EXPECT_EQ(headset_error_count(), 1) << log();
-  EXPECT_NE(log().find("expected an OpenXR runtime"), std::string::npos) << log();
+  EXPECT_TRUE(has(log(), "expected an OpenXR runtime"));
 }
 
 /// The gaze is part of a recording, like the poses of head and hands.
 TEST_F(ViewerXr, TheGazeIsRecorded) {
   const std::string log = folder_ / "hand.catlog", table = folder_ / "poses.csv";
   ASSERT_EQ(run_view("--frames 12 --record " + log, "size=32x32 gaze=0.25:-0.1"), 0) << this->log();
-  ASSERT_EQ(std::system((test::program_path() + " export " + log + " -o " + (folder_ / "ticks.csv") + " --poses " + table + " > " +
-                         (folder_ / "log") + " 2>&1")
-                            .c_str()),
-            0)
-      << this->log();
-  std::istringstream in(test::read_file(table));
-  std::string header, line, last;
-  std::getline(in, header);
-  while (std::getline(in, line)) last = line;
-  const auto value = [&](const std::string& name) {
-    std::istringstream names(header), values(last);
-    std::string one, number;
-    while (std::getline(names, one, ',') && std::getline(values, number, ','))
-      if (one == name) return std::atof(number.c_str());
-    ADD_FAILURE() << "no column " << name << " in " << header;
-    return 0.0;
-  };
-  const Quat turn(value("gaze_qw"), value("gaze_qx"), value("gaze_qy"), value("gaze_qz"));
-  const Vec3 ahead = rotate(turn, Vec3(0.0, 0.0, -1.0));
-  EXPECT_NEAR(ahead.x / -ahead.z, 0.25, 1e-4) << last;
-  EXPECT_NEAR(ahead.y / -ahead.z, -0.1, 1e-4) << last;
+  test::run_ok({"export", log, "-o", folder_ / "ticks.csv", "--poses", table});
+  const test::Table poses = test::Table::read(table);
+  const auto value = [&](const char* name) { return poses.number(poses.rows() - 1, name); };
+  const Vec3 ahead = rotate(Quat(value("gaze_qw"), value("gaze_qx"), value("gaze_qy"), value("gaze_qz")), Vec3(0.0, 0.0, -1.0));
+  EXPECT_NEAR(ahead.x / -ahead.z, 0.25, 1e-4);
+  EXPECT_NEAR(ahead.y / -ahead.z, -0.1, 1e-4);
 }
 
 /// The menu button shows the window in the room, as a quad layer.
 TEST_F(ViewerXr, TheMenuButtonShowsTheWindowInTheRoom) {
   ASSERT_EQ(run_view("--frames 24", "size=48x40 menu=5:8"), 0) << log();
   EXPECT_GT(runtime_count("quads"), 0);
-  EXPECT_EQ(runtime_count("illegal"), 0) << test::read_file(folder_ / "record");
-  EXPECT_EQ(runtime_count("objects"), 0);
+  expect_clean_runtime();
 }
 
 /// A running session that is not visible: --frames counts the window's frames.
 TEST_F(ViewerXr, FramesAreCountedInAnInvisibleSession) {
-  EXPECT_EQ(run_view("--frames 12", "size=32x32 state=4:VISIBLE state=4:SYNCHRONIZED"), 0) << log();
+  expect_legal_view("--frames 12", "size=32x32 state=4:VISIBLE state=4:SYNCHRONIZED");
   EXPECT_LE(runtime_count("pictures"), 4);
-  EXPECT_EQ(runtime_count("illegal"), 0) << test::read_file(folder_ / "record");
 }
 
 /// Invalid periods and sizes of a display, and options of flat images.
 TEST_F(ViewerXr, InvalidDisplaysAndFlatImageOptionsDoNotBlock) {
   for (const char* words : {"size=32x32 period_ms=0", "size=0x0", "size=0x0 period_ms=0"}) {
-    EXPECT_EQ(run_view("--frames 12", words), 0) << words << log();
+    expect_legal_view("--frames 12", words);
     EXPECT_GE(runtime_count("pictures"), 11) << words;
-    EXPECT_EQ(runtime_count("illegal"), 0) << words << test::read_file(folder_ / "record");
     EXPECT_EQ(headset_error_count(), 0) << words << log();
   }
   std::string scene = kScene;
@@ -116,21 +95,19 @@ TEST_F(ViewerXr, InvalidDisplaysAndFlatImageOptionsDoNotBlock) {
                                                 "upper_left": [-2, 0, 1]}])");
   test::write_file(folder_ / "scene.json", scene);
   for (const char* options : {"--frames 12 --screen front", "--frames 12 --stereo side-by-side"}) {
-    EXPECT_EQ(run_view(options, "size=32x32"), 0) << options << log();
+    expect_legal_view(options, "size=32x32");
     EXPECT_GE(runtime_count("pictures"), 11) << options;
-    EXPECT_EQ(runtime_count("illegal"), 0) << options << test::read_file(folder_ / "record");
   }
 }
 
 /// An unregistered device is requested on the terminal and on the panel in the room; the menu button dismisses the request.
 TEST_F(ViewerXr, RegistrationOfADeskDeviceIsRequested) {
   ASSERT_EQ(run_view("--device simulated --frames 24", "size=48x40"), 0) << log();
-  EXPECT_NE(log().find("Touch three points, not on one line, with the handle of simulated"), std::string::npos) << log();
+  EXPECT_TRUE(has(log(), "Touch three points, not on one line, with the handle of simulated"));
   EXPECT_GT(runtime_count("quads"), 0);
   EXPECT_EQ(log().find("is not registered"), std::string::npos) << log();
-  ASSERT_EQ(run_view("--device simulated --frames 24", "size=48x40 menu=6:8"), 0) << log();
-  EXPECT_NE(log().find("catena: simulated is not registered; press G, or use the panel Device"), std::string::npos) << log();
-  EXPECT_EQ(runtime_count("illegal"), 0) << test::read_file(folder_ / "record");
+  expect_legal_view("--device simulated --frames 24", "size=48x40 menu=6:8");
+  EXPECT_TRUE(has(log(), "catena: simulated is not registered; press G, or use the panel Device"));
 }
 
 /// The controller and the simulated hand touch the same three points; the device file stores the registration and can be read again.
@@ -149,10 +126,10 @@ TEST_F(ViewerXr, TheRegistrationIsStoredInTheDeviceFile) {
   test::write_file(folder_ / "arm.json", "{\n  \"type\": \"simulated\",  // mine\n  \"friction\": 0\n}\n");
   const std::string device = "--device simulated:" + (folder_ / "path.csv") + " --device-file " + (folder_ / "arm.json");
   ASSERT_EQ(run_view(device + " --seconds 4.5", words), 0) << log();
-  EXPECT_NE(log().find("is registered: the residual is 0."), std::string::npos) << log();
-  EXPECT_NE(log().find("the registration was written to"), std::string::npos) << log();
+  EXPECT_TRUE(has(log(), "is registered: the residual is 0."));
+  EXPECT_TRUE(has(log(), "the registration was written to"));
   const std::string device_text = test::read_file(folder_ / "arm.json");
-  EXPECT_NE(device_text.find("// mine"), std::string::npos) << device_text;
+  EXPECT_TRUE(has(device_text, "// mine"));
   scene::Scene scene;
   ASSERT_TRUE(apply_device_file(folder_ / "arm.json", scene)) << device_text;
   const auto settings = haptics::read_device_settings(*scene.device, folder_ / "arm.json");
@@ -288,8 +265,10 @@ struct LateHand {
   Vec3 place() const { return Vec3(now_ms, 0, 0); }
 };
 
+class LateLatching : public test::WindowTest {};
+
 /// The child process of TheProbeIsNewerByTheWaitAndThePacket, on a display of its own.
-TEST(LateLatching, DISABLED_Child) {
+TEST_F(LateLatching, DISABLED_Child) {
   const std::string result = test::child_variable("CATENA_LATCHING");
   if (result.empty()) GTEST_SKIP() << "it is run by the case after it";
   test::xr_rig::Runtime runtime;
@@ -297,17 +276,13 @@ TEST(LateLatching, DISABLED_Child) {
   runtime.script().width = runtime.script().height = 16;
   LateHand hand;
   runtime.script().on_frame = [&](std::uint64_t frame, test::xr_runtime::Script&) { hand.now_ms += hand.wait_ms(frame); };
-  auto window = Window::create(64, 64, "latching");
-  ASSERT_TRUE(window) << window.error().message;
-  auto headset = HeadsetSession::open();
-  ASSERT_TRUE(headset) << headset.error().message;
+  auto window = test::value_of(Window::create(64, 64, "latching"));
+  auto headset = test::value_of(HeadsetSession::open());
   Presenter::Options options;
-  (*headset)->configure(options);
-  auto screen = Presenter::open(**window, options);
-  ASSERT_TRUE(screen) << screen.error().message;
-  test::TemporaryFolder folder;
+  headset->configure(options);
+  auto screen = test::value_of(Presenter::open(*window, options));
   std::optional<SceneModel> host;
-  test::open_scene(folder, kScene, host);
+  test::open_scene(folder_, kScene, host);
   HapticSession holder(HapticSession::Options{});
   ASSERT_TRUE(holder.open_device(host->scene()));
 
@@ -330,9 +305,9 @@ TEST(LateLatching, DISABLED_Child) {
   content.classify_rays = [](const render::FramePacket&) { return render::QualityLevelOptions{}; };
   for (int k = 0; k < 200 && late_ms.size() < 120; ++k) {
     looked_at = hand.place();
-    ASSERT_TRUE((*headset)->poll(**screen, now_ns(), [](const std::string&) {}));
-    if (!(*headset)->is_running()) continue;
-    const auto drawn = (*headset)->draw(**screen, holder, content);
+    ASSERT_TRUE(headset->poll(*screen, now_ns(), [](const std::string&) {}));
+    if (!headset->is_running()) continue;
+    const auto drawn = headset->draw(*screen, holder, content);
     ASSERT_TRUE(drawn) << drawn.error().message;
   }
   ASSERT_EQ(late_ms.size(), 120u) << "two eyes, sixty pictures";
@@ -340,25 +315,22 @@ TEST(LateLatching, DISABLED_Child) {
   double gain = 0;
   for (std::size_t k = 0; k < late_ms.size(); ++k) gain += (early_ms[k] - late_ms[k]) / double(late_ms.size());
   test::write_file(result, fmt::format("{}", gain));
-  (*headset)->request_exit();
+  headset->request_exit();
 }
 
 /// The drawn hand is newer by the wait for the frame (4 to 9 ms) and the creation of the packet (1.5 ms).
-TEST(LateLatching, TheProbeIsNewerByTheWaitAndThePacket) {
+TEST_F(LateLatching, TheProbeIsNewerByTheWaitAndThePacket) {
   if (!test::exists(test::binary_dir() + "/libcatena_xr_runtime.so")) GTEST_SKIP() << "the scripted runtime was not built";
   if (!test::can_drive_windows()) GTEST_SKIP() << "there is no virtual display";
-  test::TemporaryFolder folder;
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-  const int status =
-      std::system(("env -u GTEST_TOTAL_SHARDS -u GTEST_SHARD_INDEX HOME=" + folder.path() + " CATENA_LATCHING=" + (folder / "gain") +
-                   " timeout 60 " + test::on_display("320x240") + self +
-                   " --gtest_filter=LateLatching.DISABLED_Child --gtest_also_run_disabled_tests > " + (folder / "log") + " 2>&1")
-                      .c_str());
-  ASSERT_EQ(status, 0) << test::read_file(folder / "log");
-  EXPECT_NEAR(std::stod(test::read_file(folder / "gain")), 6.5 + 1.5, 0.1) << "milliseconds";
+  ASSERT_EQ(run_logged("env -u GTEST_TOTAL_SHARDS -u GTEST_SHARD_INDEX HOME=" + folder_.path() + " CATENA_LATCHING=" + (folder_ / "gain") +
+                       " timeout 60 " + test::on_display("320x240") + self +
+                       " --gtest_filter=LateLatching.DISABLED_Child --gtest_also_run_disabled_tests"),
+            0)
+      << log();
+  EXPECT_NEAR(std::stod(test::read_file(folder_ / "gain")), 6.5 + 1.5, 0.1) << "milliseconds";
 }
 
 #endif
 
-}  // namespace viewer_xr_test
-}  // namespace catena::app
+}  // namespace catena::app::viewer_xr_test

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// `catena replay --widgets`: a cutting plane dragged by a scripted probe, against closed forms.
-#include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "engine/base/numbers.h"
 #include "engine/base/vec.h"
-#include "tests/support/run_program.h"
-#include "tests/support/support.h"
+#include "tests/engine/app/program_in_folder.h"
 
 namespace widgets_test {
 
@@ -18,20 +16,17 @@ constexpr const char* kScene = R"({"fields": {"d": {"analytic": "gaussian"}},
                "snap": 0.1, "release": 0.2, "grab_distance": 0.05, "step": 0.1}],
   "slices": [{"field": "d", "widget": "cut"}]})";
 
-class Widgets : public testing::Test {
+class Widgets : public test::ProgramInFolder {
  protected:
   test::Table replay(const std::string& path_csv) {
-    test::write_file(folder_ / "s.json", kScene);
-    test::write_file(folder_ / "p.csv", "t,x,y,z,buttons\n" + path_csv);
-    const auto run = test::run_catena(
-        {"replay", folder_ / "s.json", "--probe", folder_ / "p.csv", "-o", folder_ / "t.csv", "--widgets", folder_ / "w.csv"});
-    EXPECT_EQ(run.exit_code, 0) << run.err;
+    write("s.json", kScene);
+    write("p.csv", "t,x,y,z,buttons\n" + path_csv);
+    succeed("replay {s.json} --probe {p.csv} -o {t.csv} --widgets {w.csv}");
     return test::Table::read(folder_ / "w.csv");
   }
   static std::string row(int k, const Vec3& p, int buttons) {
     return to_text(1e-3 * k) + "," + to_text(p.x) + "," + to_text(p.y) + "," + to_text(p.z) + "," + std::to_string(buttons) + "\n";
   }
-  test::TemporaryFolder folder_;
 };
 
 TEST_F(Widgets, ADragAlongXWithTremorKeepsYAndZ) {
@@ -77,14 +72,10 @@ TEST_F(Widgets, ARotationAboutAnAxisKeepsTheAxis) {
 }
 
 TEST_F(Widgets, ALinkWithTheNameOfAWidgetsLinkIsRefused) {
-  test::write_file(folder_ / "bad.json", R"({"fields": {}, "chain": [{"name": "widget_x", "type": "point", "position": [0, 0, 0]}],
+  write("bad.json", R"({"fields": {}, "chain": [{"name": "widget_x", "type": "point", "position": [0, 0, 0]}],
     "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1]}]})");
-  test::write_file(folder_ / "p.csv", "t,x,y,z\n0,0,0,0\n");
-  const auto run = test::run_catena({"replay", folder_ / "bad.json", "--probe", folder_ / "p.csv", "-o", folder_ / "t.csv"});
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.err.find("bad.json:2:"), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find("widget_x"), std::string::npos) << run.err;
-  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  write("p.csv", "t,x,y,z\n0,0,0,0\n");
+  expect_refused("replay {bad.json} --probe {p.csv} -o {t.csv}", {"bad.json:2:", "widget_x"});
 }
 
 }  // namespace widgets_test

@@ -6,37 +6,28 @@
 #include <cmath>
 
 #include "engine/base/memory_limit.h"
+#include "tests/support/results.h"
 #include "tests/support/support.h"
 
-namespace catena {
-namespace csv_test {
+namespace catena::csv_test {
 
-template <class T>
-void expect_error(const Result<T>& result, std::initializer_list<const char*> parts) {
-  ASSERT_FALSE(result);
-  const std::string& message = result.error().message;
-  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-  for (const char* part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks " << part;
-}
+using test::expect_error;
 
 TEST(Csv, ReadsColumnsInAnyOrder) {
-  const auto rows = parse_probe_path("t,x,y,z\n0,1,2,3\n0.001,-1e-3,.5,+7\n", "p.csv");
-  ASSERT_TRUE(rows) << rows.error().message;
-  ASSERT_EQ(rows->size(), 2u);
-  EXPECT_EQ((*rows)[1].t_s, 0.001);
-  EXPECT_EQ((*rows)[1].position, Vec3(-1e-3, 0.5, 7));
-  const auto turned = parse_probe_path("buttons, z ,y,x,t\n5,3,2,1,0\n", "p.csv");
-  ASSERT_TRUE(turned) << turned.error().message;
-  EXPECT_EQ((*turned)[0].position, Vec3(1, 2, 3));
-  EXPECT_EQ((*turned)[0].buttons, 5u);
+  const auto rows = test::value_of(parse_probe_path("t,x,y,z\n0,1,2,3\n0.001,-1e-3,.5,+7\n", "p.csv"));
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[1].t_s, 0.001);
+  EXPECT_EQ(rows[1].position, Vec3(-1e-3, 0.5, 7));
+  const auto turned = test::value_of(parse_probe_path("buttons, z ,y,x,t\n5,3,2,1,0\n", "p.csv"));
+  EXPECT_EQ(turned[0].position, Vec3(1, 2, 3));
+  EXPECT_EQ(turned[0].buttons, 5u);
 }
 
 TEST(Csv, AcceptsTheFormatsOfSpreadsheets) {
   for (const char* text : {"\xEF\xBB\xBFt,x,y,z\r\n0,1,2,3\r\n", "t,x,y,z\n0,1,2,3", " t , x,y,z \n 0 , 1,\t2,3 \n\n\r\n  \n"}) {
-    const auto rows = parse_probe_path(text, "p.csv");
-    ASSERT_TRUE(rows) << rows.error().message;
-    ASSERT_EQ(rows->size(), 1u);
-    EXPECT_EQ((*rows)[0].position, Vec3(1, 2, 3));
+    const auto rows = test::value_of(parse_probe_path(text, "p.csv"));
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_EQ(rows[0].position, Vec3(1, 2, 3));
   }
 }
 
@@ -55,17 +46,16 @@ TEST(Csv, HeaderErrorsAreReported) {
 }
 
 TEST(Csv, AnOrientationHasAllColumnsAndIsNormalized) {
-  const auto rows = parse_probe_path("t,x,y,z,buttons,qw,qx,qy,qz\n0,1,2,3,0,0.6,0.8,0,0\n1,1,2,3,1,0.7071,0,0,0.7071\n", "p.csv");
-  ASSERT_TRUE(rows) << rows.error().message;
-  EXPECT_TRUE((*rows)[0].has_orientation);
-  EXPECT_NEAR((*rows)[0].orientation.w, 0.6, 1e-15);
-  EXPECT_NEAR((*rows)[0].orientation.x, 0.8, 1e-15);
-  EXPECT_NEAR((*rows)[1].orientation.z, std::sqrt(0.5), 1e-15);  // normalized
-  EXPECT_EQ((*rows)[1].buttons, 1u);
-  const auto plain = parse_probe_path("t,x,y,z\n0,1,2,3\n", "p.csv");
-  ASSERT_TRUE(plain);
-  EXPECT_FALSE((*plain)[0].has_orientation);
-  EXPECT_EQ((*plain)[0].orientation, kIdentityRotation);
+  const auto rows =
+      test::value_of(parse_probe_path("t,x,y,z,buttons,qw,qx,qy,qz\n0,1,2,3,0,0.6,0.8,0,0\n1,1,2,3,1,0.7071,0,0,0.7071\n", "p.csv"));
+  EXPECT_TRUE(rows[0].has_orientation);
+  EXPECT_NEAR(rows[0].orientation.w, 0.6, 1e-15);
+  EXPECT_NEAR(rows[0].orientation.x, 0.8, 1e-15);
+  EXPECT_NEAR(rows[1].orientation.z, std::sqrt(0.5), 1e-15);  // normalized
+  EXPECT_EQ(rows[1].buttons, 1u);
+  const auto plain = test::value_of(parse_probe_path("t,x,y,z\n0,1,2,3\n", "p.csv"));
+  EXPECT_FALSE(plain[0].has_orientation);
+  EXPECT_EQ(plain[0].orientation, kIdentityRotation);
   expect_error(parse_probe_path("t,x,y,z,qw,qx,qz\n0,1,2,3,1,0,0\n", "p.csv"), {"p.csv:1:", "\"qy\" is missing", "qw,qx,qy,qz"});
   expect_error(parse_probe_path("t,x,y,z,qw,qx,qy,qz\n0,1,2,3,1,0,0,0\n1,1,2,3,0,0,0,0\n", "p.csv"),
                {"p.csv:3:", "length 0", "unit quaternion was expected"});
@@ -103,10 +93,9 @@ TEST(Csv, UnreadableFilesAreRefused) {
 TEST(Csv, ManyRowsKeepTheirValues) {
   std::string text = "t,x,y,z\n";
   for (int i = 0; i < 200000; ++i) text += std::to_string(i) + ",0.1,0.2," + std::to_string(2 * i) + "\n";
-  const auto rows = parse_probe_path(text, "p.csv");
-  ASSERT_TRUE(rows);
-  ASSERT_EQ(rows->size(), 200000u);
-  EXPECT_EQ(rows->back().position.z, 399998.0);
+  const auto rows = test::value_of(parse_probe_path(text, "p.csv"));
+  ASSERT_EQ(rows.size(), 200000u);
+  EXPECT_EQ(rows.back().position.z, 399998.0);
 }
 
 // The memory of the rows is counted and limited.
@@ -122,5 +111,4 @@ TEST(Csv, TheMemoryOfRowsIsChecked) {
   expect_error(longer, {"p.csv: a table of 40000 rows needs 2 MB of memory, expected at most 1 MB"});
 }
 
-}  // namespace csv_test
-}  // namespace catena
+}  // namespace catena::csv_test

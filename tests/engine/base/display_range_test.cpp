@@ -8,9 +8,9 @@
 #include <random>
 
 #include "engine/base/numbers.h"
+#include "tests/support/results.h"
 
-namespace catena {
-namespace display_range_test {
+namespace catena::display_range_test {
 
 constexpr float kMost = std::numeric_limits<float>::max();
 
@@ -93,7 +93,7 @@ TEST(DisplayRange, OrdinaryDataHaveTheirFullRange) {
 
 TEST(DisplayRange, ManyEqualValuesMayMeanMissingData) {
   const std::string note = outlier_note(display_range(with(spread(700, 0, 1), 300, -9999.f)));
-  EXPECT_NE(note.find("30 % of the values are exactly -9999: perhaps missing data"), std::string::npos) << note;
+  EXPECT_TRUE(test::has(note, "30 % of the values are exactly -9999: perhaps missing data"));
   EXPECT_EQ(outlier_note(display_range(spread(700, 0, 1))), "");
 }
 
@@ -115,5 +115,4 @@ TEST(Numbers, AreFormattedReadably) {
   for (const auto& [value, text] : cases) EXPECT_EQ(format_readable(value), text);
 }
 
-}  // namespace display_range_test
-}  // namespace catena
+}  // namespace catena::display_range_test

@@ -9,10 +9,10 @@
 #include <csignal>
 #include <cstdlib>
 
+#include "tests/support/results.h"
 #include "tests/support/support.h"
 
-namespace catena {
-namespace helper_process_test {
+namespace catena::helper_process_test {
 
 using test::TemporaryFolder;
 
@@ -30,9 +30,8 @@ TEST(HelperProcess, InheritsOnlyTheGivenDescriptors) {
   const FileDescriptor other(::open("/dev/null", O_RDONLY));  // inherited by any child that does not close it
   const FileDescriptor a(::open((folder / "a").c_str(), O_RDWR | O_CREAT, 0600)), b(::open((folder / "b").c_str(), O_RDWR | O_CREAT, 0600));
   const int given[] = {a.get(), b.get()};
-  auto helper = HelperProcess::start(script(folder, "ls /proc/self/fd >&3; env >&4; echo gone; exit 5\n"), given);
-  ASSERT_TRUE(helper) << helper.error().message;
-  const ProcessExit end = helper->wait(30);
+  auto helper = test::value_of(HelperProcess::start(script(folder, "ls /proc/self/fd >&3; env >&4; echo gone; exit 5\n"), given));
+  const ProcessExit end = helper.wait(30);
   EXPECT_EQ(end.cause, ProcessExit::Cause::exited);
   EXPECT_EQ(end.code, 5);
   // The descriptors of the script (0 to 4), the one that ls opens, and the shell's descriptor of its script.
@@ -47,12 +46,9 @@ TEST(HelperProcess, ReportsItsExit) {
   const ProcessExit end = killed->wait(30);
   EXPECT_EQ(end.cause, ProcessExit::Cause::killed);
   EXPECT_EQ(end.code, SIGSEGV);
-  auto slow = HelperProcess::start(script(folder, "while :; do :; done\n"), {});
-  ASSERT_TRUE(slow);
-  EXPECT_EQ(slow->wait(0.1).cause, ProcessExit::Cause::timed_out);
-  const auto absent = HelperProcess::start(folder / "absent", {});
-  ASSERT_FALSE(absent);
-  EXPECT_NE(absent.error().message.find("cannot be started"), std::string::npos);
+  auto slow = test::value_of(HelperProcess::start(script(folder, "while :; do :; done\n"), {}));
+  EXPECT_EQ(slow.wait(0.1).cause, ProcessExit::Cause::timed_out);
+  EXPECT_TRUE(test::fails(HelperProcess::start(folder / "absent", {}), "cannot be started"));
 }
 
 // A lack of descriptors must not be reported as a missing helper.
@@ -72,5 +68,4 @@ TEST(HelperProcess, TooFewDescriptorsAreASystemFailure) {
             "/bin/true: this part of Catena cannot be started: at most 32 files may be open at a time (ulimit -n), expected at least 128");
 }
 
-}  // namespace helper_process_test
-}  // namespace catena
+}  // namespace catena::helper_process_test

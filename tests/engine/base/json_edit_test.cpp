@@ -9,44 +9,36 @@
 #include <cmath>
 #include <random>
 
-namespace catena::json {
-namespace json_edit_test {
+#include "tests/support/results.h"
 
+namespace catena::json::json_edit_test {
+
+std::string text_of(const Result<std::string>& edited) { return edited ? *edited : edited.error().message; }
 std::string set(std::string_view text, std::string_view pointer, std::string_view value) {
-  const auto edited = set_value(text, "f.json", pointer, value);
-  return edited ? *edited : edited.error().message;
+  return text_of(set_value(text, "f.json", pointer, value));
 }
 std::string insert(std::string_view text, std::string_view pointer, std::string_view value) {
-  const auto edited = insert_item(text, "f.json", pointer, value);
-  return edited ? *edited : edited.error().message;
+  return text_of(insert_item(text, "f.json", pointer, value));
 }
-std::string removed(std::string_view text, std::string_view pointer) {
-  const auto edited = remove_value(text, "f.json", pointer);
-  return edited ? *edited : edited.error().message;
-}
-
-// ---- offsets ----
+std::string removed(std::string_view text, std::string_view pointer) { return text_of(remove_value(text, "f.json", pointer)); }
 
 TEST(JsonOffsets, AreTheByteRangesOfValues) {
   const std::string text =
       "\xEF\xBB\xBF// caf\xc3\xa9 /* \r\n{ /* \"no\" */ \"k\xc3\xa9y\": \"\xe2\x82\xac\\\"x\" , // {\r\n\"a\":[1e-3 /* ] */ ,-2, {} , "
       "true],\"n\"  :null}";
-  const auto root = parse(text, "f");
-  ASSERT_TRUE(root) << root.error().message;
+  const auto root = test::value_of(parse(text, "f"));
   const auto bytes = [&](const Node& node) { return text.substr(node.begin, node.end - node.begin); };
-  EXPECT_EQ(root->end, text.size());
-  EXPECT_EQ(text[root->begin], '{');
-  EXPECT_EQ(bytes(root->members[0].second), "\"\xe2\x82\xac\\\"x\"");
-  const Node& array = root->members[1].second;
+  EXPECT_EQ(root.end, text.size());
+  EXPECT_EQ(text[root.begin], '{');
+  EXPECT_EQ(bytes(root.members[0].second), "\"\xe2\x82\xac\\\"x\"");
+  const Node& array = root.members[1].second;
   EXPECT_EQ(bytes(array), "[1e-3 /* ] */ ,-2, {} , true]");
   EXPECT_EQ(bytes(array.items[0]), "1e-3");
   EXPECT_EQ(bytes(array.items[1]), "-2");
   EXPECT_EQ(bytes(array.items[2]), "{}");
   EXPECT_EQ(bytes(array.items[3]), "true");
-  EXPECT_EQ(bytes(root->members[2].second), "null");
+  EXPECT_EQ(bytes(root.members[2].second), "null");
 }
-
-// ---- replacing ----
 
 TEST(JsonSet, ReplacesTheValueOnly) {
   EXPECT_EQ(set("{\"a\": 1, // one\n \"b\" : [ 1,2 ,3 ]}", "/b/1", "[4]"), "{\"a\": 1, // one\n \"b\" : [ 1,[4] ,3 ]}");
@@ -62,8 +54,6 @@ TEST(JsonSet, DropsCommentsAroundANewValue) {
   EXPECT_EQ(set("[1, 2]", "/0", " /* a */ 7 // b"), "[7, 2]");
   EXPECT_EQ(set("[1, 2]", "/0", "\xEF\xBB\xBF[8 /* kept */]\n"), "[[8 /* kept */], 2]");
 }
-
-// ---- adding ----
 
 TEST(JsonSet, AddsInTheExistingLayout) {
   EXPECT_EQ(set("{\"a\": 1}", "/b", "2"), "{\"a\": 1, \"b\": 2}");
@@ -112,11 +102,9 @@ TEST(JsonInsert, PutsAnItemBeforeAnother) {
   EXPECT_EQ(insert("[1, 2]", "/2", "3"), "[1, 2, 3]");
   EXPECT_EQ(insert("[]", "/-", "3"), "[3]");
   EXPECT_EQ(insert("{\"a\": [\r\n    1, // one\r\n    2\r\n]}", "/a/1", "0"), "{\"a\": [\r\n    1, // one\r\n    0,\r\n    2\r\n]}");
-  EXPECT_NE(insert("{\"a\": 1}", "/a", "0").find("f.json:1: \"/a\" is no item of an array"), std::string::npos);
-  EXPECT_NE(insert("{\"a\": 1}", "/b", "0").find("is no item of an array"), std::string::npos);
+  EXPECT_TRUE(test::has(insert("{\"a\": 1}", "/a", "0"), "f.json:1: \"/a\" is no item of an array"));
+  EXPECT_TRUE(test::has(insert("{\"a\": 1}", "/b", "0"), "is no item of an array"));
 }
-
-// ---- removing ----
 
 TEST(JsonRemove, RemovesTheComma) {
   EXPECT_EQ(removed("[1, 2, 3]", "/0"), "[2, 3]");
@@ -154,14 +142,11 @@ TEST(JsonRemove, KeepsTheCommentsAroundTheValue) {
   EXPECT_EQ(removed("[1 // one\n, 2]", "/0"), "[// one\n 2]");
 }
 
-// ---- errors ----
-
 TEST(JsonEdit, ErrorsNameThePositionAndTheExpectation) {
   const std::string text = "{\n \"a\": [1],\n \"b\": 2}";
-  const auto refused = [&](const std::string& message, const char* start, const char* part) {
+  const auto refused = [](const std::string& message, const char* start, const char* part) {
     EXPECT_TRUE(message.starts_with(start)) << message;
-    EXPECT_NE(message.find(part), std::string::npos) << message;
-    EXPECT_NE(message.find("expected"), std::string::npos) << message;
+    for (const char* words : {part, "expected"}) EXPECT_TRUE(test::has(message, words));
   };
   refused(set(text, "/b/c", "1"), "f.json:3: ", "holds nothing");
   refused(set(text, "/a/2", "1"), "f.json:2: ", "\"2\" is no item");
@@ -193,13 +178,11 @@ TEST(JsonText, WrittenValuesReadBackExactly) {
   EXPECT_EQ(serialize_number(3), "3");
   std::string all;
   for (int c = 1; c < 256; ++c) all += static_cast<char>(c);
-  const auto read = parse(serialize_string(all), "f");
-  ASSERT_TRUE(read) << read.error().message;
-  EXPECT_EQ(read->string, all);
+  const auto read = test::value_of(parse(serialize_string(all), "f"));
+  EXPECT_EQ(read.string, all);
 }
 
-// ---- random edits of any layout: the text changes as the tree does ----
-
+// Random edits of any layout: the text changes as the tree does.
 using Random = std::mt19937_64;
 std::size_t below(Random& random, std::size_t n) { return static_cast<std::size_t>(random() % n); }
 
@@ -221,53 +204,28 @@ Node random_tree(Random& random, int depth) {
 std::string random_space(Random& random, bool comments, const std::string& line_end) {
   std::string out;
   for (std::size_t i = below(random, 3); i > 0; --i) {
-    switch (below(random, comments ? 7 : 4)) {
-      case 0:
-        out += line_end + "  ";
-        break;
-      case 1:
-        out += line_end;
-        break;
-      case 4:
-        out += "// , ] \" #" + std::to_string(random() % 1000000) + line_end;
-        break;
-      case 5:
-        out += "/* } #" + std::to_string(random() % 1000000) + " */";
-        break;
-      case 6:
-        out += "/* #" + std::to_string(random() % 1000000) + line_end + " ** */ ";
-        break;
-      default:
-        out += " ";
-    }
+    const std::size_t kind = below(random, comments ? 7 : 4);
+    const std::string number = kind < 4 ? "" : "#" + std::to_string(random() % 1000000);
+    const std::string comment[] = {"// , ] \" " + number + line_end, "/* } " + number + " */", "/* " + number + line_end + " ** */ "};
+    out += kind == 0 ? line_end + "  " : kind == 1 ? line_end : kind < 4 ? " " : comment[kind - 4];
   }
   return out;
 }
 
 std::string random_text(const Node& node, Random& random, const std::string& line_end) {
   const auto space = [&](bool comments = true) { return random_space(random, comments, line_end); };
-  std::string out;
-  switch (node.kind) {
-    case Kind::null:
-      return "null";
-    case Kind::boolean:
-      return node.boolean ? "true" : "false";
-    case Kind::number:
-      return serialize_number(node.number);
-    case Kind::string:
-      return serialize_string(node.string);
-    case Kind::array:
-      if (node.items.empty()) return "[" + space() + "]";
-      for (const Node& item : node.items) out += (out.empty() ? "[" : ",") + space() + random_text(item, random, line_end) + space();
-      return out + "]";
-    case Kind::object:
-      if (node.members.empty()) return "{" + space() + "}";
-      for (const auto& [key, member] : node.members)
-        out += (out.empty() ? "{" : ",") + space() + serialize_string(key) + space(false) + ":" + space() +
-               random_text(member, random, line_end) + space();
-      return out + "}";
-  }
-  return out;
+  if (node.kind == Kind::null) return "null";
+  if (node.kind == Kind::boolean) return node.boolean ? "true" : "false";
+  if (node.kind == Kind::number) return serialize_number(node.number);
+  if (node.kind == Kind::string) return serialize_string(node.string);
+  const bool list = node.kind == Kind::array;
+  std::string out = list ? "[" : "{";
+  if (node.items.empty() && node.members.empty()) out += space();
+  for (const Node& item : node.items) out += (out.size() == 1 ? "" : ",") + space() + random_text(item, random, line_end) + space();
+  for (const auto& [key, member] : node.members)
+    out += (out.size() == 1 ? "" : ",") + space() + serialize_string(key) + space(false) + ":" + space() +
+           random_text(member, random, line_end) + space();
+  return out + (list ? "]" : "}");
 }
 
 /// The pointers to all values except the root.
@@ -318,56 +276,44 @@ TEST_P(JsonLayout, EditsOfTheTextEqualEditsOfTheTree) {
     const Node value = random_tree(random, 2);
     const std::string put = random_text(value, random, GetParam());
     const std::string place = places[below(random, places.size())];
-    Result<std::string> edited = Error{};
     const auto before = *parse(text, "f");
-    switch (below(random, 3)) {
-      case 0: {
-        const Node& at = *find_value(before, place);
-        edited = set_value(text, "f", place, put);
-        ASSERT_TRUE(edited) << edited.error().message << "\n" << text;
-        EXPECT_EQ(*edited, text.substr(0, at.begin) + put + text.substr(at.end));
-        *found(tree, place) = value;
-        ++sets;
-        break;
+    const Node& at = *find_value(before, place);
+    const std::size_t action = below(random, 3);
+    if (action == 1 && at.kind != Kind::array && at.kind != Kind::object) continue;
+    const auto edited = action == 0   ? set_value(text, "f", place, put)
+                        : action == 1 ? set_value(text, "f", place + (at.kind == Kind::array ? "/-" : "/new~1key"), put)
+                                      : remove_value(text, "f", place);
+    ASSERT_TRUE(edited) << edited.error().message << "\n" << text;
+    if (action == 0) {
+      EXPECT_EQ(*edited, text.substr(0, at.begin) + put + text.substr(at.end));
+      *found(tree, place) = value;
+      ++sets;
+    } else if (action == 1) {
+      if (at.kind == Kind::array)
+        found(tree, place)->items.push_back(value);
+      else
+        found(tree, place)->members.emplace_back("new/key", value);
+      // The text of the container with an inserted value.
+      EXPECT_EQ(edited->substr(0, at.begin), text.substr(0, at.begin));
+      EXPECT_TRUE(edited->ends_with(text.substr(at.end - 1)));
+      ASSERT_NE(edited->find(put, at.begin), std::string::npos);
+      ++adds;
+    } else {
+      const Node& parent = *find_value(before, place.substr(0, place.rfind('/')));
+      erase(tree, place);
+      EXPECT_EQ(edited->substr(0, parent.begin), text.substr(0, parent.begin));
+      EXPECT_TRUE(edited->ends_with(text.substr(parent.end)));
+      if (parent.items.size() != 1) {
+        // Only the member is removed, with blanks and commas.
+        const std::string left = bare(*edited), tail = bare(text.substr(at.end)), head = bare(text.substr(0, at.begin));
+        ASSERT_TRUE(left.ends_with(tail)) << text << "\n---\n" << *edited;
+        const std::string head_left = left.substr(0, left.size() - tail.size());
+        ASSERT_TRUE(head.starts_with(head_left)) << text << "\n---\n" << *edited;
+        const auto member = std::ranges::find_if(parent.members, [&](const auto& m) { return &m.second == &at; });
+        const std::string gone = member == parent.members.end() ? "" : bare(serialize_string(member->first)) + ":";
+        EXPECT_TRUE(gone.empty() ? head_left == head : head.substr(head_left.size()).starts_with(gone)) << text << "\n---\n" << *edited;
       }
-      case 1: {
-        const Node& at = *find_value(before, place);
-        if (at.kind != Kind::array && at.kind != Kind::object) continue;
-        edited = set_value(text, "f", place + (at.kind == Kind::array ? "/-" : "/new~1key"), put);
-        ASSERT_TRUE(edited) << edited.error().message << "\n" << text;
-        if (at.kind == Kind::array)
-          found(tree, place)->items.push_back(value);
-        else
-          found(tree, place)->members.emplace_back("new/key", value);
-        // The text of the container with an inserted value.
-        EXPECT_EQ(edited->substr(0, at.begin), text.substr(0, at.begin));
-        EXPECT_TRUE(edited->ends_with(text.substr(at.end - 1)));
-        const std::size_t there = edited->find(put, at.begin);
-        ASSERT_NE(there, std::string::npos);
-        ++adds;
-        break;
-      }
-      default: {
-        const Node& at = *find_value(before, place);
-        const Node& parent = *find_value(before, place.substr(0, place.rfind('/')));
-        edited = remove_value(text, "f", place);
-        ASSERT_TRUE(edited) << edited.error().message << "\n" << text;
-        erase(tree, place);
-        EXPECT_EQ(edited->substr(0, parent.begin), text.substr(0, parent.begin));
-        EXPECT_TRUE(edited->ends_with(text.substr(parent.end)));
-        if (parent.items.size() != 1) {
-          // Only the member is removed, with blanks and commas.
-          const std::string left = bare(*edited), tail = bare(text.substr(at.end)), head = bare(text.substr(0, at.begin));
-          ASSERT_TRUE(left.ends_with(tail)) << text << "\n---\n" << *edited;
-          const std::string head_left = left.substr(0, left.size() - tail.size());
-          ASSERT_TRUE(head.starts_with(head_left)) << text << "\n---\n" << *edited;
-          const auto key = [&](const auto& m) { return &m.second == &at; };
-          const auto member = std::find_if(parent.members.begin(), parent.members.end(), key);
-          const std::string gone = member == parent.members.end() ? "" : bare(serialize_string(member->first)) + ":";
-          EXPECT_TRUE(gone.empty() ? head_left == head : head.substr(head_left.size()).starts_with(gone)) << text << "\n---\n" << *edited;
-        }
-        ++removals;
-      }
+      ++removals;
     }
     const auto after = parse(*edited, "f");
     ASSERT_TRUE(after) << after.error().message << "\n" << *edited;
@@ -378,5 +324,4 @@ TEST_P(JsonLayout, EditsOfTheTextEqualEditsOfTheTree) {
   EXPECT_GT(removals, 300);
 }
 
-}  // namespace json_edit_test
-}  // namespace catena::json
+}  // namespace catena::json::json_edit_test

@@ -5,8 +5,9 @@
 
 #include <limits>
 
-namespace catena {
-namespace memory_limit_test {
+#include "tests/support/results.h"
+
+namespace catena::memory_limit_test {
 
 class MemoryLimit : public testing::Test {
  protected:
@@ -38,9 +39,7 @@ TEST_F(MemoryLimit, ReservationsReduceTheAvailableMemory) {
 
 TEST_F(MemoryLimit, TheErrorMessageHasNeededAndAllowedMemory) {
   set_memory_limit(2000000);
-  const Outcome outcome = check_memory_available("a.raw: the grid of 3 x 4 x 5 voxels", 2000001);
-  ASSERT_FALSE(outcome);
-  EXPECT_EQ(outcome.error().message,
+  EXPECT_EQ(test::message_of(check_memory_available("a.raw: the grid of 3 x 4 x 5 voxels", 2000001)),
             "a.raw: the grid of 3 x 4 x 5 voxels needs 3 MB of memory, expected at most 2 MB (--memory MB allows more)");
   EXPECT_TRUE(check_memory_available("it", 2000000));
 }
@@ -53,5 +52,4 @@ TEST_F(MemoryLimit, SmallTextsAreNeverRefused) {
   EXPECT_FALSE(check_text_memory_available("it", 1000001));
 }
 
-}  // namespace memory_limit_test
-}  // namespace catena
+}  // namespace catena::memory_limit_test

@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <random>
 
-namespace catena {
-namespace natural_sort_test {
+namespace catena::natural_sort_test {
 
 TEST(NameOrder, NumbersWithDecimalsSignsAndExponentsCompareAsNumbers) {
   const std::vector<std::vector<std::string>> series{
@@ -40,5 +39,4 @@ TEST(NameOrder, NumbersWithDecimalsSignsAndExponentsCompareAsNumbers) {
   }
 }
 
-}  // namespace natural_sort_test
-}  // namespace catena
+}  // namespace catena::natural_sort_test

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "engine/base/output_file.h"
 
-#include <gtest/gtest.h>
-
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -15,10 +14,10 @@
 #include <filesystem>
 
 #include "engine/base/folder_lock.h"
+#include "tests/support/results.h"
 #include "tests/support/support.h"
 
-namespace catena {
-namespace output_file_test {
+namespace catena::output_file_test {
 
 namespace fs = std::filesystem;
 
@@ -44,9 +43,8 @@ TEST(OutputFile, IsWrittenAtomically) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "a.txt";
   {
-    auto file = OutputFile::open(path);
-    ASSERT_TRUE(file);
-    file->write("half");
+    auto file = test::value_of(OutputFile::open(path));
+    file.write("half");
     EXPECT_FALSE(test::exists(path));
   }
   EXPECT_EQ(files_in(folder.path()), 0u);
@@ -85,8 +83,8 @@ TEST(OutputFile, OnlyTemporariesOfEndedProcessesAreRemoved) {
   // A number alone is no temporary name of this program: `split` makes such names.
   const std::string number = path + ".part" + dead, ours = path + ".part" + dead + "-0123456789ab", longer = ours + "c",
                     capitals = path + ".part" + dead + "-0123456789AB", folder_of_numbers = number + "0";
-  const std::string locked = path + ".part" + dead + "-ba9876543210", others = (folder / "b.txt") + ".part" + dead,
-                    words = path + ".partition", alive = path + ".part" + std::to_string(::getppid());
+  const std::string locked = path + ".part" + dead + "-ba9876543210",  // another machine writes it
+      others = (folder / "b.txt") + ".part" + dead, words = path + ".partition", alive = path + ".part" + std::to_string(::getppid());
   for (const std::string& name : {number, ours, longer, capitals, locked, others, words, alive}) test::write_file(name, "x");
   fs::create_directory(folder_of_numbers);
   test::write_file(folder_of_numbers + "/inside", "x");
@@ -94,29 +92,24 @@ TEST(OutputFile, OnlyTemporariesOfEndedProcessesAreRemoved) {
   ASSERT_EQ(::flock(lock, LOCK_EX | LOCK_NB), 0);
   ASSERT_TRUE(write_to(path, "new"));
   EXPECT_FALSE(test::exists(ours));
-  for (const std::string& name : {number, longer, capitals, folder_of_numbers + "/inside"}) EXPECT_TRUE(test::exists(name)) << name;
-  EXPECT_TRUE(test::exists(locked)) << "another machine writes it";
-  EXPECT_TRUE(test::exists(others));
-  EXPECT_TRUE(test::exists(words));
-  EXPECT_TRUE(test::exists(alive));
+  for (const std::string& name : {number, longer, capitals, folder_of_numbers + "/inside", locked, others, words, alive})
+    EXPECT_TRUE(test::exists(name)) << name;
   ::close(lock);
 }
 
 TEST(OutputFile, TemporaryFoldersAreRemovedUnlessLockedOrRecent) {
   const test::TemporaryFolder folder;
-  const auto make = [&](pid_t pid, const char* digits, std::time_t age_s) {
-    const std::string path = (folder / "tables.part") + std::to_string(pid) + "-" + digits;
+  const auto make = [&](pid_t pid, int number, std::time_t age_s) {
+    const std::string path = (folder / "tables.part") + std::to_string(pid) + "-00000000000" + std::to_string(number);
     fs::create_directory(path);
     test::write_file(path + "/plot0.svg", "<svg");
     const timespec then{std::time(nullptr) - age_s, 0}, both[2] = {then, then};
     EXPECT_EQ(::utimensat(AT_FDCWD, path.c_str(), both, 0), 0);
     return path;
   };
-  const std::string dead = make(ended_process(), "000000000001", 0), mine = make(::getpid(), "000000000002", 3600),
-                    alive = make(::getppid(), "000000000003", 3600), held = make(::getppid(), "000000000004", 3600),
-                    young = make(::getppid(), "000000000005", 0);
-  const auto lock = FolderLock::acquire(held);
-  ASSERT_TRUE(lock);
+  const std::string dead = make(ended_process(), 1, 0), mine = make(::getpid(), 2, 3600), alive = make(::getppid(), 3, 3600),
+                    held = make(::getppid(), 4, 3600), young = make(::getppid(), 5, 0);
+  const auto lock = test::value_of(FolderLock::acquire(held));
   remove_stale_temporaries(folder / "tables");
   for (const std::string& path : {dead, mine, alive}) EXPECT_FALSE(test::exists(path)) << path;
   for (const std::string& path : {held, young}) EXPECT_TRUE(test::exists(path + "/plot0.svg")) << path;
@@ -146,28 +139,23 @@ TEST(OutputFile, AKilledProcessKeepsTheOldFileAndItsTemporariesAreRemovedLater) 
 TEST(OutputFile, AFailedRenameKeepsTheOldFile) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "a";
-  auto file = OutputFile::open(path);
-  ASSERT_TRUE(file);
-  file->write("new");
+  auto file = test::value_of(OutputFile::open(path));
+  file.write("new");
   fs::create_directories(path + "/inside");
-  const Outcome done = file->commit();
-  ASSERT_FALSE(done);
-  EXPECT_NE(done.error().message.find(path + ": cannot write: "), std::string::npos) << done.error().message;
+  const Outcome done = file.commit();
+  EXPECT_TRUE(test::fails(done, path + ": cannot write: "));
   EXPECT_TRUE(fs::is_directory(path + "/inside"));
 }
 
 TEST(OutputFile, AFolderThatDisappearsIsOneErrorLine) {
   const test::TemporaryFolder folder;
-  const std::string inner = folder / "inner", path = inner + "/a.txt";
-  fs::create_directory(inner);
-  auto file = OutputFile::open(path);
-  ASSERT_TRUE(file);
-  file->write("new");
-  fs::remove_all(inner);
-  const Outcome done = file->commit();
-  ASSERT_FALSE(done);
-  EXPECT_EQ(done.error().message, path + ": cannot write: No such file or directory");
-  EXPECT_EQ(OutputFile::open(path).error().message, path + ": cannot write: No such file or directory");
+  const std::string path = folder / "inner/a.txt";
+  fs::create_directory(folder / "inner");
+  auto file = test::value_of(OutputFile::open(path));
+  file.write("new");
+  fs::remove_all(folder / "inner");
+  for (const std::string& message : {test::message_of(file.commit()), test::message_of(OutputFile::open(path))})
+    EXPECT_EQ(message, path + ": cannot write: No such file or directory");
 }
 
 TEST(OutputFile, AFullDiskKeepsTheOldFile) {
@@ -196,13 +184,10 @@ TEST(OutputFile, AFullDiskKeepsTheOldFile) {
 
 TEST(OutputFile, AReplacedFileKeepsItsPermissions) {
   const test::TemporaryFolder folder;
-  const std::string path = folder / "a.txt";
-  test::write_file(path, "old");
-  ASSERT_EQ(::chmod(path.c_str(), 0640), 0);
-  ASSERT_TRUE(write_to(path, "new"));
-  struct stat about {};
-  ASSERT_EQ(::stat(path.c_str(), &about), 0);
-  EXPECT_EQ(about.st_mode & 0777u, 0640u);
+  test::write_file(folder / "a.txt", "old");
+  fs::permissions(folder / "a.txt", fs::perms{0640});
+  ASSERT_TRUE(write_to(folder / "a.txt", "new"));
+  EXPECT_EQ(fs::status(folder / "a.txt").permissions(), fs::perms{0640});
 }
 
 TEST(OutputFile, ASymbolicLinkStaysALink) {
@@ -221,5 +206,58 @@ TEST(OutputFile, ANameOfMaximumLengthCanBeWritten) {
   EXPECT_EQ(test::read_file(path), "new");
 }
 
-}  // namespace output_file_test
-}  // namespace catena
+class OutputCheck : public testing::Test {
+ protected:
+  void SetUp() override {
+    test::write_file(at("in.csv"), "x");
+    fs::create_directory(at("sub"));
+    fs::create_directory_symlink("sub", at("other"));
+    fs::create_symlink("in.csv", at("soft.csv"));
+    fs::create_hard_link(at("in.csv"), at("hard.csv"));
+    fs::create_symlink("new.csv", at("dangling.csv"));
+    fs::create_symlink("dangling.csv", at("twice.csv"));
+    fs::create_symlink("loop.csv", at("loop.csv"));
+  }
+  std::string at(const std::string& name) const { return folder_ / name; }
+  bool same(const std::string& a, const std::string& b) const {
+    EXPECT_EQ(is_same_file(at(a), at(b)), is_same_file(at(b), at(a)));
+    return is_same_file(at(a), at(b));
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(OutputCheck, DifferentNamesOfAFileAreRecognized) {
+  for (const char* name : {"in.csv", "./in.csv", "sub/../in.csv", "soft.csv", "hard.csv", "other/../in.csv", "sub/.././soft.csv"})
+    EXPECT_TRUE(same(name, "in.csv")) << name;
+  for (const char* name : {"IN.csv", "In.csv", "in.csv.part1", "new.csv", "sub"}) EXPECT_FALSE(same(name, "in.csv")) << name;
+}
+
+TEST_F(OutputCheck, DifferentNamesOfANonexistentFileAreRecognized) {
+  for (const char* name : {"new.csv", "./new.csv", "sub/../new.csv", "dangling.csv", "twice.csv"})
+    EXPECT_TRUE(same(name, "new.csv")) << name;
+  EXPECT_TRUE(same("sub/new.csv", "other/new.csv"));
+  EXPECT_TRUE(same("loop.csv", "loop.csv"));
+  EXPECT_FALSE(same("New.csv", "new.csv"));
+  EXPECT_FALSE(same("sub/new.csv", "new.csv"));
+  EXPECT_FALSE(same("nowhere/a", "nowhere/b"));
+  EXPECT_TRUE(same("nowhere/./a", "nowhere/a"));
+}
+
+TEST_F(OutputCheck, DevicesAndPipesNeverConflict) {
+  ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
+  EXPECT_FALSE(same("pipe", "pipe"));
+  EXPECT_FALSE(is_same_file("/dev/null", "/dev/null"));
+  EXPECT_TRUE(check_outputs({{"-o", "/dev/null"}, {"--stats", "/dev/null"}}, {"/dev/null"}));
+}
+
+TEST_F(OutputCheck, ConflictsAreOneErrorLine) {
+  const auto why = [&](const std::vector<PlannedOutput>& outputs) { return test::message_of(check_outputs(outputs, {at("in.csv")})); };
+  EXPECT_EQ(why({{"-o", at("a")}, {"--stats", ""}, {"--record", at("b")}}), "");
+  EXPECT_EQ(why({{"-o", at("soft.csv")}}), at("soft.csv") + ": is also an input: expected another name for the output");
+  EXPECT_EQ(why({{"-o", at("sub/../a")}, {"--stats", at("a")}}), at("a") + ": -o and --stats name one file: expected two");
+  EXPECT_EQ(why({{"-o", at("a")}, {"-o", at("a")}}), at("a") + ": -o and -o name one file: expected one a frame");
+  EXPECT_EQ(why({{"-o", at("sub")}}), at("sub") + ": is a folder: expected a file name to write to");
+  EXPECT_EQ(why({{"-o", at("none/a")}}), at("none/a") + ": the folder " + at("none") + " does not exist");
+}
+
+}  // namespace catena::output_file_test

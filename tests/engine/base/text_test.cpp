@@ -2,7 +2,6 @@
 #include "engine/base/text.h"
 
 #include <gtest/gtest.h>
-
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -11,10 +10,10 @@
 
 #include <filesystem>
 
+#include "tests/support/results.h"
 #include "tests/support/support.h"
 
-namespace catena {
-namespace text_test {
+namespace catena::text_test {
 
 std::uint64_t peak_bytes() {
   rusage used{};
@@ -38,7 +37,7 @@ TEST(ReadText, ReadsRegularFilesAndLinksToThem) {
   test::write_file(folder / "empty", "");
   EXPECT_EQ(read_text_file(folder / "empty", "a list").value(), "");
   // A reported size of 0 is not trusted.
-  EXPECT_NE(read_text_file("/proc/self/status", "a list").value().find("Pid:"), std::string::npos);
+  EXPECT_TRUE(test::has(read_text_file("/proc/self/status", "a list").value(), "Pid:"));
 }
 
 TEST(ReadText, RefusesPipesDevicesSocketsAndFoldersWithoutBlocking) {
@@ -50,12 +49,13 @@ TEST(ReadText, RefusesPipesDevicesSocketsAndFoldersWithoutBlocking) {
   address.sun_family = AF_UNIX;
   (folder / "socket").copy(address.sun_path, sizeof address.sun_path - 1);
   ASSERT_EQ(::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-  EXPECT_EQ(why_not(folder / "pipe"), (folder / "pipe") + ": is a pipe; a list was expected");
-  EXPECT_EQ(why_not(folder / "zero"), (folder / "zero") + ": is a device; a list was expected");
-  EXPECT_EQ(why_not("/dev/zero"), "/dev/zero: is a device; a list was expected");
-  EXPECT_EQ(why_not(folder / "socket"), (folder / "socket") + ": is a socket or a device; a list was expected");
-  EXPECT_EQ(why_not(folder.path()), folder.path() + ": is a folder; a list was expected");
-  EXPECT_EQ(why_not(folder / "none"), (folder / "none") + ": cannot be read: No such file or directory; a list was expected");
+  for (const auto& [path, why] : {std::pair{folder / "pipe", "is a pipe"},
+                                  {folder / "zero", "is a device"},
+                                  {"/dev/zero", "is a device"},
+                                  {folder / "socket", "is a socket or a device"},
+                                  {folder.path(), "is a folder"},
+                                  {folder / "none", "cannot be read: No such file or directory"}})
+    EXPECT_EQ(why_not(path), path + ": " + why + "; a list was expected");
   ::close(socket);
 }
 
@@ -73,5 +73,35 @@ TEST(ReadText, ASizeBeyondTheLimitIsRefusedBeforeAllocation) {
   EXPECT_EQ(why_not(folder / "short", 9), (folder / "short") + ": is 0 KiB large; a list of at most 0 KiB was expected");
 }
 
-}  // namespace text_test
-}  // namespace catena
+TEST(Printable, KeepsReadableText) {
+  for (const char* text : {"", "density", "v [m/s]", "Druck \xc3\xa4\xc3\xb6", "\xe6\xb8\xa9\xe5\xba\xa6", "\xf0\x9f\xab\x80"})
+    EXPECT_EQ(sanitize_for_terminal(text), text);
+}
+
+TEST(Printable, ReplacesControlCharacters) {
+  EXPECT_EQ(sanitize_for_terminal("a\033[31mb"), "a?[31mb");
+  EXPECT_EQ(sanitize_for_terminal("\033]0;title\007"), "?]0;title?");
+  EXPECT_EQ(sanitize_for_terminal("a\r\nb\tc\x7f"), "a??b?c?");
+  EXPECT_EQ(sanitize_for_terminal(std::string_view("a\0b", 3)), "a?b");
+  // The same escape sequences as C1 control characters, and marks of bidirectional text.
+  EXPECT_EQ(sanitize_for_terminal("\xc2\x9b"
+                                  "31m"),
+            "?31m");
+  EXPECT_EQ(sanitize_for_terminal("a\xe2\x80\xae"
+                                  "b"),
+            "a?b");
+  EXPECT_EQ(sanitize_for_terminal("\xe2\x80\xa8"), "?");
+}
+
+TEST(Printable, ReplacesInvalidUtf8) {
+  EXPECT_EQ(sanitize_for_terminal("\x9b"
+                                  "31m"),
+            "?31m");
+  EXPECT_EQ(sanitize_for_terminal("a\xc3"), "a?");
+  EXPECT_EQ(sanitize_for_terminal("\xc0\x9b"), "??");            // an overlong encoding of an escape character
+  EXPECT_EQ(sanitize_for_terminal("\xed\xa0\x80"), "???");       // a lone surrogate
+  EXPECT_EQ(sanitize_for_terminal("\xf4\x90\x80\x80"), "????");  // beyond the last code point
+  EXPECT_EQ(sanitize_for_terminal("\xff\xfe"), "??");
+}
+
+}  // namespace catena::text_test

@@ -6,18 +6,20 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/base/hash.h"
+#include "engine/base/random.h"
 #include "tests/engine/field/field_helpers.h"
 
-namespace catena::field {
-namespace analytic_test {
+namespace catena::field::analytic_test {
 
 using test::Random;
 
-VectorFieldPtr vector(std::string_view name, double scale = 1) {
-  return make_analytic(name, {.scale = scale, .direction = Vec3(1, 0, 0), .part = {}}).value().vector;
+Result<AnyField> made(std::string_view name, double scale = 1, std::string part = {}, const Vec3& direction = Vec3(1, 0, 0)) {
+  return make_analytic(name, {.scale = scale, .direction = direction, .part = std::move(part)});
 }
+VectorFieldPtr vector(std::string_view name, double scale = 1) { return made(name, scale).value().vector; }
 ScalarFieldPtr scalar(std::string_view name, double scale = 1, std::string part = {}) {
-  return make_analytic(name, {.scale = scale, .direction = Vec3(1, 0, 0), .part = std::move(part)}).value().scalar;
+  return made(name, scale, std::move(part)).value().scalar;
 }
 Vec3 at(const VectorFieldPtr& f, const Vec3& p) {
   Cursor c;
@@ -32,11 +34,7 @@ double at(const ScalarFieldPtr& f, const Vec3& p) {
 double divergence(const VectorFieldPtr& f, const Vec3& p) {
   constexpr double h = 1e-5;
   double sum = 0;
-  for (int a = 0; a < 3; ++a) {
-    Vec3 e(0.0);
-    e[a] = h;
-    sum += (at(f, p + e)[a] - at(f, p - e)[a]) / (2 * h);
-  }
+  for (int a = 0; a < 3; ++a) sum += (at(f, p + test::along(a, h))[a] - at(f, p - test::along(a, h))[a]) / (2 * h);
   return sum;
 }
 
@@ -46,9 +44,7 @@ void expect_gradient(const ScalarFieldPtr& f, const Vec3& p, double tolerance) {
   const ScalarSample s = f->sample(p, c);
   EXPECT_TRUE(s.inside);
   for (int a = 0; a < 3; ++a) {
-    Vec3 e(0.0);
-    e[a] = h;
-    const double difference = (at(f, p + e) - at(f, p - e)) / (2 * h);
+    const double difference = (at(f, p + test::along(a, h)) - at(f, p - test::along(a, h))) / (2 * h);
     EXPECT_NEAR(s.gradient[a], difference, tolerance * std::max(1.0, norm(s.gradient)))
         << f->name() << " at " << p.x << " " << p.y << " " << p.z;
   }
@@ -78,6 +74,10 @@ TEST(AnalyticScalars, HaveKnownValues) {
   EXPECT_EQ(at(scalar("gaussian"), Vec3(0.0)), 1);
   EXPECT_NEAR(at(scalar("gaussian"), Vec3(0.5, 0, 0)), std::exp(-0.5), 1e-15);
   EXPECT_NEAR(at(scalar("tanh"), Vec3(0, 0, 0.05)), std::tanh(1.0), 1e-15);
+  Cursor c;
+  const ScalarSample centre = scalar("sphere")->sample(Vec3(0.0), c);
+  EXPECT_TRUE(centre.inside);
+  EXPECT_EQ(centre.gradient, Vec3(0.0));
 }
 
 TEST(AnalyticScalars, RangesAreValidAndFollowTheScale) {
@@ -98,13 +98,6 @@ TEST(AnalyticScalars, RangesAreValidAndFollowTheScale) {
   EXPECT_EQ(scalar("left-ventricle", 1, "transmural")->min_value(), at(scalar("left-ventricle", 1, "transmural"), Vec3(0.0)));
 }
 
-TEST(AnalyticScalars, TheCentreOfTheSphereHasNoGradient) {
-  Cursor c;
-  const ScalarSample s = scalar("sphere")->sample(Vec3(0.0), c);
-  EXPECT_TRUE(s.inside);
-  EXPECT_EQ(s.gradient, Vec3(0.0));
-}
-
 TEST(AnalyticVectors, HaveKnownValues) {
   const Vec3 p(0.3, -0.4, 0.7);
   EXPECT_EQ(at(vector("circle"), p), Vec3(0.4, 0.3, 0));
@@ -120,11 +113,7 @@ TEST(AnalyticVectors, HaveKnownValues) {
   EXPECT_NEAR(norm(at(vector("hill"), Vec3(0, 0, 1))), 0, 1e-15);
   EXPECT_NEAR(norm(at(vector("hill"), Vec3(1e6, 0, 0)) - Vec3(0, 0, -1)), 0, 1e-12);
   EXPECT_NEAR(norm(at(vector("abc"), Vec3(0.0)) - Vec3(1, std::sqrt(3.0), std::sqrt(2.0))), 0, 1e-15);
-}
-
-TEST(AnalyticVectors, UniformTakesADirection) {
-  const auto f = make_analytic("uniform", {.scale = 3, .direction = Vec3(0, 0, -2), .part = {}}).value().vector;
-  EXPECT_EQ(at(f, Vec3(5, 6, 7)), Vec3(0, 0, -3));
+  EXPECT_EQ(at(made("uniform", 3, {}, Vec3(0, 0, -2)).value().vector, Vec3(5, 6, 7)), Vec3(0, 0, -3));
 }
 
 TEST(AnalyticVectors, FlowsAreDivergenceFree) {
@@ -158,7 +147,7 @@ TEST(AnalyticVectors, AreCoherentAsLineFields) {
 
 TEST(Analytic, ReportsWhyAPositionIsOutside) {
   Cursor c;
-  const AnyField fibre = make_analytic("left-ventricle", {1, Vec3(1, 0, 0), "fibre"}).value();
+  const AnyField fibre = made("left-ventricle", 1, "fibre").value();
   EXPECT_EQ(fibre.vector->status_outside(Vec3(1.9, 1.9, 1.9), c), SampleStatus::masked);
   EXPECT_EQ(fibre.vector->status_outside(Vec3(std::nan("")), c), SampleStatus::not_finite);
   EXPECT_EQ(vector("circle")->status_outside(Vec3(50.0), c), SampleStatus::ok) << "a formula has no box";
@@ -191,15 +180,15 @@ TEST(Analytic, NamesDomainsAndErrors) {
   EXPECT_EQ(analytic_parts("left-ventricle").size(), 3u);
   EXPECT_EQ(analytic_parts("circle"), std::vector<std::string_view>{"circle"});
   EXPECT_FALSE(make_analytic("spere"));
-  EXPECT_FALSE(make_analytic("sphere", {.scale = 0, .direction = Vec3(1, 0, 0), .part = {}}));
-  EXPECT_FALSE(make_analytic("sphere", {.scale = std::nan(""), .direction = Vec3(1, 0, 0), .part = {}}));
-  EXPECT_FALSE(make_analytic("uniform", {.scale = 1, .direction = Vec3(0.0), .part = {}}));
-  EXPECT_FALSE(make_analytic("left-ventricle", {.scale = 1, .direction = Vec3(1, 0, 0), .part = "apex"}));
-  EXPECT_FALSE(make_analytic("sphere", {.scale = 1, .direction = Vec3(1, 0, 0), .part = "fibre"}));
+  EXPECT_FALSE(made("sphere", 0));
+  EXPECT_FALSE(made("sphere", std::nan("")));
+  EXPECT_FALSE(made("uniform", 1, {}, Vec3(0.0)));
+  EXPECT_FALSE(made("left-ventricle", 1, "apex"));
+  EXPECT_FALSE(made("sphere", 1, "fibre"));
 }
 
 TEST(LeftVentricle, FibresRotateWithDepthInTheWall) {
-  const auto fibre = make_analytic("left-ventricle", {.scale = 1, .direction = Vec3(1, 0, 0), .part = "fibre"}).value().vector;
+  const auto fibre = made("left-ventricle", 1, "fibre").value().vector;
   const auto depth = scalar("left-ventricle", 1, "transmural"), density = scalar("left-ventricle");
   Random random(6);
   Cursor c;
@@ -229,5 +218,69 @@ TEST(LeftVentricle, FibresRotateWithDepthInTheWall) {
   EXPECT_GT(tried, 100);
 }
 
-}  // namespace analytic_test
-}  // namespace catena::field
+std::shared_ptr<const VectorField> vortices(int seed, int dimensions, const Vec3& center = Vec3(0.0)) {
+  AnalyticParameters parameters;
+  parameters.seed = seed;
+  parameters.dimensions = dimensions;
+  parameters.center = center;
+  return make_analytic("vortices", parameters).value().vector;
+}
+
+Vec3 at(const VectorField& field, const Vec3& p) {
+  Cursor cursor;
+  return field.sample(p, cursor).value;
+}
+
+TEST(Vortices, AreDivergenceFree) {
+  catena::Random random(3);
+  constexpr double h = 1e-4;
+  for (const int dimensions : {2, 3})
+    for (int seed = 0; seed < 20; ++seed) {
+      const auto field = vortices(seed, dimensions);
+      double largest = 0;
+      for (int k = 0; k < 50; ++k) {
+        const Vec3 p(random.between(-2, 2), random.between(-2, 2), random.between(-2, 2));
+        double divergence = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+          Vec3 d(0.0);
+          d[axis] = h;
+          const Vec3 slope = (at(*field, p + d) - at(*field, p - d)) / (2 * h);
+          divergence += slope[axis];
+          largest = std::max(largest, norm(slope));
+        }
+        ASSERT_NEAR(divergence, 0, 1e-5);
+      }
+      EXPECT_GT(largest, 0.5) << "the slopes are not small";
+    }
+}
+
+TEST(Vortices, TwoDimensionalVorticesArePlanar) {
+  const auto field = vortices(4, 2);
+  for (const double z : {-1.0, 0.0, 3.0}) {
+    EXPECT_EQ(at(*field, Vec3(0.3, -0.7, z)), at(*field, Vec3(0.3, -0.7, 0)));
+    EXPECT_EQ(at(*field, Vec3(0.3, -0.7, z)).z, 0);
+  }
+}
+
+TEST(Vortices, DependOnTheSeedAndTheCenter) {
+  const Vec3 p(0.25, 0.5, -0.125), center(1, -2, 0.5);
+  EXPECT_NE(at(*vortices(1, 3), p), at(*vortices(2, 3), p));
+  EXPECT_EQ(at(*vortices(1, 3, center), p + center), at(*vortices(1, 3), p));
+  EXPECT_EQ(vortices(1, 3, center)->world_bounds().center(), center);
+  AnalyticParameters parameters;
+  parameters.dimensions = 4;
+  EXPECT_FALSE(make_analytic("vortices", parameters));
+}
+
+TEST(Vortices, AreBitIdenticalOnEveryMachine) {
+  Fnv1a hash;
+  for (const int dimensions : {2, 3})
+    for (int seed = 0; seed < 10; ++seed)
+      for (int k = 0; k < 10; ++k) {
+        const Vec3 v = at(*vortices(seed, dimensions), Vec3(0.3 * k - 1.5, 0.1 * k, 1 - 0.2 * k));
+        hash.add(v.x), hash.add(v.y), hash.add(v.z);
+      }
+  EXPECT_EQ(hash.value, 0xbcc56d44ae66cd55u) << std::hex << hash.value;
+}
+
+}  // namespace catena::field::analytic_test

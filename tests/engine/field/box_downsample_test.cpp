@@ -5,27 +5,17 @@
 
 #include <cmath>
 
-namespace catena::field {
-namespace box_downsample_test {
+#include "tests/engine/field/field_helpers.h"
 
-std::shared_ptr<const ScalarGrid> grid_of(const Index3& n, const std::function<double(int, int, int)>& f, const Mapping& mapping = {},
-                                          const std::function<bool(int, int, int)>& valid = nullptr) {
-  std::vector<float> values;
-  std::vector<std::uint8_t> mask;
-  for (int z = 0; z < n.z; ++z)
-    for (int y = 0; y < n.y; ++y)
-      for (int x = 0; x < n.x; ++x) {
-        values.push_back(float(f(x, y, z)));
-        if (valid) mask.push_back(valid(x, y, z));
-      }
-  return make_scalar_grid("g", mapping, n, values, mask);
+namespace catena::field::box_downsample_test {
+
+template <class F>
+std::shared_ptr<const ScalarGrid> grid_of(const Index3& n, const F& f, const Mapping& mapping = {},
+                                          const std::vector<std::uint8_t>& valid = {}) {
+  return make_scalar_grid("g", mapping, n, test::values_of(n, f), valid);
 }
 
-CoarseGrid coarse_of(const ScalarGrid& grid, int factor) {
-  auto coarse = box_downsample(grid, factor);
-  EXPECT_TRUE(coarse) << coarse.error().message;
-  return std::move(*coarse);
-}
+CoarseGrid coarse_of(const ScalarGrid& grid, int factor) { return test::value_of(box_downsample(grid, factor)); }
 
 TEST(BoxDownsample, ALinearFieldIsUnchangedUpToTheFaces) {
   const Mapping mapping = Mapping::from_linear({{0.5, 0.1, 0}, {0, 0.25, 0.05}, {0.02, 0, 1}}, {3, -2, 7});
@@ -88,11 +78,9 @@ TEST(BoxDownsample, ASparseGridStaysSparse) {
 
 TEST(BoxDownsample, OnlyValidVoxelsAreAveraged) {
   // The left half is invalid, with meaningless values; a NaN is on the right.
-  const auto grid = grid_of(
-      {16, 16, 16}, [](int x, int y, int z) { return x < 8                         ? 1e6
-                                                     : x == 12 && y == 4 && z == 4 ? NAN
-                                                                                   : 2.0; }, {},
-      [](int x, int, int) { return x >= 8; });
+  const Index3 n{16, 16, 16};
+  const auto value = [](int x, int y, int z) { return x < 8 ? 1e6 : x == 12 && y == 4 && z == 4 ? NAN : 2.0; };
+  const auto grid = grid_of(n, value, {}, test::values_of<std::uint8_t>(n, [](int x, int, int) { return x >= 8; }));
   const CoarseGrid coarse = coarse_of(*grid, 2);
   Cursor cursor;
   EXPECT_FALSE(coarse.grid->sample({3, 8, 8}, cursor).inside);
@@ -106,5 +94,4 @@ TEST(BoxDownsample, OnlyValidVoxelsAreAveraged) {
       }
 }
 
-}  // namespace box_downsample_test
-}  // namespace catena::field
+}  // namespace catena::field::box_downsample_test

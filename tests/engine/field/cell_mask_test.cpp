@@ -5,12 +5,10 @@
 #include "engine/field/derived/box_downsample.h"
 #include "engine/field/derived/magnitude.h"
 #include "engine/io/volume/downsample.h"
-#include "engine/io/volume/load_field.h"
+#include "tests/engine/field/field_helpers.h"
 #include "tests/fuzz/mutate.h"
-#include "tests/support/support.h"
 
-namespace catena::field {
-namespace cell_mask_test {
+namespace catena::field::cell_mask_test {
 
 struct Made {
   Index3 n{150, 37, 21};  // more than a node of 128 along x
@@ -58,15 +56,11 @@ TEST(CellMask, ACellIsValidIfBothMasksAllowIt) {
 
 TEST(CellMask, AVdbStoresIt) {
   const Made made;
-  const catena::test::TemporaryFolder folder;
-  AnyField field;
-  field.scalar = made.grid();
+  const test::TemporaryFolder folder;
+  const AnyField field{made.grid(), nullptr};
   ASSERT_TRUE(write_vdb(folder / "m.vdb", {{field, "g"}}));
-  LoadRequest request;
-  request.path = folder / "m.vdb";
-  const auto again = load(request);
-  ASSERT_TRUE(again) << again.error().message;
-  expect_cells(made, *again->scalar->grid());
+  LoadRequest request = test::request_for(folder / "m.vdb");
+  expect_cells(made, *test::value_of(load(request)).scalar->grid());
   request.mask_grid = std::nullopt;
   EXPECT_FALSE(load(request)->scalar->grid()->has_mask());
 }
@@ -75,9 +69,8 @@ TEST(CellMask, MagnitudesOfVectorsHaveIt) {
   const Made made;
   std::vector<float> xyz;
   for (const float v : made.values) xyz.insert(xyz.end(), {v, 0, 0});
-  const auto lengths = make_magnitude_grid(*make_vector_grid("g", {}, made.n, xyz, made.valid, made.cells), "lengths");
-  ASSERT_TRUE(lengths) << lengths.error().message;
-  expect_cells(made, **lengths);
+  const auto lengths = test::value_of(make_magnitude_grid(*make_vector_grid("g", {}, made.n, xyz, made.valid, made.cells), "lengths"));
+  expect_cells(made, *lengths);
 }
 
 TEST(CellMask, CoarseCellsAreInvalidIfHalfOfTheFineOnesAre) {
@@ -90,13 +83,10 @@ TEST(CellMask, CoarseCellsAreInvalidIfHalfOfTheFineOnesAre) {
     if (x == 20 || x == 21) cells[i] = 0;
     values[i] = static_cast<float>(x);
   }
-  AnyField field;
-  field.scalar = make_scalar_grid("g", {}, n, values, valid, cells);
-  const auto level = downsample_to_level("g", field, 1, false);
-  ASSERT_TRUE(level) << level.error().message;
-  const auto coarse = box_downsample(*field.scalar->grid(), 2);
-  ASSERT_TRUE(coarse) << coarse.error().message;
-  for (const ScalarGrid* grid : {level->scalar->grid(), coarse->grid.get()}) {
+  const AnyField field{make_scalar_grid("g", {}, n, values, valid, cells), nullptr};
+  const auto level = test::value_of(downsample_to_level("g", field, 1, false));
+  const auto coarse = test::value_of(box_downsample(*field.scalar->grid(), 2));
+  for (const ScalarGrid* grid : {level.scalar->grid(), coarse.grid.get()}) {
     Cursor cursor;
     EXPECT_FALSE(grid->sample({21, 16, 12}, cursor).inside);
     for (const double x : {4.0, 18.0, 24.0, 36.0}) {
@@ -107,5 +97,4 @@ TEST(CellMask, CoarseCellsAreInvalidIfHalfOfTheFineOnesAre) {
   }
 }
 
-}  // namespace cell_mask_test
-}  // namespace catena::field
+}  // namespace catena::field::cell_mask_test

@@ -5,8 +5,7 @@
 
 #include "tests/engine/field/field_helpers.h"
 
-namespace catena::field {
-namespace cell_test {
+namespace catena::field::cell_test {
 
 using test::Random;
 
@@ -67,5 +66,4 @@ TEST(VectorCell, InterpolatesEachComponent) {
   for (int a = 0; a < 3; ++a) EXPECT_NEAR(value[a], parts[a].value(f), 1e-15);
 }
 
-}  // namespace cell_test
-}  // namespace catena::field
+}  // namespace catena::field::cell_test

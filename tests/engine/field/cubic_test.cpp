@@ -6,16 +6,13 @@
 #include <array>
 #include <cstring>
 #include <limits>
-#include <optional>
 
 #include "engine/field/analytic/analytic.h"
 #include "tests/engine/field/field_helpers.h"
 
-namespace catena::field {
-namespace cubic_test {
+namespace catena::field::cubic_test {
 
-using test::Block;
-using test::Random;
+using namespace test;
 using Real = long double;
 
 /// The reference: a block with holes, with cubic interpolation.
@@ -100,11 +97,7 @@ class Reference {
   Real lowest_ = std::numeric_limits<Real>::max(), highest_ = std::numeric_limits<Real>::lowest();
 };
 
-std::shared_ptr<const ScalarGrid> smooth(const std::shared_ptr<const ScalarGrid>& grid) {
-  auto made = grid->as_cubic();
-  EXPECT_TRUE(made) << (made ? "" : made.error().message);
-  return made ? *made : nullptr;
-}
+std::shared_ptr<const ScalarGrid> smooth(const std::shared_ptr<const ScalarGrid>& grid) { return value_of(grid->as_cubic()); }
 
 /// Vectors whose components are shifted copies of one block.
 std::vector<float> vectors_of(const Block& block) {
@@ -115,7 +108,7 @@ std::vector<float> vectors_of(const Block& block) {
 }
 
 TEST(CubicGrid, AgreesWithTheReferenceWithHolesAndAnyMapping) {
-  Block block = test::random_block({19, 11, 26}, 5);
+  Block block = random_block({19, 11, 26}, 5);
   Random random(6);
   std::vector<std::uint8_t> valid(block.values.size(), 1);
   for (auto& v : valid) v = random.uniform(0, 1) < 0.96;
@@ -123,7 +116,7 @@ TEST(CubicGrid, AgreesWithTheReferenceWithHolesAndAnyMapping) {
   for (const bool masked : {false, true}) {
     const std::vector<std::uint8_t> mask = masked ? valid : std::vector<std::uint8_t>{};
     const Reference reference(block, mask);
-    for (const Mapping& mapping : test::mappings()) {
+    for (const Mapping& mapping : mappings()) {
       const auto linear = make_scalar_grid("g", mapping, block.size, block.values, mask);
       const auto grid = smooth(linear);
       Cursor cursor, of_linear;
@@ -143,7 +136,7 @@ TEST(CubicGrid, AgreesWithTheReferenceWithHolesAndAnyMapping) {
 }
 
 TEST(CubicGrid, VectorsAreInterpolatedPerComponent) {
-  const Block block = test::random_block({9, 13, 8}, 8);
+  const Block block = random_block({9, 13, 8}, 8);
   const std::vector<float> xyz = vectors_of(block);
   const auto grid = *make_vector_grid("v", {}, block.size, xyz)->as_cubic();
   Cursor cursor, other;
@@ -160,8 +153,7 @@ TEST(CubicGrid, VectorsAreInterpolatedPerComponent) {
 }
 
 TEST(CubicGrid, ValueAndGradientAreContinuousAndConsistent) {
-  const Block block = test::random_block({17, 17, 17}, 9);
-  const auto grid = smooth(make_scalar_grid("g", {}, block.size, block.values));
+  const auto grid = smooth(random_grid({17, 17, 17}, 9));
   Cursor cursor;
   Random random(10);
   for (int trial = 0; trial < 500; ++trial) {
@@ -174,8 +166,7 @@ TEST(CubicGrid, ValueAndGradientAreContinuousAndConsistent) {
     ASSERT_NEAR(a.value, b.value, 1e-7);
     for (int k = 0; k < 3; ++k) ASSERT_NEAR(a.gradient[k], b.gradient[k], 1e-6);
     for (int k = 0; k < 3; ++k) {
-      Vec3 step(0.0);
-      step[k] = 1e-5;
+      const Vec3 step = along(k, 1e-5);
       const double slope = (grid->sample(p + step, cursor).value - grid->sample(p - step, cursor).value) / 2e-5;
       ASSERT_NEAR(grid->sample(p, cursor).gradient[k], slope, 1e-3) << "the second derivative jumps there";
     }
@@ -184,10 +175,7 @@ TEST(CubicGrid, ValueAndGradientAreContinuousAndConsistent) {
 
 TEST(CubicGrid, ReproducesQuadraticsUpToTheBorderAndAcrossHoles) {
   const auto f = [](double x, double y, double z) { return 3 + x * (2 - 0.25 * x) + y * (z + 0.125 * y) - 0.5 * z * x; };
-  Block block{{12, 12, 12}, {}};
-  for (int z = 0; z < 12; ++z)
-    for (int y = 0; y < 12; ++y)
-      for (int x = 0; x < 12; ++x) block.values.push_back(static_cast<float>(f(x, y, z)));
+  const Block block{{12, 12, 12}, values_of({12, 12, 12}, f)};
   std::vector<std::uint8_t> valid(block.values.size(), 1);
   for (int n : {5 + 12 * (5 + 12 * 5), 6 + 12 * (5 + 12 * 5), 5 + 12 * (6 + 12 * 6), 4 + 12 * (4 + 12 * 7)})  // far from the border
     valid[static_cast<std::size_t>(n)] = 0;
@@ -206,7 +194,7 @@ TEST(CubicGrid, ReproducesQuadraticsUpToTheBorderAndAcrossHoles) {
 }
 
 TEST(CubicGrid, InterpolatesTheSamplesAndConstantsAreFlat) {
-  Block block = test::random_block({10, 10, 10}, 12);
+  Block block = random_block({10, 10, 10}, 12);
   const auto grid = smooth(make_scalar_grid("g", {}, block.size, block.values));
   Cursor cursor;
   for (int z = 0; z < 10; ++z)
@@ -224,7 +212,7 @@ TEST(CubicGrid, InterpolatesTheSamplesAndConstantsAreFlat) {
 
 TEST(CubicGrid, HandlesSingleLayersAndRows) {
   for (const Index3& size : {Index3{7, 9, 1}, Index3{1, 1, 9}, Index3{1, 1, 1}, Index3{2, 2, 2}}) {
-    const Block block = test::random_block(size, 14);
+    const Block block = random_block(size, 14);
     const auto linear = make_scalar_grid("g", {}, size, block.values);
     const auto grid = smooth(linear);
     const Reference reference(block, {});
@@ -236,16 +224,13 @@ TEST(CubicGrid, HandlesSingleLayersAndRows) {
       const ScalarSample s = grid->sample(p, cursor);
       ASSERT_TRUE(s.inside);
       ASSERT_NEAR(s.value, static_cast<double>(reference.at(p)), 1e-12);
-      for (int a = 0; a < 3; ++a) {
-        ASSERT_TRUE(extent[static_cast<std::size_t>(a)] > 1 || s.gradient[a] == 0);
-      }
+      for (int a = 0; a < 3; ++a) ASSERT_TRUE(extent[static_cast<std::size_t>(a)] > 1 || s.gradient[a] == 0);
     }
   }
 }
 
 TEST(CubicGrid, ExtrapolatesLinearlyOutsideTheBox) {
-  const Block block = test::random_block({6, 6, 6}, 16);
-  const auto grid = smooth(make_scalar_grid("g", {}, block.size, block.values));
+  const auto grid = smooth(random_grid({6, 6, 6}, 16));
   Cursor cursor;
   const ScalarSample at = grid->sample(Vec3(5, 2.5, 3.25), cursor), far = grid->sample(Vec3(9, 2.5, 3.25), cursor);
   EXPECT_FALSE(far.inside);
@@ -255,8 +240,7 @@ TEST(CubicGrid, ExtrapolatesLinearlyOutsideTheBox) {
 }
 
 TEST(CubicGrid, TheCursorDoesNotChangeValues) {
-  const Block block = test::random_block({40, 33, 29}, 17);
-  const auto grid = smooth(make_scalar_grid("g", {}, block.size, block.values));
+  const auto grid = smooth(random_grid({40, 33, 29}, 17));
   Random random(18);
   Cursor walked;
   for (int trial = 0; trial < 2000; ++trial) {
@@ -269,7 +253,7 @@ TEST(CubicGrid, TheCursorDoesNotChangeValues) {
 }
 
 TEST(CubicGrid, ReadBlocksContainGhostSamples) {
-  const Block block = test::random_block({9, 9, 9}, 19);
+  const Block block = random_block({9, 9, 9}, 19);
   const auto grid = smooth(make_scalar_grid("g", {}, block.size, block.values));
   std::vector<float> padded(11 * 11 * 11);
   grid->read_block({-1, -1, -1}, {11, 11, 11}, padded);
@@ -285,10 +269,7 @@ TEST(CubicGrid, HasATwentiethOfTheLinearErrorForASmoothFunction) {
   const auto f = [](const Vec3& p) { return std::sin(p.x) * std::cos(2 * p.y) + std::sin(3 * p.z); };
   constexpr int n = 80;
   constexpr double h = 6.283185307179586 / (n - 1);
-  std::vector<float> values;
-  for (int z = 0; z < n; ++z)
-    for (int y = 0; y < n; ++y)
-      for (int x = 0; x < n; ++x) values.push_back(static_cast<float>(f(h * Vec3(x, y, z))));
+  const auto values = values_of({n, n, n}, [&](int x, int y, int z) { return f(h * Vec3(x, y, z)); });
   const auto linear = make_scalar_grid("g", Mapping::from_linear(Mat3(h), Vec3(0.0)), {n, n, n}, values);
   const auto cubic = smooth(linear);
   Random random(21);
@@ -302,5 +283,4 @@ TEST(CubicGrid, HasATwentiethOfTheLinearErrorForASmoothFunction) {
   EXPECT_LT(20 * std::sqrt(of_cubic), std::sqrt(of_linear)) << std::sqrt(of_cubic / 5000) << " " << std::sqrt(of_linear / 5000);
 }
 
-}  // namespace cubic_test
-}  // namespace catena::field
+}  // namespace catena::field::cubic_test

@@ -7,19 +7,14 @@
 #include <cmath>
 
 #include "engine/field/derived/magnitude.h"
-#include "engine/io/volume/load_field.h"
 #include "engine/io/volume/write_field.h"
-#include "tests/support/support.h"
+#include "tests/engine/field/field_helpers.h"
 
-namespace catena::field {
-namespace field_display_range_test {
+namespace catena::field::field_display_range_test {
 
 std::vector<float> waves(const Index3& n) {
-  std::vector<float> values;
-  for (int z = 0; z < n.z; ++z)
-    for (int y = 0; y < n.y; ++y)
-      for (int x = 0; x < n.x; ++x) values.push_back(std::sin(0.1f * static_cast<float>(x + 2 * y)) + 0.01f * static_cast<float>(z));
-  return values;
+  return test::values_of(
+      n, [](int x, int y, int z) { return std::sin(0.1f * static_cast<float>(x + 2 * y)) + 0.01f * static_cast<float>(z); });
 }
 
 TEST(GridDisplayRange, CountsEveryOutlier) {
@@ -61,13 +56,11 @@ TEST(GridDisplayRange, HandlesMasksTilesVectorsAndFiles) {
   EXPECT_EQ(display_range(*flow).above.count, 1u);
   EXPECT_LT(compute_max_magnitude(*flow), 2);
   // The range of a file, as described by a reader process.
-  const catena::test::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   for (const char* name : {"f.vdb", "f.nrrd", "f.vti"}) {
-    const Outcome written = write_field(folder / name, {half, nullptr}, "g", {});
-    ASSERT_TRUE(written) << written.error().message;
-    const auto grids = describe_grids(folder / name);
-    ASSERT_TRUE(grids) << grids.error().message;
-    EXPECT_EQ(format_range(grids->front().display_range), format_range(display_range(*half))) << name;
+    test::value_of(write_field(folder / name, {half, nullptr}, "g", {}));
+    const auto grids = test::value_of(describe_grids(folder / name));
+    EXPECT_EQ(format_range(grids.front().display_range), format_range(display_range(*half))) << name;
   }
 }
 
@@ -81,5 +74,4 @@ TEST(GridDisplayRange, OutliersDoNotInfluenceTheMaximumGradient) {
   }
 }
 
-}  // namespace field_display_range_test
-}  // namespace catena::field
+}  // namespace catena::field::field_display_range_test

@@ -8,10 +8,10 @@
 #include <set>
 
 #include "engine/field/derived/box_downsample.h"
+#include "tests/engine/field/field_helpers.h"
 #include "tests/fuzz/mutate.h"
 
-namespace catena::field {
-namespace label_surface_test {
+namespace catena::field::label_surface_test {
 
 /// A rotated, anisotropic mapping away from the origin.
 Mapping turned() {
@@ -21,11 +21,7 @@ Mapping turned() {
 
 template <class Label>
 std::shared_ptr<const ScalarGrid> map_of(const Index3& n, const Label& label, const Mapping& mapping = turned()) {
-  std::vector<float> values;
-  for (int z = 0; z < n.z; ++z)
-    for (int y = 0; y < n.y; ++y)
-      for (int x = 0; x < n.x; ++x) values.push_back(static_cast<float>(label(x, y, z)));
-  return make_scalar_grid("map", mapping, n, values)->with_interpolation(Interpolation::nearest);
+  return make_scalar_grid("map", mapping, n, test::values_of(n, label))->with_interpolation(Interpolation::nearest);
 }
 
 /// Labels such that the mean of two neighbors may be another label, and with large differences.
@@ -63,16 +59,13 @@ TEST(Nearest, BothInterpolationsReadTheSameVoxels) {
 TEST(Nearest, DownsamplingInventsNoLabel) {
   const auto map = map_of({37, 40, 33}, scattered);
   std::set<double> labels;
-  const auto fine = count_labels(*map);
-  ASSERT_TRUE(fine);
-  for (const LabelCount& count : *fine) labels.insert(count.value);
+  const auto fine = count_labels(*map).value();
+  for (const LabelCount& count : fine) labels.insert(count.value);
   for (const int factor : {2, 4, 8}) {
-    const auto coarse = box_downsample(*map, factor);
-    ASSERT_TRUE(coarse) << coarse.error().message;
-    EXPECT_EQ(coarse->grid->interpolation(), Interpolation::nearest);
-    const auto counts = count_labels(*coarse->grid);
-    ASSERT_TRUE(counts);
-    for (const LabelCount& count : *counts) EXPECT_TRUE(labels.contains(count.value)) << count.value;
+    const auto coarse = test::value_of(box_downsample(*map, factor));
+    EXPECT_EQ(coarse.grid->interpolation(), Interpolation::nearest);
+    const auto counts = count_labels(*coarse.grid).value();
+    for (const LabelCount& count : counts) EXPECT_TRUE(labels.contains(count.value)) << count.value;
   }
 }
 
@@ -92,12 +85,11 @@ TEST(LabelCounts, HaveVoxelsAndABoxForEveryValue) {
 /// Two labels that meet at x = 5.5: the surface is halfway between voxel centers, for any mapping.
 TEST(LabelSurface, LiesHalfwayBetweenTheVoxelCentresOfTwoLabels) {
   const auto map = map_of({12, 10, 10}, [](int x, int, int) { return x <= 5 ? 17 : 18; });
-  const auto surface = make_label_surface(*map, *count_labels(*map), {17}, 0, "left");
-  ASSERT_TRUE(surface) << surface.error().message;
+  const auto surface = test::value_of(make_label_surface(*map, *count_labels(*map), {17}, 0, "left"));
   Cursor cursor;
   for (const double y : {1.0, 4.3, 7.9}) {
     const Vec3 met = map->mapping().world_from_index({5.5, y, 4.2});
-    const ScalarSample s = (*surface)->sample(met, cursor);
+    const ScalarSample s = surface->sample(met, cursor);
     ASSERT_TRUE(s.inside);
     EXPECT_NEAR(s.value, kLabelLevel, 1e-12);
     // Along x the values fall from 1 to 0 over one voxel, whose length is 1.5.
@@ -113,19 +105,16 @@ TEST(LabelSurface, HasTheWorldPositionOfAnotherGridsPlane) {
   const Vec3 on = mapping.world_from_index({5.5, 4, 4}), normal = direction(mapping.world_from_index_linear[0]);
   const Mat3 turn = Mat3(Vec3(0.6, 0, 0.8), Vec3(0, 1, 0), Vec3(-0.8, 0, 0.6));
   const Mapping other = Mapping::from_linear(turn * Mat3(0.75), on - turn * Vec3(9.3, 8.1, 8.6));
-  std::vector<float> distances;
-  for (int z = 0; z < 24; ++z)
-    for (int y = 0; y < 24; ++y)
-      for (int x = 0; x < 24; ++x) distances.push_back(static_cast<float>(dot(normal, other.world_from_index(Vec3(x, y, z)) - on)));
+  const auto distances =
+      test::values_of({24, 24, 24}, [&](int x, int y, int z) { return dot(normal, other.world_from_index(Vec3(x, y, z)) - on); });
   const auto distance = make_scalar_grid("distance", other, {24, 24, 24}, distances);
-  const auto surface = make_label_surface(*map, *count_labels(*map), {17}, 0, "s");
-  ASSERT_TRUE(surface);
+  const auto surface = test::value_of(make_label_surface(*map, *count_labels(*map), {17}, 0, "s"));
   Cursor cursor, cursor2;
   for (const double y : {2.0, 4.7, 6.1}) {
     Vec3 lo = mapping.world_from_index({4.6, y, 4.4}), hi = mapping.world_from_index({6.4, y, 4.4});
     for (int step = 0; step < 60; ++step) {
       const Vec3 middle = 0.5 * (lo + hi);
-      ((*surface)->sample(middle, cursor).value > kLabelLevel ? lo : hi) = middle;
+      (surface->sample(middle, cursor).value > kLabelLevel ? lo : hi) = middle;
     }
     const ScalarSample there = distance->sample(lo, cursor2);
     ASSERT_TRUE(there.inside);
@@ -135,12 +124,11 @@ TEST(LabelSurface, HasTheWorldPositionOfAnotherGridsPlane) {
 
 TEST(LabelSurface, SeveralLabelsHaveNoInnerWallAndAClosedSurface) {
   const auto map = map_of({12, 10, 10}, [](int x, int, int) { return x <= 5 ? 17 : 18; });
-  const auto both = make_label_surface(*map, *count_labels(*map), {17, 18}, 0, "both");
-  ASSERT_TRUE(both);
+  const auto both = test::value_of(make_label_surface(*map, *count_labels(*map), {17, 18}, 0, "both"));
   Cursor cursor;
-  EXPECT_EQ((*both)->sample(map->mapping().world_from_index({5.5, 5, 5}), cursor).value, 1);
-  EXPECT_NEAR((*both)->sample(map->mapping().world_from_index({-0.5, 5, 5}), cursor).value, 0.5, 1e-12);
-  EXPECT_EQ((*both)->sample(map->mapping().world_from_index({-1, 5, 5}), cursor).value, 0);
+  EXPECT_EQ(both->sample(map->mapping().world_from_index({5.5, 5, 5}), cursor).value, 1);
+  EXPECT_NEAR(both->sample(map->mapping().world_from_index({-0.5, 5, 5}), cursor).value, 0.5, 1e-12);
+  EXPECT_EQ(both->sample(map->mapping().world_from_index({-1, 5, 5}), cursor).value, 0);
 }
 
 /// Each voxel center stays on its side of the smoothed surface, for any shape: thin sheets, single voxels and holes.
@@ -152,14 +140,13 @@ TEST(LabelSurface, SmoothingKeepsEveryVoxelCenterOnItsSide) {
   };
   const auto map = map_of({32, 32, 32}, label);
   for (const double smooth : {0.4, kDefaultLabelSmoothing, kMaxLabelSmoothing}) {
-    const auto surface = make_label_surface(*map, *count_labels(*map), {4}, smooth, "s");
-    ASSERT_TRUE(surface);
+    const auto surface = test::value_of(make_label_surface(*map, *count_labels(*map), {4}, smooth, "s"));
     Cursor cursor;
     for (int z = -1; z < 33; ++z)
       for (int y = -1; y < 33; ++y)
         for (int x = -1; x < 33; ++x) {
           const bool in = x >= 0 && y >= 0 && z >= 0 && x < 32 && y < 32 && z < 32 && label(x, y, z) == 4;
-          const double value = (*surface)->sample(map->mapping().world_from_index(Vec3(x, y, z)), cursor).value;
+          const double value = surface->sample(map->mapping().world_from_index(Vec3(x, y, z)), cursor).value;
           ASSERT_EQ(value > kLabelLevel, in) << x << " " << y << " " << z << " " << smooth;
         }
   }
@@ -196,9 +183,8 @@ TEST(LabelSurface, SmoothingReducesTheDistanceToASphere) {
 TEST(LabelSurface, TheGridOfASmallLabelIsSmall) {
   const auto map =
       map_of({160, 160, 160}, [](int x, int y, int z) { return x > 70 && x < 75 && y > 70 && y < 75 && z > 70 && z < 75 ? 2 : 1; });
-  const auto surface = make_label_surface(*map, *count_labels(*map), {2}, kDefaultLabelSmoothing, "s");
-  ASSERT_TRUE(surface);
-  EXPECT_LT((*surface)->bytes(), 1u << 19) << "the map has 16 MB";
+  const auto surface = test::value_of(make_label_surface(*map, *count_labels(*map), {2}, kDefaultLabelSmoothing, "s"));
+  EXPECT_LT(surface->bytes(), 1u << 19) << "the map has 16 MB";
 }
 
 TEST(LabelAt, FindsTheNearestLabelVoxelOfTheCell) {
@@ -209,5 +195,4 @@ TEST(LabelAt, FindsTheNearestLabelVoxelOfTheCell) {
   EXPECT_EQ(label_at(*map, {-3, 2, 2}), 0);
 }
 
-}  // namespace label_surface_test
-}  // namespace catena::field
+}  // namespace catena::field::label_surface_test

@@ -5,8 +5,7 @@
 
 #include "tests/engine/field/field_helpers.h"
 
-namespace catena::field {
-namespace line_axis_test {
+namespace catena::field::line_axis_test {
 
 using test::Random;
 
@@ -114,5 +113,4 @@ TEST(LineField, AnyScaleGivesTheSameAxis) {
   }
 }
 
-}  // namespace line_axis_test
-}  // namespace catena::field
+}  // namespace catena::field::line_axis_test

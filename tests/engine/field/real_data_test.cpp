@@ -3,29 +3,16 @@
 
 #include <numbers>
 
-#include "engine/io/volume/load_field.h"
-#include "tests/support/support.h"
+#include "tests/engine/field/field_helpers.h"
 
-namespace catena::field {
-namespace real_data_test {
+namespace catena::field::real_data_test {
 
-using catena::test::shared_data;
-
-#define CATENA_NEED(variable, name)               \
-  const std::string variable = shared_data(name); \
+#define CATENA_NEED(variable, name)                     \
+  const std::string variable = test::shared_data(name); \
   if (variable.empty()) GTEST_SKIP() << name << " of the shared data is not here"
 
-AnyField load_grid(const std::string& path, const std::string& grid = {}) {
-  LoadRequest r;
-  r.path = path;
-  r.grid = grid;
-  auto field = load(r);
-  EXPECT_TRUE(field) << field.error().message;
-  return field.value();
-}
-
 void expect_range(const std::string& path, const std::string& grid, double lo, double hi, double tolerance) {
-  const auto field = load_grid(path, grid).scalar;
+  const auto field = test::read(path, grid).scalar;
   EXPECT_NEAR(field->min_value(), lo, tolerance) << path;
   EXPECT_NEAR(field->max_value(), hi, tolerance) << path;
   EXPECT_EQ(field->grid()->stats().nan_count, 0u);
@@ -34,7 +21,7 @@ void expect_range(const std::string& path, const std::string& grid, double lo, d
 TEST(RealData, TheCombustorHasItsKnownProperties) {
   CATENA_NEED(path, "combustor_cfd.vdb");
   expect_range(path, "density", 0.198, 0.707, 5e-4);
-  const auto velocity = load_grid(path, "velocity").vector;
+  const auto velocity = test::read(path, "velocity").vector;
   EXPECT_NEAR(velocity->grid()->stats().max, 1519, 1);
   EXPECT_TRUE(velocity->grid()->has_mask());
   EXPECT_NEAR(velocity->mapping().min_voxel_edge(), 0.18, 1e-3);
@@ -49,13 +36,13 @@ TEST(RealData, CarotidCraniumAndWeatherHaveTheirKnownProperties) {
   expect_range(carotid, "density", 0, 580, 1);
   expect_range(cranium, {}, -1024, 2986, 1);
   expect_range(weather, "temperature", 190.9, 310.6, 0.2);
-  EXPECT_NEAR(load_grid(weather, "wind").vector->grid()->stats().max, 80.7, 0.1);
-  EXPECT_NEAR(load_grid(carotid, "velocity").vector->grid()->stats().max, 22.7, 0.1);
+  EXPECT_NEAR(test::read(weather, "wind").vector->grid()->stats().max, 80.7, 0.1);
+  EXPECT_NEAR(test::read(carotid, "velocity").vector->grid()->stats().max, 22.7, 0.1);
 }
 
 TEST(RealData, TheSyntheticHelixEqualsTheFormula) {
   CATENA_NEED(path, "synth_helix.vdb");
-  const auto field = load_grid(path, "velocity").vector;
+  const auto field = test::read(path, "velocity").vector;
   Cursor cursor;
   const Box& box = field->index_box();
   for (int n = 1; n < 8; ++n) {
@@ -67,8 +54,8 @@ TEST(RealData, TheSyntheticHelixEqualsTheFormula) {
 TEST(RealData, TheBrainEqualsItsPackage) {
   CATENA_NEED(path, "colin27_brain_mr.vdb");
   const std::string package = "/usr/share/mricron/templates/ch2bet.nii.gz";
-  if (!catena::test::exists(package)) GTEST_SKIP() << "package mricron-data is not installed";
-  const auto vdb = load_grid(path).scalar, nii = load_grid(package).scalar;
+  if (!test::exists(package)) GTEST_SKIP() << "package mricron-data is not installed";
+  const auto vdb = test::read(path).scalar, nii = test::read(package).scalar;
   EXPECT_EQ(nii->max_value(), 133);
   // Compares voxel by voxel, at the world positions of both.
   Cursor a, b;
@@ -90,11 +77,10 @@ TEST(RealData, TheBrainEqualsItsPackage) {
 
 TEST(RealData, FibresHaveTheirHelixAngle) {
   CATENA_NEED(path, "ideal_lv_fibres.vdb");
-  const auto fibre = load_grid(path, "fibre").vector;
-  const auto depth = load_grid(path, "transmural").scalar;
-  const auto info = describe_grids(path);
-  ASSERT_TRUE(info);
-  EXPECT_EQ(info->size(), 4u);
+  const auto fibre = test::read(path, "fibre").vector;
+  const auto depth = test::read(path, "transmural").scalar;
+  const auto info = test::value_of(describe_grids(path));
+  EXPECT_EQ(info.size(), 4u);
   Cursor cf, cd;
   const VectorGrid& grid = *fibre->grid();
   const Vec3 centre = fibre->mapping().world_from_index((fibre->index_box().lo + fibre->index_box().hi) * 0.5);
@@ -117,5 +103,4 @@ TEST(RealData, FibresHaveTheirHelixAngle) {
   EXPECT_LT(error / compared, 10);
 }
 
-}  // namespace real_data_test
-}  // namespace catena::field
+}  // namespace catena::field::real_data_test

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/classify_scalar.h"
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 
-#include "engine/io/volume/load_field.h"
-#include "tests/support/support.h"
+#include "tests/engine/scene/scene_fixture.h"
 
-namespace catena::scene {
-namespace classify_scalar_test {
+namespace catena::scene::classify_scalar_test {
 
 constexpr int kSize = 48;
 
@@ -136,5 +132,4 @@ TEST(DataClassification, RealFilesBeyondTheTuningSet) {
   if (seen == 0) GTEST_SKIP() << "no such files";
 }
 
-}  // namespace classify_scalar_test
-}  // namespace catena::scene
+}  // namespace catena::scene::classify_scalar_test

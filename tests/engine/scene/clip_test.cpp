@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
+#include "tests/engine/scene/scene_fixture.h"
 
-#include "engine/scene/scene.h"
-
-namespace catena::scene {
-namespace clip_test {
+namespace catena::scene::clip_test {
 
 Result<Scene> parse(const std::string& clip) { return parse_scene("{\"fields\": {},\n\"clip\": " + clip + "}", "s.json"); }
 
@@ -26,16 +23,10 @@ TEST(SceneClip, ErrorsNameTheLine) {
                                        {R"([{}])", "one of \"plane\", \"box\" and \"widget\" was expected"},
                                        {R"([{"plane": {"point": [0,0,0], "normal": [0,0,0]}}])", "a vector other than [0, 0, 0]"},
                                        {R"([{"box": {"min": [0,0,0], "max": [1,0,1]}}])", "a box was expected"},
-                                       {R"([{"box": {"min": [0,0,0], "max": [1,1,1], "in": 1}}])", "in"}}) {
-    const auto scene = parse(text);
-    ASSERT_FALSE(scene) << text;
-    EXPECT_NE(scene.error().message.find(expected), std::string::npos) << scene.error().message;
-    EXPECT_EQ(scene.error().message.find("s.json:2"), 0u) << scene.error().message;
-  }
-  const auto two = parse(R"([{"box": {"min": [0,0,0], "max": [1,1,1]}}, {"box": {"min": [0,0,0], "max": [1,1,1]}}])");
-  ASSERT_FALSE(two);
-  EXPECT_NE(two.error().message.find("more than 8 clip planes"), std::string::npos);
+                                       {R"([{"box": {"min": [0,0,0], "max": [1,1,1], "in": 1}}])", "in"}})
+    expect_error(parse(text), "s.json:2", {expected});
+  expect_error(parse(R"([{"box": {"min": [0,0,0], "max": [1,1,1]}}, {"box": {"min": [0,0,0], "max": [1,1,1]}}])"), "s.json:2",
+               {"more than 8 clip planes"});
 }
 
-}  // namespace clip_test
-}  // namespace catena::scene
+}  // namespace catena::scene::clip_test

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <functional>
 
-#include "engine/io/volume/load_field.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/prepare.h"
-#include "engine/scene/scene.h"
-#include "tests/support/support.h"
+#include "tests/engine/scene/scene_fixture.h"
 
-namespace catena::scene {
-namespace default_visualization_test {
+namespace catena::scene::default_visualization_test {
+
+using DefaultVisualization = InFolder;
+
+/// The default scene of a file with one grid.
+Scene scene_of_grid(const std::string& path, const field::AnyField& grid) {
+  value_of(field::write_vdb(path, {{grid, "g"}}));
+  return value_of(scene_for_file(path));
+}
 
 /// The default scene of a file with a grid of 32^3 over -1..1; the scene is also prepared for rendering.
 template <class Value>
@@ -25,19 +28,15 @@ Scene scene_of(const std::string& path, const Value& value, const NamedColors& c
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x) values.push_back(static_cast<float>(value(edge * Vec3(x, y, z) - Vec3(1.0))));
   const auto grid = field::make_scalar_grid("g", field::Mapping::from_linear(Mat3(edge), Vec3(-1.0)), {kSize, kSize, kSize}, values);
-  const auto written = field::write_vdb(path, {{{grid, nullptr}, "g"}});
-  EXPECT_TRUE(written) << written.error().message;
-  auto scene = scene_for_file(path, {}, colors);
-  EXPECT_TRUE(scene) << scene.error().message;
-  if (!scene) return {};
-  const auto prepared = prepare(*scene);
-  EXPECT_TRUE(prepared) << prepared.error().message;
-  return std::move(*scene);
+  value_of(field::write_vdb(path, {{{grid, nullptr}, "g"}}));
+  Scene scene = value_of(scene_for_file(path, {}, colors));
+  value_of(prepare(scene));
+  return scene;
 }
 
 std::vector<double> levels(const Scene& scene) {
   std::vector<double> all;
-  scene.entities.each<Isosurface>([&](Entity, const Isosurface& surface) { all.push_back(surface.level); });
+  for (const Isosurface& surface : all_of<Isosurface>(scene)) all.push_back(surface.level);
   return all;
 }
 
@@ -47,21 +46,16 @@ field::AnyField ramp_up_to(double maximum) {
   return {field::make_scalar_grid("g", field::Mapping::from_linear(Mat3(1.0), Vec3(0.0)), {2, 2, 2}, values), nullptr};
 }
 
-TEST(DefaultVisualization, ValuesOutOfTheRangeOfFloatsAreRefused) {
-  for (const double maximum : {3e-35, 3e35}) {
-    const auto look = scene_for_field(ramp_up_to(maximum));
-    ASSERT_FALSE(look);
-    EXPECT_NE(look.error().message.find("the values range from 0 to 3e"), std::string::npos) << look.error().message;
-  }
+TEST_F(DefaultVisualization, ValuesOutOfTheRangeOfFloatsAreRefused) {
+  for (const double maximum : {3e-35, 3e35}) expect_error(scene_for_field(ramp_up_to(maximum)), "", {"the values range from 0 to 3e"});
   EXPECT_TRUE(scene_for_field(ramp_up_to(1e-29)));
 }
 
-TEST(DefaultVisualization, OutliersAndFillValuesChangeOnlyTheNotes) {
-  const test::TemporaryFolder folder;
+TEST_F(DefaultVisualization, OutliersAndFillValuesChangeOnlyTheNotes) {
   const auto wave = [](const Vec3& p) { return 1.5 + std::sin(2 * p.x) * std::cos(1.5 * p.y + p.z); };
   const auto is_first = [](const Vec3& p) { return p.x < -0.99 && p.y < -0.99 && p.z < -0.99; };
   const auto text_of_look = [&](const std::string& name, const std::function<double(const Vec3&)>& value) {
-    const Scene scene = scene_of(folder / name, value);
+    const Scene scene = scene_of(folder_ / name, value);
     std::string text = std::to_string(scene.entities.count<Isosurface>());
     scene.entities.each<Volume>([&](Entity, const Volume& volume) {
       for (const auto& c : volume.transfer.colors) text += fmt::format(" {:.6g}", c.value);
@@ -83,54 +77,50 @@ TEST(DefaultVisualization, OutliersAndFillValuesChangeOnlyTheNotes) {
   EXPECT_NE(why.find("of the values are exactly -9999: perhaps missing data"), std::string::npos) << why;
 }
 
-TEST(DefaultVisualization, ValuesTooSmallToRenderHaveANote) {
-  const test::TemporaryFolder folder;
+TEST_F(DefaultVisualization, ValuesTooSmallToRenderHaveANote) {
   for (const double maximum : {1e-35, 1e-29}) {
-    ASSERT_TRUE(field::write_vdb(folder / "f.vdb", {{ramp_up_to(maximum), "g"}}));
-    auto scene = parse_scene("{\"fields\": {\"f\": {\"file\": \"f.vdb\"}}}", folder / "s.json");
-    ASSERT_TRUE(scene) << scene.error().message;
-    ASSERT_TRUE(resolve_field(*scene, "f", {}));
+    ASSERT_TRUE(field::write_vdb(folder_ / "f.vdb", {{ramp_up_to(maximum), "g"}}));
+    Scene scene = parsed("{\"fields\": {\"f\": {\"file\": \"f.vdb\"}}}", folder_ / "s.json");
+    ASSERT_TRUE(resolve_field(scene, "f", {}));
     const auto says = [](const std::string& note) { return note.find("field \"f\": the largest magnitude is 1e-35") != std::string::npos; };
-    EXPECT_EQ(std::ranges::count_if(scene->notes, says), maximum < 1e-30 ? 1 : 0);
+    EXPECT_EQ(std::ranges::count_if(scene.notes, says), maximum < 1e-30 ? 1 : 0);
   }
 }
 
-TEST(DefaultVisualization, ACtShowsBoneUnderSkin) {
-  const test::TemporaryFolder folder;
-  const Scene scene = scene_of(folder / "a.vdb", [](const Vec3& p) { return norm(p) > 0.9 ? -1000 : norm(p) > 0.7 ? 900 : 40; });
+/// A ball of tissue in a shell of bone in air, in Hounsfield units.
+double skull(const Vec3& p) { return norm(p) > 0.9 ? -1000 : norm(p) > 0.7 ? 900 : 40; }
+
+TEST_F(DefaultVisualization, ACtShowsBoneUnderSkin) {
+  const Scene scene = scene_of(folder_ / "a.vdb", skull);
   EXPECT_EQ(levels(scene), (std::vector<double>{250, -300}));
   ASSERT_EQ(scene.notes.size(), 1u);
   EXPECT_NE(scene.notes[0].find("looks like a CT"), std::string::npos) << scene.notes[0];
   EXPECT_EQ(scene.entities.count<Volume>(), 0u);
 }
 
-TEST(DefaultVisualization, ACtWithoutBoneHasAnOpaqueSkin) {
-  const test::TemporaryFolder folder;
-  const Scene scene = scene_of(folder / "a.vdb", [](const Vec3& p) { return norm(p) > 0.9 ? -1000 : 40; });
+TEST_F(DefaultVisualization, ACtWithoutBoneHasAnOpaqueSkin) {
+  const Scene scene = scene_of(folder_ / "a.vdb", [](const Vec3& p) { return norm(p) > 0.9 ? -1000 : 40; });
   ASSERT_EQ(levels(scene), std::vector<double>{-300});
-  scene.entities.each<Isosurface>([](Entity, const Isosurface& surface) { EXPECT_EQ(surface.opacity, 1); });
+  EXPECT_EQ(only<Isosurface>(scene).opacity, 1);
 }
 
-TEST(DefaultVisualization, ALevelSetIsShownAtZeroAndASolidBetweenItsPlateaus) {
-  const test::TemporaryFolder folder;
-  EXPECT_EQ(levels(scene_of(folder / "a.vdb", [](const Vec3& p) { return norm(p) - 0.6; })), std::vector<double>{0});
-  const auto solid = levels(scene_of(folder / "b.vdb", [](const Vec3& p) { return 3 + std::tanh(40 * (norm(p) - 0.6)); }));
+TEST_F(DefaultVisualization, ALevelSetIsShownAtZeroAndASolidBetweenItsPlateaus) {
+  EXPECT_EQ(levels(scene_of(folder_ / "a.vdb", [](const Vec3& p) { return norm(p) - 0.6; })), std::vector<double>{0});
+  const auto solid = levels(scene_of(folder_ / "b.vdb", [](const Vec3& p) { return 3 + std::tanh(40 * (norm(p) - 0.6)); }));
   ASSERT_EQ(solid.size(), 1u);
   EXPECT_NEAR(solid[0], 3, 0.6);
 }
 
-TEST(DefaultVisualization, ALabelMapIsOneSurfaceWithLabelColoursAndALegend) {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "a.txt", "1 one\n2 two\n");
+TEST_F(DefaultVisualization, ALabelMapIsOneSurfaceWithLabelColoursAndALegend) {
+  test::write_file(folder_ / "a.txt", "1 one\n2 two\n");
   const Scene scene =
-      scene_of(folder / "a.vdb", [](const Vec3& p) { return norm(p) > 0.9 ? 0 : 1 + int(2 * (p.x + 1)) + 7 * int(2 * (p.y + 1)); });
+      scene_of(folder_ / "a.vdb", [](const Vec3& p) { return norm(p) > 0.9 ? 0 : 1 + int(2 * (p.x + 1)) + 7 * int(2 * (p.y + 1)); });
   ASSERT_EQ(levels(scene), std::vector<double>{0.5});
   const Entity map = find_field(scene, "g");
-  scene.entities.each<Isosurface>([&](Entity, const Isosurface& surface) {
-    EXPECT_TRUE(scene.entities.get<FieldSource>(surface.field).label->all_labels);
-    ASSERT_TRUE(surface.color_by);
-    EXPECT_EQ(surface.color_by->field, map);
-  });
+  const auto surface = only<Isosurface>(scene);
+  EXPECT_TRUE(scene.entities.get<FieldSource>(surface.field).label->all_labels);
+  ASSERT_TRUE(surface.color_by);
+  EXPECT_EQ(surface.color_by->field, map);
   EXPECT_EQ(scene.annotations.scalar_bars.size(), 1u);
   const LabelMap* labels = find_label_map(scene, map);
   ASSERT_NE(labels, nullptr);
@@ -141,79 +131,58 @@ TEST(DefaultVisualization, ALabelMapIsOneSurfaceWithLabelColoursAndALegend) {
   EXPECT_NE(scene.notes[0].find("names from a.txt"), std::string::npos) << scene.notes[0];
 }
 
-TEST(DefaultVisualization, ASimulationHasAColourMapAScalarBarAndVisibleLowValues) {
-  const test::TemporaryFolder folder;
-  const Scene scene = scene_of(folder / "a.vdb", [](const Vec3& p) { return 1000 + p.x + 0.2 * std::sin(3 * p.y); });
-  ASSERT_EQ(scene.entities.count<Volume>(), 1u);
+TEST_F(DefaultVisualization, ASimulationHasAColourMapAScalarBarAndVisibleLowValues) {
+  const Scene scene = scene_of(folder_ / "a.vdb", [](const Vec3& p) { return 1000 + p.x + 0.2 * std::sin(3 * p.y); });
   EXPECT_EQ(scene.annotations.scalar_bars.size(), 1u);
   EXPECT_TRUE(scene.bounding_box);
-  scene.entities.each<Volume>([](Entity, const Volume& volume) {
-    EXPECT_EQ(volume.transfer.named.map, "viridis");
-    ASSERT_EQ(volume.transfer.extinctions.size(), 3u);
-    EXPECT_GT(volume.transfer.extinctions[0].sigma, 0);
-    EXPECT_GT(volume.transfer.extinctions[2].sigma, volume.transfer.extinctions[1].sigma);
-    EXPECT_NEAR(volume.transfer.extinctions[0].value, 998.8, 0.1);
-    EXPECT_NEAR(volume.transfer.extinctions[2].value, 1001.2, 0.1);
-  });
+  const TransferFunction transfer = only<Volume>(scene).transfer;
+  EXPECT_EQ(transfer.named.map, "viridis");
+  ASSERT_EQ(transfer.extinctions.size(), 3u);
+  EXPECT_GT(transfer.extinctions[0].sigma, 0);
+  EXPECT_GT(transfer.extinctions[2].sigma, transfer.extinctions[1].sigma);
+  EXPECT_NEAR(transfer.extinctions[0].value, 998.8, 0.1);
+  EXPECT_NEAR(transfer.extinctions[2].value, 1001.2, 0.1);
 }
 
-TEST(DefaultVisualization, AStatedMapMakesAnyKindAVolume) {
-  const test::TemporaryFolder folder;
-  const Scene scene =
-      scene_of(folder / "a.vdb", [](const Vec3& p) { return norm(p) > 0.9   ? -1000
-                                                            : norm(p) > 0.7 ? 900
-                                                                            : 40; }, {"magma", {}});
+TEST_F(DefaultVisualization, AStatedMapMakesAnyKindAVolume) {
+  const Scene scene = scene_of(folder_ / "a.vdb", skull, {"magma", {}});
   EXPECT_TRUE(levels(scene).empty());
-  scene.entities.each<Volume>([](Entity, const Volume& volume) { EXPECT_EQ(volume.transfer.named.map, "magma"); });
-  EXPECT_EQ(scene.entities.count<Volume>(), 1u);
+  EXPECT_EQ(only<Volume>(scene).transfer.named.map, "magma");
 }
 
-TEST(DefaultVisualization, AConstantFieldIsAVolume) {
-  const test::TemporaryFolder folder;
-  EXPECT_EQ(scene_of(folder / "a.vdb", [](const Vec3&) { return 7; }).entities.count<Volume>(), 1u);
+TEST_F(DefaultVisualization, AConstantFieldIsAVolume) {
+  EXPECT_EQ(scene_of(folder_ / "a.vdb", [](const Vec3&) { return 7; }).entities.count<Volume>(), 1u);
 }
 
-TEST(DefaultVisualization, FibresHaveOneColorAndNoSpeedBar) {
-  const test::TemporaryFolder folder;
-  const auto fibre = *field::make_analytic("uniform"), swirl = *field::make_analytic("helix");
-  ASSERT_TRUE(field::write_vdb(folder / "a.vdb", {{{nullptr, field::sample_on_grid(*fibre.vector, 12, -1, 1)}, "fibre"}}));
-  ASSERT_TRUE(field::write_vdb(folder / "b.vdb", {{{nullptr, field::sample_on_grid(*swirl.vector, 12, -1, 1)}, "flow"}}));
-  for (const auto& [name, colored] : {std::pair{"a.vdb", false}, {"b.vdb", true}}) {
-    auto scene = scene_for_file(folder / name);
-    ASSERT_TRUE(scene) << scene.error().message;
-    ASSERT_EQ(scene->entities.count<StreamlineSet>(), 1u);
-    scene->entities.each<StreamlineSet>([&, colored = colored](Entity, const StreamlineSet& set) {
-      EXPECT_EQ(set.color_by.has_value(), colored);
-      EXPECT_TRUE(set.seeds.pattern);
-    });
-    EXPECT_EQ(scene->annotations.scalar_bars.size(), colored ? 1u : 0u);
+TEST_F(DefaultVisualization, FibresHaveOneColorAndNoSpeedBar) {
+  for (const auto& [analytic, colored] : {std::pair{"uniform", false}, {"helix", true}}) {
+    const auto field = *field::make_analytic(analytic);
+    const Scene scene = scene_of_grid(folder_ / "a.vdb", {nullptr, field::sample_on_grid(*field.vector, 12, -1, 1)});
+    const auto set = only<StreamlineSet>(scene);
+    EXPECT_EQ(set.color_by.has_value(), colored);
+    EXPECT_TRUE(set.seeds.pattern);
+    EXPECT_EQ(scene.annotations.scalar_bars.size(), colored ? 1u : 0u);
   }
 }
 
-TEST(DefaultVisualization, ARampAlongAnyAxisIsAVolume) {
-  const test::TemporaryFolder folder;
+TEST_F(DefaultVisualization, ARampAlongAnyAxisIsAVolume) {
   for (int axis = 0; axis < 3; ++axis) {
-    const Scene scene = scene_of(folder / "a.vdb", [&](const Vec3& p) { return 0.37 * p[axis]; });
+    const Scene scene = scene_of(folder_ / "a.vdb", [&](const Vec3& p) { return 0.37 * p[axis]; });
     EXPECT_EQ(scene.entities.count<Volume>(), 1u) << axis << scene.notes[0];
     EXPECT_EQ(scene.entities.count<Isosurface>(), 0u) << axis;
   }
 }
 
-TEST(DefaultVisualization, ASingleImageIsASlice) {
-  const test::TemporaryFolder folder;
+TEST_F(DefaultVisualization, ASingleImageIsASlice) {
   std::vector<float> values;
   for (int i = 0; i < 2 * 24 * 20; ++i) values.push_back(static_cast<float>(i % 240 - 1000));
-  const auto grid = field::make_scalar_grid("g", {}, {24, 20, 2}, values);
-  ASSERT_TRUE(field::write_vdb(folder / "a.vdb", {{{grid, nullptr}, "g"}}));
-  auto scene = scene_for_file(folder / "a.vdb");
-  ASSERT_TRUE(scene) << scene.error().message;
-  EXPECT_EQ(scene->entities.count<Slice>(), 1u);
-  EXPECT_EQ(scene->entities.count<Isosurface>(), 0u);
-  const auto prepared = prepare(*scene);
-  EXPECT_TRUE(prepared) << prepared.error().message;
+  Scene scene = scene_of_grid(folder_ / "a.vdb", {field::make_scalar_grid("g", {}, {24, 20, 2}, values), nullptr});
+  EXPECT_EQ(scene.entities.count<Slice>(), 1u);
+  EXPECT_EQ(scene.entities.count<Isosurface>(), 0u);
+  value_of(prepare(scene));
 }
 
-TEST(DefaultVisualization, RandomSignsMakeALineField) {
+TEST_F(DefaultVisualization, RandomSignsMakeALineField) {
   constexpr int kSize = 24;
   std::vector<float> signs, flow;
   std::uint32_t state = 7;
@@ -228,49 +197,34 @@ TEST(DefaultVisualization, RandomSignsMakeALineField) {
           flow.push_back(static_cast<float>(v[a]));
         }
       }
-  const test::TemporaryFolder folder;
-  for (const auto& [name, xyz, line] : {std::tuple{"a.vdb", signs, true}, {"b.vdb", flow, false}}) {
-    ASSERT_TRUE(
-        field::write_vdb(folder / name, {{{nullptr, field::make_vector_grid("v", field::Mapping{}, {kSize, kSize, kSize}, xyz)}, "v"}}));
-    auto scene = scene_for_file(folder / name);
-    ASSERT_TRUE(scene) << scene.error().message;
-    ASSERT_EQ(scene->entities.count<StreamlineSet>(), 1u);
-    scene->entities.each<StreamlineSet>([&, line = line](Entity, const StreamlineSet& set) { EXPECT_EQ(set.is_line_field, line); });
+  for (const auto& [xyz, line] : {std::pair{signs, true}, {flow, false}}) {
+    const Scene scene = scene_of_grid(folder_ / "a.vdb", {nullptr, field::make_vector_grid("v", {}, {kSize, kSize, kSize}, xyz)});
+    EXPECT_EQ(only<StreamlineSet>(scene).is_line_field, line);
   }
 }
 
-TEST(DefaultVisualization, FibresAreShownInsideTheirTranslucentBody) {
-  const test::TemporaryFolder folder;
+TEST_F(DefaultVisualization, FibresAreShownInsideTheirTranslucentBody) {
   const auto body = *field::make_analytic("left-ventricle"), fibre = *field::make_analytic("left-ventricle", {1, {}, "fibre"});
   const auto shape = field::sample_on_grid(*body.scalar, 48, -3, 3);
-  ASSERT_TRUE(field::write_vdb(folder / "heart.vdb",
+  ASSERT_TRUE(field::write_vdb(folder_ / "heart.vdb",
                                {{{shape, nullptr}, "density"}, {{nullptr, field::sample_on_grid(*fibre.vector, 48, -3, 3)}, "fibre"}}));
-  auto scene = scene_for_file(folder / "heart.vdb");
-  ASSERT_TRUE(scene) << scene.error().message;
-  EXPECT_EQ(scene->entities.count<StreamlineSet>(), 1u) << scene->notes[0];
-  EXPECT_EQ(scene->entities.count<Isosurface>(), 1u);
-  scene->entities.each<Isosurface>([](Entity, const Isosurface& surface) { EXPECT_LT(surface.opacity, 0.5); });
-  const auto prepared = prepare(*scene);
-  EXPECT_TRUE(prepared) << prepared.error().message;
+  Scene scene = value_of(scene_for_file(folder_ / "heart.vdb"));
+  EXPECT_EQ(scene.entities.count<StreamlineSet>(), 1u) << scene.notes[0];
+  EXPECT_LT(only<Isosurface>(scene).opacity, 0.5);
+  value_of(prepare(scene));
 }
 
-TEST(DefaultVisualization, AFieldWithoutLinesIsStillShown) {
-  const test::TemporaryFolder folder;
+TEST_F(DefaultVisualization, AFieldWithoutLinesIsStillShown) {
   // The velocity is nonzero in a single voxel: the line is shorter than the spacing of lines.
   constexpr int kSize = 80;
   std::vector<float> still(3 * kSize * kSize * kSize, 0.f), dot = still;
   dot[3 * 36 * (1 + kSize + kSize * kSize)] = 1;
-  for (const auto& [name, xyz, slices] : {std::tuple{"a.vdb", still, 0u}, {"b.vdb", dot, 3u}}) {
-    const auto grid = field::make_vector_grid("v", field::Mapping{}, {kSize, kSize, kSize}, xyz);
-    ASSERT_TRUE(field::write_vdb(folder / name, {{{nullptr, grid}, "v"}}));
-    auto scene = scene_for_file(folder / name);
-    ASSERT_TRUE(scene) << scene.error().message;
-    const auto prepared = prepare(*scene);
-    EXPECT_TRUE(prepared) << prepared.error().message;
-    EXPECT_EQ(scene->entities.count<StreamlineSet>(), 0u) << name;
-    EXPECT_EQ(scene->entities.count<Slice>(), slices) << name;
+  for (const auto& [xyz, slices] : {std::pair{still, 0u}, {dot, 3u}}) {
+    Scene scene = scene_of_grid(folder_ / "a.vdb", {nullptr, field::make_vector_grid("v", {}, {kSize, kSize, kSize}, xyz)});
+    value_of(prepare(scene));
+    EXPECT_EQ(scene.entities.count<StreamlineSet>(), 0u) << slices;
+    EXPECT_EQ(scene.entities.count<Slice>(), slices);
   }
 }
 
-}  // namespace default_visualization_test
-}  // namespace catena::scene
+}  // namespace catena::scene::default_visualization_test

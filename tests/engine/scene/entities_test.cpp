@@ -5,8 +5,7 @@
 
 #include <string>
 
-namespace catena::scene {
-namespace entities_test {
+namespace catena::scene::entities_test {
 
 TEST(EntityStore, KeepsComponentsByEntityInOrderOfInsertion) {
   EntityStore world;
@@ -37,5 +36,4 @@ TEST(EntityStore, RemovalKeepsTheOthers) {
   EXPECT_EQ(world.get<int>(entities[1]), 7);
 }
 
-}  // namespace entities_test
-}  // namespace catena::scene
+}  // namespace catena::scene::entities_test

@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: MIT
 // "glyphs" of the scene file: every key, writing and reading back, and errors with their line.
-#include <gtest/gtest.h>
-
-#include "engine/scene/scene.h"
 #include "engine/scene/to_json.h"
 #include "engine/scene/visibility.h"
-#include "tests/support/support.h"
+#include "tests/engine/scene/scene_fixture.h"
 
-namespace catena::scene {
-namespace glyphs_test {
+namespace catena::scene::glyphs_test {
 
 constexpr const char* kFile =
     "solid m\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid m\n";
 
-class Glyphs : public testing::Test {
+class Glyphs : public InFolder {
  protected:
   Result<Scene> parse(const std::string& glyphs, const std::string& more = "") {
     test::write_file(folder_ / "m.stl", kFile);
@@ -26,37 +22,28 @@ class Glyphs : public testing::Test {
                            glyphs + more + "}",
                        folder_ / "s.json");
   }
-  test::TemporaryFolder folder_;
 };
 
 TEST_F(Glyphs, EveryKeyIsRead) {
-  const auto scene = parse(R"([{"field": "v", "on": {"box": {"min": [0, 0, 0], "max": [1, 2, 3]}}, "spacing": 0.25, "scale": "constant",
+  const Scene scene =
+      value_of(parse(R"([{"field": "v", "on": {"box": {"min": [0, 0, 0], "max": [1, 2, 3]}}, "spacing": 0.25, "scale": "constant",
       "length": 0.5, "reference_speed": 2, "min_speed": 0.1, "radius": 0.02, "anchor": "tail", "color": [1, 0, 0], "clip": false, "visible": false},
      {"field": "v", "on": {"slice": 1}, "kind": "line", "color_by": {"quantity": "speed", "color": "magma", "range": [0, 2]}},
      {"field": "v", "on": {"plane": {"widget": "cut"}}, "color_by": {"field": "s"}}, {"field": "v", "on": {"isosurface": 0}, "anchor": "head"},
-     {"field": "v", "on": {"mesh": "m"}}, {"field": "v"}])");
-  ASSERT_TRUE(scene) << scene.error().message;
-  std::vector<GlyphSet> sets;
-  std::vector<Entity> owners;
-  scene->entities.each<GlyphSet>([&](Entity e, const GlyphSet& set) {
-    sets.push_back(set);
-    owners.push_back(e);
-  });
+     {"field": "v", "on": {"mesh": "m"}}, {"field": "v"}])"));
+  const std::vector<GlyphSet> sets = all_of<GlyphSet>(scene);
   ASSERT_EQ(sets.size(), 6u);
   EXPECT_EQ(sets[0].support, GlyphSet::Support::box);
   EXPECT_EQ(sets[0].box->hi, Vec3(1, 2, 3));
-  EXPECT_EQ(sets[0].spacing, 0.25);
   EXPECT_TRUE(sets[0].constant_length);
-  EXPECT_EQ(sets[0].length, 0.5);
-  EXPECT_EQ(sets[0].reference_speed, 2);
-  EXPECT_EQ(sets[0].min_speed, 0.1);
-  EXPECT_EQ(sets[0].radius, 0.02);
+  EXPECT_EQ(std::tuple(sets[0].spacing, sets[0].length, sets[0].reference_speed, sets[0].min_speed, sets[0].radius),
+            std::tuple(0.25, 0.5, 2, 0.1, 0.02));
   EXPECT_EQ(sets[0].anchor, GlyphSet::Anchor::tail);
   EXPECT_EQ(sets[0].color.g, 0);
   EXPECT_FALSE(sets[0].clipped);
-  EXPECT_TRUE(is_hidden(scene->entities, owners[0]));
+  EXPECT_TRUE(is_hidden(scene.entities, entities_of<GlyphSet>(scene).at(0)));
   EXPECT_EQ(sets[1].support, GlyphSet::Support::slice);
-  EXPECT_EQ(scene->entities.get<Slice>(sets[1].support_entity).point.x, 0);
+  EXPECT_EQ(scene.entities.get<Slice>(sets[1].support_entity).point.x, 0);
   EXPECT_TRUE(sets[1].is_line_field);
   EXPECT_EQ(sets[1].color_by->source, ColorBy::Source::speed);
   EXPECT_EQ(sets[2].support, GlyphSet::Support::plane);
@@ -65,7 +52,7 @@ TEST_F(Glyphs, EveryKeyIsRead) {
   EXPECT_EQ(sets[2].color_by->source, ColorBy::Source::field);
   EXPECT_EQ(sets[3].support, GlyphSet::Support::isosurface);
   EXPECT_EQ(sets[3].anchor, GlyphSet::Anchor::head);
-  EXPECT_EQ(sets[4].support_entity, find_mesh(*scene, "m")) << "felt, not drawn";
+  EXPECT_EQ(sets[4].support_entity, find_mesh(scene, "m")) << "felt, not drawn";
   // The defaults: in the domain, scaled by magnitude, centered, clipped.
   EXPECT_EQ(sets[5].support, GlyphSet::Support::box);
   EXPECT_FALSE(sets[5].box || sets[5].constant_length || sets[5].color_by);
@@ -83,9 +70,8 @@ TEST_F(Glyphs, WrittenGlyphsReadBack) {
        R"({"field": "v", "on": {"plane": {"widget": "cut"}}, "kind": "line"})",
        R"({"field": "v", "on": {"slice": 1}, "color_by": {"quantity": "speed", "color": "magma"}})",
        R"({"field": "v", "on": {"isosurface": 0}, "color_by": {"field": "s"}})", R"({"field": "v", "on": {"mesh": "m"}})"}) {
-    const auto scene = parse("[" + item + "]");
-    ASSERT_TRUE(scene) << scene.error().message;
-    scene->entities.each<GlyphSet>([&](Entity, const GlyphSet& set) { EXPECT_EQ(to_json(*scene, set), item); });
+    const Scene scene = value_of(parse("[" + item + "]"));
+    EXPECT_EQ(to_json(scene, only<GlyphSet>(scene)), item);
   }
 }
 
@@ -116,27 +102,18 @@ TEST_F(Glyphs, ErrorsNameTheLine) {
         {R"([{"field": "v", "color_by": {"quantity": "arc_length"}}])", "speed"},
         {R"([{"field": "v", "color_by": {}}])", "neither"},
         {R"([{"field": "v", "color_by": "speed"}])", "object"},
-        {R"([{"field": "v", "colour": [1, 0, 0]}])", "color"}}) {
-    const auto scene = parse(text);
-    ASSERT_FALSE(scene) << text;
-    EXPECT_NE(scene.error().message.find(expected), std::string::npos) << text << "\n" << scene.error().message;
-    EXPECT_NE(scene.error().message.find("s.json:6: "), std::string::npos) << scene.error().message;
-  }
-  const auto none = parse_scene(R"({"fields": {"v": {"analytic": "circle"}}, "glyphs": [{"field": "v", "on": {"slice": 0}}]})", "s.json");
-  ASSERT_FALSE(none);
-  EXPECT_NE(none.error().message.find("the scene has no slices; one was expected for glyphs"), std::string::npos) << none.error().message;
+        {R"([{"field": "v", "colour": [1, 0, 0]}])", "color"}})
+    expect_error(parse(text), folder_ / "s.json:6: ", {expected});
+  expect_error(parse_scene(R"({"fields": {"v": {"analytic": "circle"}}, "glyphs": [{"field": "v", "on": {"slice": 0}}]})", "s.json"),
+               "s.json:1: ", {"the scene has no slices; one was expected for glyphs"});
 }
 
 TEST_F(Glyphs, AScalarBarRefersToGlyphs) {
   const std::string sets = R"([{"field": "v", "color_by": {"quantity": "speed"}}, {"field": "v"}])";
-  const auto scene = parse(sets, R"(, "scalar_bars": [{"glyphs": 0}, {"field": "v"}])");
-  ASSERT_TRUE(scene) << scene.error().message;
-  ASSERT_EQ(scene->annotations.scalar_bars.size(), 2u);
-  for (const ScalarBar& bar : scene->annotations.scalar_bars) EXPECT_TRUE(scene->entities.has<GlyphSet>(bar.target));
-  const auto one_color = parse(sets, R"(, "scalar_bars": [{"glyphs": 1}])");
-  ASSERT_FALSE(one_color);
-  EXPECT_NE(one_color.error().message.find("this set of glyphs shows no values"), std::string::npos) << one_color.error().message;
+  const Scene scene = value_of(parse(sets, R"(, "scalar_bars": [{"glyphs": 0}, {"field": "v"}])"));
+  ASSERT_EQ(scene.annotations.scalar_bars.size(), 2u);
+  for (const ScalarBar& bar : scene.annotations.scalar_bars) EXPECT_TRUE(scene.entities.has<GlyphSet>(bar.target));
+  expect_error(parse(sets, R"(, "scalar_bars": [{"glyphs": 1}])"), folder_ / "s.json:", {"this set of glyphs shows no values"});
 }
 
-}  // namespace glyphs_test
-}  // namespace catena::scene
+}  // namespace catena::scene::glyphs_test

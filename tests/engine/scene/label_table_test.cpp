@@ -1,26 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/label_table.h"
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 
-#include "tests/support/support.h"
+#include "tests/engine/scene/scene_fixture.h"
 
-namespace catena::scene {
-namespace label_table_test {
+namespace catena::scene::label_table_test {
 
-LabelTable table_of(const std::string& text) {
-  const auto table = parse_label_table(text, "t.txt");
-  EXPECT_TRUE(table) << table.error().message;
-  return table ? *table : LabelTable{};
-}
+LabelTable table_of(const std::string& text) { return value_of(parse_label_table(text, "t.txt")); }
 
-std::string refused(const std::string& text) {
-  const auto table = parse_label_table(text, "t.txt");
-  EXPECT_FALSE(table);
-  return table ? std::string() : table.error().message;
-}
+std::string refused(const std::string& text) { return message_of(parse_label_table(text, "t.txt")); }
 
 TEST(LabelTables, ReadsFreeSurferTables) {
   const LabelTable table =
@@ -96,12 +85,10 @@ TEST(LabelTables, TheTableNextToALabelMapIsFoundWithItsColors) {
 TEST(LabelTables, ReadsATableOfADebianPackage) {
   const std::string path = "/usr/share/mricron/templates/aal.nii.txt";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path;
-  const auto table = read_label_table(path);
-  ASSERT_TRUE(table) << table.error().message;
-  EXPECT_EQ(table->size(), 116u);
-  EXPECT_EQ(table->front().name, "Precentral_L");
-  EXPECT_EQ(table->back().name, "Vermis_10");
+  const LabelTable table = value_of(read_label_table(path));
+  ASSERT_EQ(table.size(), 116u);
+  EXPECT_EQ(table.front().name, "Precentral_L");
+  EXPECT_EQ(table.back().name, "Vermis_10");
 }
 
-}  // namespace label_table_test
-}  // namespace catena::scene
+}  // namespace catena::scene::label_table_test

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: MIT
 /// Colors and opacities of a scene: named maps, ranges, transfer files and ParaView's color maps.
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "engine/scene/auto_transfer.h"
 #include "engine/scene/color_maps.h"
-#include "engine/scene/scene.h"
-#include "tests/support/support.h"
+#include "tests/engine/scene/scene_fixture.h"
 
-namespace catena::scene {
-namespace read_transfer_test {
+namespace catena::scene::read_transfer_test {
 
-class ReadTransfer : public testing::Test {
+class ReadTransfer : public InFolder {
  protected:
   /// A scene with one volume, whose keys begin on line 2; the transfer file in its folder is t.json.
   Result<Scene> volume(const std::string& keys) {
@@ -20,31 +16,19 @@ class ReadTransfer : public testing::Test {
         "{\"fields\": {\"ball\": {\"analytic\": \"sphere\", \"resolution\": 9}}, \"volumes\": [{\"field\": \"ball\",\n" + keys + "}]}",
         folder_ / "s.json");
   }
-  TransferFunction transfer_of(const std::string& keys) {
-    const auto scene = volume(keys);
-    EXPECT_TRUE(scene) << scene.error().message;
-    TransferFunction transfer;
-    if (scene) scene->entities.each<Volume>([&](Entity, const Volume& v) { transfer = v.transfer; });
-    return transfer;
-  }
+  TransferFunction transfer_of(const std::string& keys) { return only<Volume>(value_of(volume(keys))).transfer; }
   /// The transfer function of the volume from the file t.json.
   TransferFunction file_of(const std::string& text, const std::string& more = "") {
     test::write_file(folder_ / "t.json", text);
     return transfer_of("\"transfer\": \"t.json\"" + more);
   }
-  void refused(const std::string& keys, const std::string& start, std::initializer_list<const char*> parts) {
-    const auto scene = volume(keys);
-    ASSERT_FALSE(scene) << keys;
-    const std::string& message = scene.error().message;
-    EXPECT_TRUE(message.starts_with((folder_ / start) + ": ")) << message << "\nfor " << keys;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    for (const char* part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks " << part;
+  void refused(const std::string& keys, const std::string& start, const std::vector<std::string>& parts) {
+    expect_error(volume(keys), (folder_ / start) + ": ", parts);
   }
-  void file_refused(const std::string& text, int line, std::initializer_list<const char*> parts) {
+  void file_refused(const std::string& text, int line, const std::vector<std::string>& parts) {
     test::write_file(folder_ / "t.json", text);
     refused("\"transfer\": \"t.json\"", "t.json:" + std::to_string(line), parts);
   }
-  test::TemporaryFolder folder_;
 };
 
 TEST_F(ReadTransfer, ReadsMapsByName) {
@@ -85,20 +69,13 @@ TEST_F(ReadTransfer, MappingsReadBackAndALogarithmNeedsPositiveValues) {
 
 /// The automatic opacity follows the mapping; data with values of 0 and below are refused once they are loaded.
 TEST_F(ReadTransfer, AutomaticOpacityFollowsTheMapping) {
-  auto scene = volume("\"color\": \"grey\", \"range\": [0.1, 10], \"mapping\": \"log\"");
-  ASSERT_TRUE(scene);
-  ASSERT_TRUE(resolve_rendered_field(*scene, find_field(*scene, "ball"), {}));
-  scene->entities.each<Volume>([](Entity, const Volume& v) {
-    const auto& rows = v.transfer.extinctions;
-    ASSERT_GT(rows.size(), 8u);
-    EXPECT_NEAR(rows[rows.size() / 2].value, 1, 1e-6) << "halfway by the logarithm";
-  });
-  scene = volume("\"color\": \"grey\",\n\"mapping\": \"log\"");
-  ASSERT_TRUE(scene);
-  const auto refused = resolve_rendered_field(*scene, find_field(*scene, "ball"), {});
-  ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("s.json:3: "), std::string::npos) << refused.error().message;
-  EXPECT_NE(refused.error().message.find("begins at"), std::string::npos) << refused.error().message;
+  Scene scene = value_of(volume("\"color\": \"grey\", \"range\": [0.1, 10], \"mapping\": \"log\""));
+  ASSERT_TRUE(resolve_rendered_field(scene, find_field(scene, "ball"), {}));
+  const auto rows = only<Volume>(scene).transfer.extinctions;
+  ASSERT_GT(rows.size(), 8u);
+  EXPECT_NEAR(rows[rows.size() / 2].value, 1, 1e-6) << "halfway by the logarithm";
+  scene = value_of(volume("\"color\": \"grey\",\n\"mapping\": \"log\""));
+  expect_error(resolve_rendered_field(scene, find_field(scene, "ball"), {}), folder_ / "s.json:3: ", {"begins at"});
 }
 
 TEST_F(ReadTransfer, ReadsGradientOpacity) {
@@ -131,9 +108,7 @@ TEST_F(ReadTransfer, ATransferFileHasTheKeysOfAVolume) {
 TEST_F(ReadTransfer, ARangeRescalesTheTablesOfAFile) {
   const std::string tables = R"({"color": [[0, 1, 0, 0], [1, 0, 1, 0], [4, 0, 0, 1]], "extinction": [[2, 0], [3, 7]]})";
   const TransferFunction transfer = file_of(tables, ", \"range\": [10, 12]");
-  EXPECT_EQ(transfer.colors[0].value, 10);
-  EXPECT_EQ(transfer.colors[1].value, 10.5);
-  EXPECT_EQ(transfer.colors[2].value, 12);
+  EXPECT_EQ(std::tuple(transfer.colors[0].value, transfer.colors[1].value, transfer.colors[2].value), std::tuple(10, 10.5, 12));
   EXPECT_EQ(transfer.extinctions[0].value, 11);
   EXPECT_EQ(transfer.extinctions[1].sigma, 7);
   const TransferFunction named = file_of(R"({"color": "grey", "range": [0, 1], "extinction": [[0.5, 2]]})", ", \"range\": [2, 6]");
@@ -236,39 +211,24 @@ TEST_F(ReadTransfer, ColorByOfStreamlinesHasTheSameKeys) {
         folder_ / "s.json");
   };
   const auto by = [&](const std::string& keys) {
-    const auto scene = lines(keys);
-    EXPECT_TRUE(scene) << scene.error().message;
-    ColorBy result;
-    if (scene) scene->entities.each<StreamlineSet>([&](Entity, const StreamlineSet& set) { result = *set.color_by; });
-    return result;
+    return *only<StreamlineSet>(value_of(lines("\"color_by\": {\"quantity\": \"speed\", " + keys + "}"))).color_by;
   };
-  EXPECT_EQ(by("\"color_by\": {\"quantity\": \"speed\", \"color\": \"plasma\"}").named.map, "plasma");
-  EXPECT_EQ((*by("\"color_by\": {\"quantity\": \"speed\", \"range\": [0, 3]}").named.range)[1], 3);
+  EXPECT_EQ(by("\"color\": \"plasma\"").named.map, "plasma");
+  EXPECT_EQ((*by("\"range\": [0, 3]").named.range)[1], 3);
   test::write_file(folder_ / "t.json", R"({"color": [[0, 1, 0, 0], [2, 0, 0, 1]]})");
-  EXPECT_EQ(by("\"color_by\": {\"quantity\": \"speed\", \"transfer\": \"t.json\"}").colors.size(), 2u);
-  for (const char* keys : {"\"color\": \"plasma\"", "\"color\": [[0, 0, 0, 0]]"}) {
-    const auto scene = lines(keys);
-    ASSERT_FALSE(scene) << keys;
-    EXPECT_NE(scene.error().message.find("s.json:2: "), std::string::npos) << scene.error().message;
-    EXPECT_NE(scene.error().message.find("\"color_by\""), std::string::npos) << scene.error().message;
-  }
+  EXPECT_EQ(by("\"transfer\": \"t.json\"").colors.size(), 2u);
+  for (const char* keys : {"\"color\": \"plasma\"", "\"color\": [[0, 0, 0, 0]]"})
+    expect_error(lines(keys), folder_ / "s.json:2: ", {"\"color_by\""});
   test::write_file(folder_ / "t.json", R"({"extinction": [[0, 1]]})");
-  const auto scene = lines("\"color_by\": {\"quantity\": \"speed\",\n\"transfer\": \"t.json\"}");
-  ASSERT_FALSE(scene);
-  EXPECT_NE(scene.error().message.find("s.json:3: "), std::string::npos) << scene.error().message;
-  EXPECT_NE(scene.error().message.find("no colours"), std::string::npos) << scene.error().message;
+  expect_error(lines("\"color_by\": {\"quantity\": \"speed\",\n\"transfer\": \"t.json\"}"), folder_ / "s.json:3: ", {"no colours"});
 }
 
 /// |x| on a cube of side 4 has values from 0 to 2 sqrt(3).
 TEST_F(ReadTransfer, AMapCoversTheValuesOrTheRange) {
   const auto drawn = [&](const std::string& keys) {
-    auto scene = volume(keys);
-    EXPECT_TRUE(scene) << scene.error().message;
-    const auto any = resolve_rendered_field(*scene, find_field(*scene, "ball"), {});
-    EXPECT_TRUE(any) << any.error().message;
-    TransferFunction transfer;
-    scene->entities.each<Volume>([&](Entity, const Volume& v) { transfer = v.transfer; });
-    return transfer;
+    Scene scene = value_of(volume(keys));
+    value_of(resolve_rendered_field(scene, find_field(scene, "ball"), {}));
+    return only<Volume>(scene).transfer;
   };
   const TransferFunction all = drawn("\"color\": \"viridis\"");
   EXPECT_EQ(all.colors.front().value, 0);
@@ -286,5 +246,4 @@ TEST_F(ReadTransfer, AMapCoversTheValuesOrTheRange) {
   EXPECT_EQ(both.extinctions.size(), 1u);
 }
 
-}  // namespace read_transfer_test
-}  // namespace catena::scene
+}  // namespace catena::scene::read_transfer_test

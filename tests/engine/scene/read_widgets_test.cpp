@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// "widgets" of the scene file, and the keys of items that follow widgets.
-#include <gtest/gtest.h>
-
 #include "engine/scene/widgets.h"
+#include "tests/engine/scene/scene_fixture.h"
 
-namespace catena::scene {
-namespace read_widgets_test {
+namespace catena::scene::read_widgets_test {
 
 using widget::Kind;
 
@@ -14,96 +12,70 @@ const std::string kFields = R"({"fields": {"s": {"analytic": "sphere"}, "v": {"a
 /// Parses a scene whose `rest` is on line 2.
 Result<Scene> parse(const std::string& rest) { return parse_scene(kFields + "\n" + rest + "}", "s.json"); }
 
-Result<Scene> parse_widget(const std::string& item) { return parse("\"widgets\": [" + item + "]"); }
-
-Widget only_widget(const Scene& scene) {
-  Widget found;
-  scene.entities.each<Widget>([&](Entity, const Widget& w) { found = w; });
-  return found;
-}
+Scene with_widget(const std::string& item) { return value_of(parse("\"widgets\": [" + item + "]")); }
 
 TEST(ReadWidgets, ReadsACuttingPlaneWithAllKeys) {
-  const auto scene = parse_widget(R"({"name": "cut", "type": "cutting_plane", "center": [1, 2, 3], "normal": [0, 0, -7], "radius": 0.5,
+  const Scene scene = with_widget(R"({"name": "cut", "type": "cutting_plane", "center": [1, 2, 3], "normal": [0, 0, -7], "radius": 0.5,
     "snap": 0.1, "release": 0.2, "grab_distance": 0.3, "step": 0.4, "rotation": "axis", "rotate_on_contact": true, "button": 32, "color": [0, 0.5, 1]})");
-  ASSERT_TRUE(scene) << scene.error().message;
-  const Widget w = only_widget(*scene);
+  const auto w = only<Widget>(scene);
   EXPECT_EQ(w.spec.kind, Kind::cutting_plane);
   EXPECT_EQ(w.spec.pose.points[0], Vec3(1, 2, 3));
   EXPECT_LT(norm(plane_normal(w.spec.pose) - Vec3(0, 0, -1)), 1e-15);
-  EXPECT_EQ(w.spec.radius, 0.5);
-  EXPECT_EQ(w.spec.snap, 0.1);
-  EXPECT_EQ(w.spec.release, 0.2);
-  EXPECT_EQ(w.spec.grab_distance, 0.3);
-  EXPECT_EQ(w.spec.step, 0.4);
+  EXPECT_EQ(std::tuple(w.spec.radius, w.spec.snap, w.spec.release, w.spec.grab_distance, w.spec.step), std::tuple(0.5, 0.1, 0.2, 0.3, 0.4));
   EXPECT_EQ(w.spec.rotation, widget::RotationMode::axis);
   EXPECT_TRUE(w.spec.rotate_on_contact);
   EXPECT_EQ(w.spec.button, 32);
   EXPECT_EQ(w.color.g, 0.5f);
   EXPECT_EQ(w.report.pose, w.spec.pose) << "where it is before a hand has touched it";
-  EXPECT_TRUE(find_widget(*scene, "cut"));
-  EXPECT_FALSE(find_widget(*scene, "cu"));
-  EXPECT_FALSE(find_field(*scene, "cut")) << "widgets have names of their own";
+  EXPECT_TRUE(find_widget(scene, "cut"));
+  EXPECT_FALSE(find_widget(scene, "cu"));
+  EXPECT_FALSE(find_field(scene, "cut")) << "widgets have names of their own";
 }
 
 TEST(ReadWidgets, AUnitOrientationIsKeptBitExactly) {
-  const auto exact = parse_widget(R"({"name": "c", "type": "cutting_plane", "center": [0, 0, 0], "orientation": [0.6, 0, 0.8, 0]})");
-  ASSERT_TRUE(exact) << exact.error().message;
-  EXPECT_EQ(only_widget(*exact).spec.pose.orientation, Quat(0.6, 0, 0.8, 0));
-  const auto rounded =
-      parse_widget(R"({"name": "c", "type": "cutting_plane", "center": [0, 0, 0], "orientation": [0.6000001, 0, 0.8, 0]})");
-  ASSERT_TRUE(rounded) << rounded.error().message;
-  const Quat q = only_widget(*rounded).spec.pose.orientation;
+  const auto orientation = [](const std::string& key) {
+    return only<Widget>(with_widget(R"({"name": "c", "type": "cutting_plane", "center": [0, 0, 0], )" + key + "}")).spec.pose.orientation;
+  };
+  EXPECT_EQ(orientation(R"("orientation": [0.6, 0, 0.8, 0])"), Quat(0.6, 0, 0.8, 0));
+  const Quat q = orientation(R"("orientation": [0.6000001, 0, 0.8, 0])");
   EXPECT_NEAR(q.w * q.w + q.y * q.y, 1, 1e-15);
-  const auto flat = parse_widget(R"({"name": "c", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1]})");
-  ASSERT_TRUE(flat);
-  EXPECT_EQ(only_widget(*flat).spec.pose.orientation, kIdentityRotation);
+  EXPECT_EQ(orientation(R"("normal": [0, 0, 1])"), kIdentityRotation);
 }
 
 TEST(ReadWidgets, ReadsTheOtherTypes) {
-  const auto scene = parse(R"("chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [1, 0, 0]}],
+  const Scene scene = value_of(parse(R"("chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [1, 0, 0]}],
     "widgets": [{"name": "s", "type": "seed", "position": [1, 2, 3]}, {"name": "r", "type": "rake", "from": [0, 0, 0], "to": [1, 0, 0]},
       {"name": "l", "type": "isolevel", "field": "s", "position": [0.5, 0, 0]}, {"name": "b", "type": "box", "min": [0, 0, 0], "max": [1, 2, 3]},
-      {"name": "u", "type": "ruler", "from": [0, 0, 0], "to": [0, 1, 0], "along": ["curve"]}])");
-  ASSERT_TRUE(scene) << scene.error().message;
-  const auto get = [&](const char* name) { return scene->entities.get<Widget>(find_widget(*scene, name)); };
+      {"name": "u", "type": "ruler", "from": [0, 0, 0], "to": [0, 1, 0], "along": ["curve"]}])"));
+  const auto get = [&](const char* name) { return scene.entities.get<Widget>(find_widget(scene, name)); };
   EXPECT_EQ(get("s").spec.pose.points[0], Vec3(1, 2, 3));
   EXPECT_EQ(get("r").spec.pose.points[1], Vec3(1, 0, 0));
-  EXPECT_EQ(get("l").field, find_field(*scene, "s"));
+  EXPECT_EQ(get("l").field, find_field(scene, "s"));
   EXPECT_EQ(get("b").spec.pose.points[1], Vec3(1, 2, 3));
   EXPECT_EQ(get("u").along_links, std::vector<std::string>{"curve"});
 }
 
 TEST(ReadWidgets, FollowersHaveTheStatedPose) {
-  const auto scene = parse(R"("widgets": [{"name": "cut", "type": "cutting_plane", "center": [1, 0, 0], "normal": [2, 0, 0]},
+  const Scene scene = value_of(parse(R"("widgets": [{"name": "cut", "type": "cutting_plane", "center": [1, 0, 0], "normal": [2, 0, 0]},
       {"name": "b", "type": "box", "min": [0, 0, 0], "max": [1, 2, 3]}, {"name": "r", "type": "rake", "from": [0, 0, 0], "to": [1, 0, 0]}],
     "slices": [{"field": "s", "widget": "cut"}], "clip": [{"widget": "cut", "side": "behind"}, {"widget": "b"}],
-    "streamlines": [{"field": "v", "seeds": {"widget": "r", "count": 3}}])");
-  ASSERT_TRUE(scene) << scene.error().message;
-  scene->entities.each<Slice>([&](Entity, const Slice& slice) {
-    EXPECT_EQ(slice.point, Vec3(1, 0, 0));
-    EXPECT_LT(norm(slice.normal - Vec3(1, 0, 0)), 1e-15);
-  });
-  ASSERT_EQ(scene->clip_planes.size(), 7u);
-  EXPECT_LT(norm(scene->clip_planes[0].normal - Vec3(-1, 0, 0)), 1e-15);
+    "streamlines": [{"field": "v", "seeds": {"widget": "r", "count": 3}}])"));
+  const auto slice = only<Slice>(scene);
+  EXPECT_EQ(slice.point, Vec3(1, 0, 0));
+  EXPECT_LT(norm(slice.normal - Vec3(1, 0, 0)), 1e-15);
+  ASSERT_EQ(scene.clip_planes.size(), 7u);
+  EXPECT_LT(norm(scene.clip_planes[0].normal - Vec3(-1, 0, 0)), 1e-15);
   // The box keeps its inside, like a box without a widget.
   for (std::size_t i = 1; i < 7; ++i) {
-    EXPECT_GT(dot(scene->clip_planes[i].normal, Vec3(0.5, 1, 1.5) - scene->clip_planes[i].point), 0);
-    EXPECT_LT(dot(scene->clip_planes[i].normal, (i % 2 == 1 ? Vec3(-1, -1, -1) : Vec3(2, 3, 4)) - scene->clip_planes[i].point), 0);
+    EXPECT_GT(dot(scene.clip_planes[i].normal, Vec3(0.5, 1, 1.5) - scene.clip_planes[i].point), 0);
+    EXPECT_LT(dot(scene.clip_planes[i].normal, (i % 2 == 1 ? Vec3(-1, -1, -1) : Vec3(2, 3, 4)) - scene.clip_planes[i].point), 0);
   }
-  scene->entities.each<StreamlineSet>([&](Entity, const StreamlineSet& set) {
-    ASSERT_EQ(set.seeds.points.size(), 3u);
-    EXPECT_EQ(set.seeds.points[1], Vec3(0.5, 0, 0));
-  });
+  const auto set = only<StreamlineSet>(scene);
+  ASSERT_EQ(set.seeds.points.size(), 3u);
+  EXPECT_EQ(set.seeds.points[1], Vec3(0.5, 0, 0));
 }
 
-void refused(const std::string& text, const std::string& expected) {
-  const auto scene = parse(text);
-  ASSERT_FALSE(scene) << text;
-  const std::string& message = scene.error().message;
-  EXPECT_NE(message.find(expected), std::string::npos) << message << "\nfor " << text;
-  EXPECT_EQ(message.find("s.json:2: "), 0u) << message;
-  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-}
+void refused(const std::string& text, const std::string& expected) { expect_error(parse(text), "s.json:2: ", {expected}); }
 
 TEST(ReadWidgets, ErrorsNameTheLine) {
   const std::string cut = R"("name": "c", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1])";
@@ -173,5 +145,4 @@ TEST(ReadWidgets, ErrorsOfFollowersNameTheLine) {
     refused(text + ",\n" + widgets.substr(0, widgets.size() - 2), expected);
 }
 
-}  // namespace read_widgets_test
-}  // namespace catena::scene
+}  // namespace catena::scene::read_widgets_test

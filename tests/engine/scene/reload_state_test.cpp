@@ -1,44 +1,26 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
 #include "engine/base/json_edit.h"
-#include "engine/io/volume/load_field.h"
 #include "engine/scene/document.h"
 #include "engine/scene/streamlines.h"
 #include "engine/scene/to_json.h"
-#include "tests/support/support.h"
+#include "tests/engine/scene/scene_fixture.h"
 
-namespace catena::scene {
-namespace reload_state_test {
-
-Scene scene_of(const std::string& text, const std::string& path = "scene.json") {
-  auto scene = parse_scene(text, path);
-  EXPECT_TRUE(scene) << scene.error().message;
-  return scene ? std::move(*scene) : Scene{};
-}
+namespace catena::scene::reload_state_test {
 
 std::string edited(const std::string& text, std::string_view pointer, const std::string& value) {
-  const auto result = json::set_value(text, "scene.json", pointer, value);
-  EXPECT_TRUE(result) << result.error().message;
-  return result ? *result : text;
+  return value_of(json::set_value(text, "scene.json", pointer, value));
 }
 
-std::uint64_t version(Scene& scene, const char* name) {
-  const auto any = resolve_field(scene, name, {});
-  EXPECT_TRUE(any) << any.error().message;
-  return any ? any->get()->version() : 0;
-}
+std::uint64_t version(Scene& scene, const char* name) { return value_of(resolve_field(scene, name, {})).get()->version(); }
 std::uint64_t drawn_version(Scene& scene, const char* name) {
-  const auto any = resolve_rendered_field(scene, find_field(scene, name), {});
-  EXPECT_TRUE(any) << any.error().message;
-  return any ? any->get()->version() : 0;
+  return value_of(resolve_rendered_field(scene, find_field(scene, name), {})).get()->version();
 }
 
-template <class T>
-Entity only(const Scene& scene) {
-  Entity found;
-  scene.entities.each<T>([&](Entity e, const T&) { found = e; });
-  return found;
+/// A scene of the text with the state of an older scene.
+Scene reloaded(Scene& old, const std::string& text, const std::string& path = "s.json") {
+  Scene fresh = parsed(text, path);
+  transfer_state(old, fresh);
+  return fresh;
 }
 
 const std::string kText = R"({
@@ -48,19 +30,14 @@ const std::string kText = R"({
                   {"field": "v", "seeds": {"line": {"from": [0.2, 0, 0], "to": [1, 0, 0], "count": 3}}}]
 })";
 
-std::vector<Entity> sets_of(const Scene& scene) {
-  std::vector<Entity> sets;
-  scene.entities.each<StreamlineSet>([&](Entity e, const StreamlineSet&) { sets.push_back(e); });
-  return sets;
-}
+std::vector<Entity> sets_of(const Scene& scene) { return entities_of<StreamlineSet>(scene); }
 
 TEST(ReloadState, UnchangedFieldsAreKept) {
-  Scene old = scene_of(kText);
+  Scene old = parsed(kText);
   const std::uint64_t s = version(old, "s"), t = version(old, "t"), drawn_s = drawn_version(old, "s"), drawn_t = drawn_version(old, "t");
   std::string text = edited(kText, "/fields/t/scale", "3");
   text = edited(text, "/fields/again", R"({"analytic": "sphere", "resolution": 9})");
-  Scene fresh = scene_of(text);
-  transfer_state(old, fresh);
+  Scene fresh = reloaded(old, text);
   EXPECT_EQ(version(fresh, "s"), s);
   EXPECT_EQ(drawn_version(fresh, "s"), drawn_s);
   EXPECT_NE(version(fresh, "t"), t);
@@ -71,48 +48,42 @@ TEST(ReloadState, UnchangedFieldsAreKept) {
 
 TEST(ReloadState, FilesAreReadOnceUnlessTheirGridOrMaskChanges) {
   const test::TemporaryFolder folder;
-  const auto ball = *field::make_analytic("sphere"), swirl = *field::make_analytic("circle");
-  ASSERT_TRUE(field::write_vdb(folder / "a.vdb", {{{field::sample_on_grid(*ball.scalar, 9, -2, 2), nullptr}, "ball"},
-                                                  {{nullptr, field::sample_on_grid(*swirl.vector, 9, -2, 2)}, "flow"}}));
+  write_grids(folder / "a.vdb");
   test::write_file(folder / "q.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nf 1 2 3\n");
   const std::string text = R"({"fields": {"a": {"file": "a.vdb", "grid": "ball"}}, "volumes": [{"field": "a"}],
                                "meshes": [{"name": "m", "file": "q.obj"}, {"name": "n", "file": "q.obj", "scale": 2}]})";
-  Scene old = scene_of(text, folder / "s.json");
+  Scene old = parsed(text, folder / "s.json");
   const std::uint64_t a = drawn_version(old, "a");
   const auto m = resolve_mesh(old, "m", {}), n = resolve_mesh(old, "n", {});
   ASSERT_TRUE(m && n);
   const auto loads = field::load_counters().grids;
   std::string changed = edited(text, "/meshes/1/scale", "3");
   changed = edited(changed, "/volumes/0/shade", "true");
-  Scene fresh = scene_of(edited(changed, "/fields/b", R"({"file": "./a.vdb", "grid": "ball"})"), folder / "s.json");
-  transfer_state(old, fresh);
+  Scene fresh = reloaded(old, edited(changed, "/fields/b", R"({"file": "./a.vdb", "grid": "ball"})"), folder / "s.json");
   EXPECT_EQ(drawn_version(fresh, "a"), a);
   EXPECT_EQ(version(fresh, "b"), a);
   EXPECT_EQ(*resolve_mesh(fresh, "m", {}), *m);
   EXPECT_NE(*resolve_mesh(fresh, "n", {}), *n);
   EXPECT_EQ(field::load_counters().grids, loads);
-  Scene other = scene_of(edited(changed, "/fields/a", R"({"file": "a.vdb", "grid": "flow"})"), folder / "s.json");
-  transfer_state(fresh, other);
+  Scene other = reloaded(fresh, edited(changed, "/fields/a", R"({"file": "a.vdb", "grid": "flow"})"), folder / "s.json");
   EXPECT_NE(version(other, "a"), a);
   EXPECT_EQ(field::load_counters().grids, loads + 1);
 }
 
 TEST(ReloadState, UnchangedLinesAreKept) {
-  Scene old = scene_of(kText);
+  Scene old = parsed(kText);
   std::vector<std::vector<flow::CurvePtr>> lines;
   for (const Entity set : sets_of(old)) lines.push_back(*resolve_lines(old, set));
   // Colors and radii change; seeds and fields do not.
   std::string text = edited(kText, "/streamlines/0/color", "[1, 1, 0]");
   text = edited(text, "/streamlines/1/radius", "0.03");
-  Scene fresh = scene_of(text);
-  transfer_state(old, fresh);
+  Scene fresh = reloaded(old, text);
   std::vector<Entity> sets = sets_of(fresh);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(*resolve_lines(fresh, sets[i]), lines[i]) << i;
   // Other seeds: lines of unchanged seeds are kept.
   text = edited(text, "/streamlines/0/seeds/1", "[0.25, 0, 0]");
   text = edited(text, "/streamlines/1/seeds/line/count", "2");
-  Scene third = scene_of(text);
-  transfer_state(fresh, third);
+  Scene third = reloaded(fresh, text);
   sets = sets_of(third);
   const auto points = resolve_lines(third, sets[0]), pattern = resolve_lines(third, sets[1]);
   ASSERT_TRUE(points && pattern);
@@ -120,33 +91,29 @@ TEST(ReloadState, UnchangedLinesAreKept) {
   EXPECT_NE((*points)[1], lines[0][1]);
   EXPECT_EQ(pattern->size(), 2u);
   // Another field: no line is kept.
-  Scene fourth = scene_of(edited(text, "/fields/v/scale", "2"));
-  transfer_state(third, fourth);
+  Scene fourth = reloaded(third, edited(text, "/fields/v/scale", "2"));
   EXPECT_NE((*resolve_lines(fourth, sets_of(fourth)[0]))[0], lines[0][0]);
 }
 
 TEST(ReloadState, UnusedCurvesAreReleased) {
-  Scene scene = scene_of(kText);
+  Scene scene = parsed(kText);
   for (int i = 0; i < 20; ++i) {
     ASSERT_TRUE(resolve_lines(scene, sets_of(scene)[0]));
-    Scene fresh = scene_of(edited(kText, "/streamlines/0/seeds/1", "[" + to_json(0.5 + 0.01 * i) + ", 0, 0]"));
-    transfer_state(scene, fresh);
+    Scene fresh = reloaded(scene, edited(kText, "/streamlines/0/seeds/1", "[" + to_json(0.5 + 0.01 * i) + ", 0, 0]"));
     scene = std::move(fresh);
   }
   EXPECT_LE(scene.traced_curves.size(), 4u);
 }
 
 TEST(ReloadState, AutomaticColoursAreKept) {
-  Scene old = scene_of(kText);
+  Scene old = parsed(kText);
   drawn_version(old, "s");
-  const TransferFunction made = old.entities.get<Volume>(only<Volume>(old)).transfer;
+  const TransferFunction made = only<Volume>(old).transfer;
   ASSERT_FALSE(made.colors.empty() || made.extinctions.empty());
   const auto carried = [&](const std::string& text) {
-    Scene before = scene_of(kText);
+    Scene before = parsed(kText);
     drawn_version(before, "s");
-    Scene fresh = scene_of(text);
-    transfer_state(before, fresh);
-    return fresh.entities.get<Volume>(only<Volume>(fresh)).transfer;
+    return only<Volume>(reloaded(before, text)).transfer;
   };
   const TransferFunction shaded = carried(edited(kText, "/volumes/0/shade", "true"));
   EXPECT_EQ(to_json(shaded.colors), to_json(made.colors));
@@ -170,12 +137,11 @@ struct CachedComponent {
 
 TEST(ReloadState, CachedComponentsMoveToEqualDescriptions) {
   const auto carried = [](const std::string& text) {
-    Scene old = scene_of(kText);
+    Scene old = parsed(kText);
     const std::vector<Entity> sets = sets_of(old);
     old.cache.emplace<CachedComponent>(sets[0], {1});
     old.cache.emplace<CachedComponent>(sets[1], {2});
-    Scene fresh = scene_of(text);
-    transfer_state(old, fresh);
+    Scene fresh = reloaded(old, text);
     std::string values;
     for (const Entity e : sets_of(fresh))
       values += fresh.cache.has<CachedComponent>(e) ? std::to_string(fresh.cache.get<CachedComponent>(e).value) : "-";
@@ -191,7 +157,7 @@ TEST(ReloadState, CachedComponentsMoveToEqualDescriptions) {
 }
 
 TEST(ReloadState, TheCursorKeepsItsState) {
-  Scene old = scene_of("{}"), fresh = scene_of(R"({"cursor": {"size": 0.25, "show_occluded": false, "drop_line": true}})");
+  Scene old = parsed("{}"), fresh = parsed(R"({"cursor": {"size": 0.25, "show_occluded": false, "drop_line": true}})");
   Cursor& cursor = old.entities.get<Cursor>(old.cursor);
   cursor.probe = {1, 2, 3};
   cursor.names = {"a"};
@@ -210,10 +176,8 @@ TEST(ReloadState, TheCursorKeepsItsState) {
   EXPECT_EQ(fresh.animation_phase, 3.5);
 }
 
-// ---- widgets ----
-
 Scene scene_with_widget(const std::string& name, const std::string& item, const widget::Pose& pose) {
-  Scene scene = scene_of("{}");
+  Scene scene = parsed("{}");
   Widget widget;
   widget.where = *json::parse(item, "");
   widget.spec.kind = widget::Kind::seed;
@@ -231,39 +195,33 @@ widget::Pose at(const Vec3& p) {
 }
 
 TEST(ReloadState, AWidgetKeepsItsPoseUnlessTheTextChangesIt) {
-  const auto carried = [](const std::string& name, const std::string& item, const widget::Pose& pose) {
+  using enum widget::Mode;
+  const struct {
+    const char *what, *name, *item;
+    Vec3 stated, position;
+    widget::Mode mode;
+    std::uint64_t revision;
+  } kCases[] = {{"the stated pose is unchanged", "w", R"({"position": [0, 0, 0], "radius": 2})", {0, 0, 0}, {5, 6, 7}, drag, 4},
+                {"the stated pose was set to the current one", "w", R"({"position": [5, 6, 7]})", {5, 6, 7}, {5, 6, 7}, drag, 4},
+                {"the stated pose was set to another one", "w", R"({"position": [1, 1, 1]})", {1, 1, 1}, {1, 1, 1}, idle, 5},
+                {"another widget", "x", R"({"position": [0, 0, 0], "radius": 1})", {0, 0, 0}, {0, 0, 0}, idle, 0}};
+  for (const auto& [what, name, item, stated, position, mode, revision] : kCases) {
+    SCOPED_TRACE(what);
     Scene old = scene_with_widget("w", R"({"position": [0, 0, 0], "radius": 1})", at({0, 0, 0}));
-    Widget& before = old.entities.get<Widget>(only<Widget>(old));
+    Widget& before = old.entities.get<Widget>(entities_of<Widget>(old).at(0));
     before.spec.revision = before.report.revision = 4;
     before.report.pose = at({5, 6, 7});
-    before.report.mode = widget::Mode::drag;
-    Scene fresh = scene_with_widget(name, item, pose);
+    before.report.mode = drag;
+    Scene fresh = scene_with_widget(name, item, at(stated));
     transfer_state(old, fresh);
-    return fresh.entities.get<Widget>(only<Widget>(fresh));
-  };
-  // The widget's stated pose is unchanged.
-  const Widget unchanged = carried("w", R"({"position": [0, 0, 0], "radius": 2})", at({0, 0, 0}));
-  EXPECT_EQ(unchanged.report.pose, at({5, 6, 7}));
-  EXPECT_EQ(unchanged.report.mode, widget::Mode::drag);
-  EXPECT_EQ(unchanged.spec.revision, 4u);
-  // The stated pose was set to the current pose.
-  const Widget written = carried("w", R"({"position": [5, 6, 7]})", at({5, 6, 7}));
-  EXPECT_EQ(written.report.mode, widget::Mode::drag);
-  EXPECT_EQ(written.spec.revision, 4u);
-  EXPECT_EQ(written.spec.pose, at({5, 6, 7}));
-  // The stated pose was set to another pose, which applies.
-  const Widget moved = carried("w", R"({"position": [1, 1, 1]})", at({1, 1, 1}));
-  EXPECT_EQ(moved.report.pose, at({1, 1, 1}));
-  EXPECT_EQ(moved.report.mode, widget::Mode::idle);
-  EXPECT_EQ(moved.spec.revision, 5u);
-  EXPECT_EQ(moved.report.revision, 5u);
-  // Another widget.
-  const Widget other = carried("x", R"({"position": [0, 0, 0], "radius": 1})", at({0, 0, 0}));
-  EXPECT_EQ(other.report.pose, at({0, 0, 0}));
-  EXPECT_EQ(other.spec.revision, 0u);
+    const auto after = only<Widget>(fresh);
+    EXPECT_EQ(after.report.pose, at(position));
+    EXPECT_EQ(after.report.mode, mode);
+    EXPECT_EQ(after.spec.revision, revision);
+    EXPECT_EQ(after.report.revision, revision);
+    EXPECT_EQ(after.spec.pose, at(stated));
+  }
 }
-
-// ---- values ----
 
 TEST(WriteValues, WrittenValuesReadBack) {
   Camera camera;
@@ -279,11 +237,11 @@ TEST(WriteValues, WrittenValuesReadBack) {
       ", \"color\": " + to_json(colors) + ", \"opacity\": " + to_json(opacities) + ", \"shade\": " + to_json(true) + "}], \"clip\": [" +
       to_json(ClipPlane{{{1, 2, 3}, {0.1, 0.2, 0.3}}}) + "], \"background\": " + to_json(Background{{0.1f, 0, 1}, false}) +
       ", \"lights\": [" + to_json(Light{{1, 2, 3}, {1, 0.5f, 0.1f}, 0.7, true}) + "]}";
-  const Scene scene = scene_of(text);
+  const Scene scene = parsed(text);
   EXPECT_EQ(to_json(scene.camera), to_json(camera));
   EXPECT_EQ(scene.camera.position, camera.position);
   EXPECT_EQ(scene.camera.ortho_height, camera.ortho_height);
-  const Volume& volume = scene.entities.get<Volume>(only<Volume>(scene));
+  const auto volume = only<Volume>(scene);
   EXPECT_EQ(volume.transfer.colors[1].color.b, 0.96f);
   EXPECT_EQ(to_json(volume.transfer.colors), "[[0.1, 0.1, 0.2, 0.3], [0.7, 1, 0, 0.96]]");
   EXPECT_EQ(to_json(volume.transfer.opacities), to_json(opacities));
@@ -310,5 +268,4 @@ TEST(WriteValues, APoseHasTheKeysOfItsType) {
   EXPECT_EQ(keys(widget::Kind::box), "min=[1, 2, 3] max=[4, 5, 6] ");
 }
 
-}  // namespace reload_state_test
-}  // namespace catena::scene
+}  // namespace catena::scene::reload_state_test

@@ -1,37 +1,31 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/ruler.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
 #include <random>
 
 #include "engine/scene/widgets.h"
+#include "tests/engine/scene/scene_fixture.h"
 
-namespace catena::scene {
-namespace ruler_test {
+namespace catena::scene::ruler_test {
 
 using How = RulerMeasure::PathKind;
 constexpr double kPi = std::numbers::pi;
 
 /// A scene with a ruler along the named links of `chain`.
 Scene scene_with(const std::string& chain, const std::string& along) {
-  auto scene = parse_scene(R"({"fields": {"s": {"analytic": "sphere"}, "v": {"analytic": "circle"}, "u": {"analytic": "uniform"}},
-    "chain": [)" + chain + R"(], "widgets": [{"name": "u", "type": "ruler", "from": [0, 0, 0], "to": [1, 0, 0])" +
-                               (along.empty() ? "" : ", \"along\": [" + along + "]") +
-                               R"(}, {"name": "p", "type": "seed", "position": [1, 0, 0]},
-      {"name": "l", "type": "isolevel", "field": "s", "position": [1, 0, 0]}]})",
-                           "s.json");
-  EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
-  return scene ? std::move(*scene) : Scene{};
+  return parsed(R"({"fields": {"s": {"analytic": "sphere"}, "v": {"analytic": "circle"}, "u": {"analytic": "uniform"}},
+    "chain": [)" +
+                chain + R"(], "widgets": [{"name": "u", "type": "ruler", "from": [0, 0, 0], "to": [1, 0, 0])" +
+                (along.empty() ? "" : ", \"along\": [" + along + "]") +
+                R"(}, {"name": "p", "type": "seed", "position": [1, 0, 0]},
+      {"name": "l", "type": "isolevel", "field": "s", "position": [1, 0, 0]}]})");
 }
 
 RulerMeasure measured(Scene& scene, const Vec3& from, const Vec3& to) {
   const Entity ruler = find_widget(scene, "u");
   EXPECT_TRUE(set_widget_pose(scene, ruler, {{from, to}, kIdentityRotation}));
-  const auto measure = resolve_ruler(scene, ruler);
-  EXPECT_TRUE(measure) << (measure ? "" : measure.error().message);
-  return measure ? *measure : RulerMeasure{};
+  return value_of(resolve_ruler(scene, ruler));
 }
 
 const std::string kCurve = R"({"name": "curve", "type": "streamline", "field": "v", "seed": [1, 0, 0]})";
@@ -65,12 +59,10 @@ TEST(Ruler, AlongAClosedStreamlineItTakesTheShorterWay) {
     }
     EXPECT_NEAR(polyline, measure.length, 1e-3 * measure.length);
   };
-  expect(30, 100, 70);
-  expect(100, 30, 70);
-  expect(20, 220, 160);
-  expect(220, 20, 160);
-  expect(-30, 40, 70);
-  expect(40, -30, 70);
+  for (const auto& [from, to, degrees] : {std::tuple{30, 100, 70}, {20, 220, 160}, {-30, 40, 70}}) {
+    expect(from, to, degrees);
+    expect(to, from, degrees);
+  }
   expect(1, 359, 2);
 }
 
@@ -88,10 +80,9 @@ TEST(Ruler, FollowsAnOpenStreamlineAndAMovingSeed) {
   EXPECT_NEAR(resolve_ruler(moving, find_widget(moving, "u"))->length, 0.25 * kPi, 1e-8);
   // A seed where no line starts: a note, and a straight line.
   ASSERT_TRUE(set_widget_pose(moving, find_widget(moving, "p"), {{Vec3(0), Vec3(0)}, kIdentityRotation}));
-  const auto none = resolve_ruler(moving, find_widget(moving, "u"));
-  ASSERT_TRUE(none);
-  EXPECT_EQ(none->path_kind, How::straight);
-  EXPECT_NE(none->note.find("zero at the seed"), std::string::npos) << none->note;
+  const RulerMeasure none = value_of(resolve_ruler(moving, find_widget(moving, "u")));
+  EXPECT_EQ(none.path_kind, How::straight);
+  EXPECT_TRUE(has(none.note, "zero at the seed"));
 }
 
 TEST(Ruler, AlongASphereItIsTheGreatCircle) {
@@ -147,5 +138,4 @@ TEST(Ruler, TheMeasureIsCachedUntilAnEndMoves) {
   EXPECT_NE(measured(scene, {1, 0, 0}, {0, 0, 1}).points, first.points);
 }
 
-}  // namespace ruler_test
-}  // namespace catena::scene
+}  // namespace catena::scene::ruler_test

@@ -1,36 +1,27 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
+#include "tests/engine/scene/scene_fixture.h"
 
-#include "engine/scene/scene.h"
-#include "tests/support/support.h"
-
-namespace catena::scene {
-namespace slices_test {
+namespace catena::scene::slices_test {
 
 Result<Scene> parse(const std::string& slices) {
   return parse_scene("{\"fields\": {\"s\": {\"analytic\": \"sphere\"}},\n\"slices\": " + slices + "}", "s.json");
 }
 
 TEST(SceneSlices, EveryKeyIsRead) {
-  const auto scene =
-      parse(R"([{"field": "s", "point": [1, 2, 3], "normal": [0, 1, -2], "color": "inferno", "range": [0.5, 2], "opacity": 0.25,
+  const std::vector<Slice> slices = all_of<Slice>(value_of(parse(
+      R"([{"field": "s", "point": [1, 2, 3], "normal": [0, 1, -2], "color": "inferno", "range": [0.5, 2], "opacity": 0.25,
     "contours": {"levels": [0.5, 1, 1.5], "color": [1, 0, 0], "width": 2.5}, "shade": true, "clip": false},
     {"field": "s", "axis": "y", "at": -0.5, "color": [[0, 1, 0, 0], [1, 0, 0, 1]], "contours": {"count": 7}},
-    {"field": "s", "axis": "z", "at": 0, "contours": {"spacing": 0.2}}])");
-  ASSERT_TRUE(scene) << scene.error().message;
-  std::vector<Slice> slices;
-  scene->entities.each<Slice>([&](Entity, const Slice& slice) { slices.push_back(slice); });
+    {"field": "s", "axis": "z", "at": 0, "contours": {"spacing": 0.2}}])")));
   ASSERT_EQ(slices.size(), 3u);
   EXPECT_EQ(slices[0].point, Vec3(1, 2, 3));
   EXPECT_EQ(slices[0].normal, Vec3(0, 1, -2));
   EXPECT_EQ(slices[0].color_by.named.map, "inferno");
-  EXPECT_EQ(slices[0].color_by.named.range->at(1), 2);
-  EXPECT_EQ(slices[0].opacity, 0.25);
+  EXPECT_EQ(std::pair(slices[0].color_by.named.range->at(1), slices[0].opacity), std::pair(2.0, 0.25));
   EXPECT_TRUE(slices[0].lit);
   EXPECT_FALSE(slices[0].clipped);
   EXPECT_EQ(slices[0].contours->levels, (std::vector<double>{0.5, 1, 1.5}));
-  EXPECT_EQ(slices[0].contours->color.r, 1);
-  EXPECT_EQ(slices[0].contours->width, 2.5);
+  EXPECT_EQ(std::tuple(slices[0].contours->color.r, slices[0].contours->width), std::tuple(1, 2.5));
   EXPECT_EQ(slices[1].point, Vec3(0, -0.5, 0));
   EXPECT_EQ(slices[1].normal, Vec3(0, 1, 0));
   EXPECT_EQ(slices[1].color_by.colors.size(), 2u);
@@ -63,46 +54,32 @@ TEST(SceneSlices, ErrorsNameTheLine) {
         {R"([{"field": "s", "axis": "x", "at": 1, "contours": {"levels": [1, 1]}}])", "rising numbers were expected"},
         {R"([{"field": "s", "axis": "x", "at": 1, "contours": {"levels": []}}])", "rising numbers"},
         {R"([{"field": "s", "axis": "x", "at": 1, "contours": {"count": 2, "width": 1e4}}])", "from 0 to 100"},
-        {R"([{"field": "s", "axis": "x", "at": 1, "contour": {}}])", "contours"}}) {
-    const auto scene = parse(text);
-    ASSERT_FALSE(scene) << text;
-    EXPECT_NE(scene.error().message.find(expected), std::string::npos) << scene.error().message;
-    EXPECT_EQ(scene.error().message.find("s.json:2"), 0u) << scene.error().message;
-  }
+        {R"([{"field": "s", "axis": "x", "at": 1, "contour": {}}])", "contours"}})
+    expect_error(parse(text), "s.json:2", {expected});
 }
 
 TEST(SceneMeshes, AppearanceIsReadAndChecked) {
   const test::TemporaryFolder folder;
-  test::write_file(folder / "quad.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  test::write_file(folder / "quad.obj", kQuad);
   const auto mesh = [&](const std::string& keys) {
     return parse_scene(R"({"fields": {"s": {"analytic": "sphere"}}, "meshes": [{"name": "m", "file": "quad.obj")" + keys + "}]}",
                        folder / "s.json");
   };
-  const auto scene =
-      mesh(R"(, "opacity": 0.5, "shading": "smooth", "edges": true, "color_by": {"field": "s", "color": "plasma", "range": [0, 2]})");
-  ASSERT_TRUE(scene) << scene.error().message;
-  scene->entities.each<SurfaceMesh>([](Entity, const SurfaceMesh& surface) {
-    EXPECT_EQ(surface.opacity, 0.5);
-    EXPECT_TRUE(surface.smooth_shading && surface.show_edges);
-    ASSERT_TRUE(surface.color_by);
-    EXPECT_EQ(surface.color_by->named.map, "plasma");
-  });
-  const auto plain = mesh("");
-  ASSERT_TRUE(plain);
-  plain->entities.each<SurfaceMesh>([](Entity, const SurfaceMesh& surface) {
-    EXPECT_EQ(surface.opacity, 1);
-    EXPECT_FALSE(surface.smooth_shading || surface.show_edges || surface.color_by);
-  });
+  const auto surface = only<SurfaceMesh>(value_of(
+      mesh(R"(, "opacity": 0.5, "shading": "smooth", "edges": true, "color_by": {"field": "s", "color": "plasma", "range": [0, 2]})")));
+  EXPECT_EQ(surface.opacity, 0.5);
+  EXPECT_TRUE(surface.smooth_shading && surface.show_edges);
+  ASSERT_TRUE(surface.color_by);
+  EXPECT_EQ(surface.color_by->named.map, "plasma");
+  const auto plain = only<SurfaceMesh>(value_of(mesh("")));
+  EXPECT_EQ(plain.opacity, 1);
+  EXPECT_FALSE(plain.smooth_shading || plain.show_edges || plain.color_by);
   for (const auto& [keys, expected] : {std::pair{R"(, "opacity": -0.1)", "opacity"},
                                        {R"(, "opacity": 1.1)", "a number from 0 to 1 was expected"},
                                        {R"(, "shading": "round")", "flat"},
                                        {R"(, "range": [0, 1])", "unknown key \"range\""},
-                                       {R"(, "color_by": {"field": "t"})", "unknown field"}}) {
-    const auto wrong = mesh(keys);
-    ASSERT_FALSE(wrong) << keys;
-    EXPECT_NE(wrong.error().message.find(expected), std::string::npos) << wrong.error().message;
-  }
+                                       {R"(, "color_by": {"field": "t"})", "unknown field"}})
+    expect_error(mesh(keys), folder / "s.json:1: ", {expected});
 }
 
-}  // namespace slices_test
-}  // namespace catena::scene
+}  // namespace catena::scene::slices_test

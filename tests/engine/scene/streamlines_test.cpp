@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/streamlines.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 
-#include "tests/support/support.h"
+#include "tests/engine/scene/scene_fixture.h"
 
-namespace catena::scene {
-namespace streamlines_test {
+namespace catena::scene::streamlines_test {
 
 /// A scene of a circular flow by formula and a sphere, with one set of streamlines.
 std::string scene_text(const std::string& set) {
@@ -17,52 +14,30 @@ std::string scene_text(const std::string& set) {
          set + "}]}";
 }
 
-Entity set_of(Scene& scene) {
-  Entity found;
-  scene.entities.each<StreamlineSet>([&](Entity e, const StreamlineSet&) { found = e; });
-  return found;
-}
+Entity set_of(const Scene& scene) { return entities_of<StreamlineSet>(scene).at(0); }
 
-void expect_error(const Result<Scene>& scene, int line, const std::vector<std::string>& words) {
-  ASSERT_FALSE(scene);
-  const std::string& message = scene.error().message;
-  EXPECT_NE(message.find("s.json:" + std::to_string(line) + ":"), std::string::npos) << message;
-  for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << message;
-}
+std::string line_of(int line) { return "s.json:" + std::to_string(line) + ":"; }
 
 void refused(const std::string& set, int line, const std::vector<std::string>& words) {
-  expect_error(parse_scene(scene_text(set), "s.json"), line, words);
-}
-
-std::vector<flow::CurvePtr> lines_of(const std::string& set) {
-  auto scene = parse_scene(scene_text(set), "s.json");
-  EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
-  if (!scene) return {};
-  auto lines = resolve_lines(*scene, set_of(*scene));
-  EXPECT_TRUE(lines) << (lines ? "" : lines.error().message);
-  return lines ? *lines : std::vector<flow::CurvePtr>{};
+  expect_error(parse_scene(scene_text(set), "s.json"), line_of(line), words);
 }
 
 void no_lines(const std::string& set, int line, const std::vector<std::string>& words) {
-  auto scene = parse_scene(scene_text(set), "s.json");
-  ASSERT_TRUE(scene) << scene.error().message;
-  const auto lines = resolve_lines(*scene, set_of(*scene));
-  ASSERT_FALSE(lines);
-  const std::string& message = lines.error().message;
-  EXPECT_NE(message.find("s.json:" + std::to_string(line) + ":"), std::string::npos) << message;
-  for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << message;
+  Scene scene = parsed(scene_text(set));
+  expect_error(resolve_lines(scene, set_of(scene)), line_of(line), words);
 }
+
+std::vector<flow::CurvePtr> lines_of_scene(const std::string& text) {
+  Scene scene = parsed(text);
+  return value_of(resolve_lines(scene, set_of(scene)));
+}
+
+std::vector<flow::CurvePtr> lines_of(const std::string& set) { return lines_of_scene(scene_text(set)); }
 
 /// The lines of an unbounded formula in the box -1..1.
 std::vector<flow::CurvePtr> lines_of_formula(const std::string& analytic, const std::string& set) {
-  auto scene = parse_scene(
-      "{\"fields\": {\"v\": {\"analytic\": \"" + analytic + "\", \"box\": [-1, 1]}}, \"streamlines\": [{\"field\": \"v\", " + set + "}]}",
-      "s.json");
-  EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
-  if (!scene) return {};
-  auto lines = resolve_lines(*scene, set_of(*scene));
-  EXPECT_TRUE(lines) << (lines ? "" : lines.error().message);
-  return lines ? *lines : std::vector<flow::CurvePtr>{};
+  return lines_of_scene("{\"fields\": {\"v\": {\"analytic\": \"" + analytic +
+                        "\", \"box\": [-1, 1]}}, \"streamlines\": [{\"field\": \"v\", " + set + "}]}");
 }
 
 TEST(SeedPatterns, LinesOfAFormulaEndAtItsBox) {
@@ -85,25 +60,18 @@ TEST(SeedPatterns, LinesOfAFormulaEndAtItsBox) {
   EXPECT_LE(max_abs(mixed[0]->knots().back().p), 1 + 1e-8);
   EXPECT_GT(max_abs(mixed[1]->knots().back().p), 2);
   // Lines reach the end of a large box, beyond ten default lengths.
-  auto large = parse_scene(
-      R"({"fields": {"v": {"analytic": "helix", "box": [-30, 30]}}, "streamlines": [{"field": "v", "seeds": [[1, 0, 0]]}]})", "s.json");
-  ASSERT_TRUE(large);
-  const auto far = resolve_lines(*large, set_of(*large));
-  ASSERT_TRUE(far);
-  EXPECT_NEAR(far->front()->knots().back().p.z, 30, 1e-6);
+  const auto far = lines_of_scene(
+      R"({"fields": {"v": {"analytic": "helix", "box": [-30, 30]}}, "streamlines": [{"field": "v", "seeds": [[1, 0, 0]]}]})");
+  EXPECT_NEAR(far.front()->knots().back().p.z, 30, 1e-6);
   // A stated length, or a seed outside the box, applies without the box.
   EXPECT_NEAR(lines_of_formula("uniform", R"("seeds": [[0, 0, 0]], "length": 7)")[0]->knots().back().s, 7, 1e-12);
   EXPECT_NEAR(lines_of_formula("uniform", R"("seeds": [[0, 3, 0]])")[0]->knots().back().s, 40, 1e-9);
 }
 
 TEST(SeedPatterns, EvenlySpacedLinesOfAHollowDomainStartInItsWall) {
-  auto scene = parse_scene(R"({"fields": {"f": {"analytic": "left-ventricle", "part": "fibre", "box": [-3, 3]}},
-                               "streamlines": [{"field": "f", "kind": "line", "seeds": {"evenly_spaced": {"distance": 0.3}}}]})",
-                           "s.json");
-  ASSERT_TRUE(scene) << scene.error().message;
-  const auto lines = resolve_lines(*scene, set_of(*scene));
-  ASSERT_TRUE(lines) << lines.error().message;
-  EXPECT_GT(lines->size(), 10u);
+  const auto lines = lines_of_scene(R"({"fields": {"f": {"analytic": "left-ventricle", "part": "fibre", "box": [-3, 3]}},
+      "streamlines": [{"field": "f", "kind": "line", "seeds": {"evenly_spaced": {"distance": 0.3}}}]})");
+  EXPECT_GT(lines.size(), 10u);
 }
 
 TEST(SeedPatterns, EveryPatternGivesLines) {
@@ -149,15 +117,12 @@ TEST(SeedPatterns, SeedsWithoutALineAreLeftOut) {
 }
 
 TEST(SeedPatterns, LinesShareTheCurvesOfHapticLinks) {
-  auto scene = parse_scene(scene_text("\"seeds\": [[1, 0, 0], [0.5, 0, 0]]"), "s.json");
-  ASSERT_TRUE(scene);
-  const auto lines = resolve_lines(*scene, set_of(*scene));
-  ASSERT_TRUE(lines);
-  const auto any = resolve_field(*scene, "swirl", {});
-  const auto link_curve = resolve_streamline(*scene, {any->vector.get()}, {0.5, 0, 0}, {});
-  ASSERT_TRUE(link_curve);
-  EXPECT_EQ((*lines)[1].get(), link_curve->get());
-  EXPECT_EQ(resolve_lines(*scene, set_of(*scene))->at(0).get(), (*lines)[0].get());
+  Scene scene = parsed(scene_text("\"seeds\": [[1, 0, 0], [0.5, 0, 0]]"));
+  const auto lines = value_of(resolve_lines(scene, set_of(scene)));
+  const auto any = resolve_field(scene, "swirl", {});
+  const auto link_curve = value_of(resolve_streamline(scene, {any->vector.get()}, {0.5, 0, 0}, {}));
+  EXPECT_EQ(lines.at(1).get(), link_curve.get());
+  EXPECT_EQ(resolve_lines(scene, set_of(scene))->at(0).get(), lines[0].get());
 }
 
 TEST(SeedPatterns, ErrorsNameTheLine) {
@@ -187,43 +152,38 @@ TEST(ColoredLines, TheKeysAreChecked) {
   refused("\"seeds\": [[1, 0, 0]], \"color_by\": {\"quantity\": \"speed\", \"color\": [1, 0, 0]}", 3, {"\"color\""});
   refused("\"seeds\": [[1, 0, 0]], \"color_by\": {\"quantity\": \"speed\",\n\"color\": [[0, 1, 1, 1],\n[0, 1, 0, 1]]}", 5,
           {"strictly rising"});
-  const auto scene = parse_scene(
-      scene_text("\"seeds\": [[1, 0, 0]], \"color_by\": {\"field\": \"ball\", \"color\": [[0, 0, 0, 1], [2, 1, 0, 0]]}"), "s.json");
-  ASSERT_TRUE(scene) << scene.error().message;
-  scene->entities.each<StreamlineSet>([](Entity, const StreamlineSet& set) {
-    ASSERT_TRUE(set.color_by);
-    EXPECT_EQ(set.color_by->source, ColorBy::Source::field);
-    EXPECT_EQ(set.color_by->colors.size(), 2u);
-  });
+  const auto set = only<StreamlineSet>(
+      parsed(scene_text("\"seeds\": [[1, 0, 0]], \"color_by\": {\"field\": \"ball\", \"color\": [[0, 0, 0, 1], [2, 1, 0, 0]]}")));
+  ASSERT_TRUE(set.color_by);
+  EXPECT_EQ(set.color_by->source, ColorBy::Source::field);
+  EXPECT_EQ(set.color_by->colors.size(), 2u);
 }
 
 TEST(ColoredLines, TheIndicatorIsChecked) {
-  const auto text = [](const std::string& body) {
-    return "{\"fields\": {\"swirl\": {\"analytic\": \"circle\"}},\n\"indicator\": {" + body + "}}";
+  const auto read = [](const std::string& body) {
+    return parse_scene("{\"fields\": {\"swirl\": {\"analytic\": \"circle\"}},\n\"indicator\": {" + body + "}}", "s.json");
   };
-  EXPECT_TRUE(parse_scene(text("\"field\": \"swirl\", \"length\": 0.3"), "s.json"));
-  expect_error(parse_scene(text("\"field\": \"whirl\""), "s.json"), 2, {"unknown field", "swirl"});
-  expect_error(parse_scene(text("\"field\": \"swirl\", \"length\": 0"), "s.json"), 2, {"> 0"});
-  expect_error(parse_scene(text("\"feld\": \"swirl\""), "s.json"), 2, {"feld", "field"});
+  EXPECT_TRUE(read("\"field\": \"swirl\", \"length\": 0.3"));
+  expect_error(read("\"field\": \"whirl\""), line_of(2), {"unknown field", "swirl"});
+  expect_error(read("\"field\": \"swirl\", \"length\": 0"), line_of(2), {"> 0"});
+  expect_error(read("\"feld\": \"swirl\""), line_of(2), {"feld", "field"});
 }
 
 TEST(Lines, VisitedLinesEqualResolvedLinesAndAreCachedIfFew) {
   const std::string seeds = R"("seeds": {"line": {"from": [0.5, 0, 0], "to": [1, 0, 0], "count": 300}})";
-  auto all = parse_scene(scene_text(seeds), "s.json"), scene = parse_scene(scene_text(seeds), "s.json");
-  ASSERT_TRUE(all && scene);
-  const auto lines = resolve_lines(*all, set_of(*all));
-  ASSERT_TRUE(lines) << lines.error().message;
-  const Entity set = set_of(*scene);
-  EXPECT_EQ(lines_version(*scene, set), 0u) << "not made";
+  Scene all = parsed(scene_text(seeds)), scene = parsed(scene_text(seeds));
+  const auto lines = value_of(resolve_lines(all, set_of(all)));
+  const Entity set = set_of(scene);
+  EXPECT_EQ(lines_version(scene, set), 0u) << "not made";
   for (const std::size_t knot_limit : {std::size_t(1000), kMaxCachedKnots}) {
     std::size_t visited = 0, blocks = 0;
     std::weak_ptr<const flow::Curve> one;
     ASSERT_TRUE(visit_lines(
-        *scene, set,
+        scene, set,
         [&](const LineBlock& block) -> Outcome {
           EXPECT_EQ(block.seeds_total, 300u);
           for (const flow::CurvePtr& curve : block.curves) {
-            const std::vector<flow::Knot>&a = curve->knots(), &b = lines->at(visited)->knots();
+            const std::vector<flow::Knot>&a = curve->knots(), &b = lines.at(visited)->knots();
             EXPECT_EQ(a.size(), b.size());
             EXPECT_EQ(a.back().p, b.back().p);
             ++visited;
@@ -237,22 +197,19 @@ TEST(Lines, VisitedLinesEqualResolvedLinesAndAreCachedIfFew) {
     EXPECT_EQ(visited, 300u);
     EXPECT_GT(blocks, 1u);
     EXPECT_EQ(one.expired(), knot_limit < kMaxCachedKnots) << "nobody else holds them";
-    EXPECT_NE(lines_version(*scene, set), 0u);
-    EXPECT_EQ(lines_bounds(*scene, set).hi, lines_bounds(*all, set_of(*all)).hi);
+    EXPECT_NE(lines_version(scene, set), 0u);
+    EXPECT_EQ(lines_bounds(scene, set).hi, lines_bounds(all, set_of(all)).hi);
   }
-  const std::uint64_t version = lines_version(*scene, set);
-  ASSERT_TRUE(resolve_lines(*scene, set));
-  EXPECT_EQ(lines_version(*scene, set), version) << "they were kept";
+  const std::uint64_t version = lines_version(scene, set);
+  ASSERT_TRUE(resolve_lines(scene, set));
+  EXPECT_EQ(lines_version(scene, set), version) << "they were kept";
 }
 
 TEST(Lines, TooManyKnotsAreAnErrorAndProgressIsReported) {
-  auto scene = parse_scene(scene_text(R"("seeds": [[1, 0, 0]])"), "s.json");
-  ASSERT_TRUE(scene) << scene.error().message;
-  const auto node = json::parse(R"({"line": {"from": [0.5, 0, 0], "to": [1, 0, 0], "count": 300}})", "seeds.json");
-  ASSERT_TRUE(node);
-  const auto seeds = read_seeds(*scene, *node);
-  ASSERT_TRUE(seeds) << seeds.error().message;
-  const auto field = resolve_field(*scene, scene->entities.get<StreamlineSet>(set_of(*scene)).field, {});
+  Scene scene = parsed(scene_text(R"("seeds": [[1, 0, 0]])"));
+  const json::Node node = value_of(json::parse(R"({"line": {"from": [0.5, 0, 0], "to": [1, 0, 0], "count": 300}})", "seeds.json"));
+  const auto seeds = value_of(read_seeds(scene, node));
+  const auto field = resolve_field(scene, only<StreamlineSet>(scene).field, {});
   ASSERT_TRUE(field && field->vector);
   LineRequest request{flow::Flow{field->vector.get()}};
   std::vector<std::size_t> done;
@@ -260,16 +217,11 @@ TEST(Lines, TooManyKnotsAreAnErrorAndProgressIsReported) {
     EXPECT_EQ(of, 300u);
     done.push_back(seeds_done);
   };
-  const auto all = trace_lines(*scene, *seeds, request, *node);
-  ASSERT_TRUE(all) << all.error().message;
-  EXPECT_EQ(all->size(), 300u);
+  EXPECT_EQ(value_of(trace_lines(scene, seeds, request, node)).size(), 300u);
   ASSERT_GE(done.size(), 2u);
   EXPECT_EQ(done.back(), 300u);
   request.max_knots = 1000;
-  const auto some = trace_lines(*scene, *seeds, request, *node);
-  ASSERT_FALSE(some);
-  EXPECT_NE(some.error().message.find("of the 300 seeds have more than 1000 knots in total"), std::string::npos) << some.error().message;
+  expect_error(trace_lines(scene, seeds, request, node), "", {"of the 300 seeds have more than 1000 knots in total"});
 }
 
-}  // namespace streamlines_test
-}  // namespace catena::scene
+}  // namespace catena::scene::streamlines_test

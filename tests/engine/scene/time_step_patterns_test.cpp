@@ -3,17 +3,15 @@
 #include "engine/scene/follow_files.h"
 
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <filesystem>
 
 #include "engine/io/field_cache.h"
 #include "engine/scene/time_steps.h"
-#include "tests/support/support.h"
+#include "tests/engine/scene/scene_fixture.h"
 
-namespace catena::scene {
-namespace time_step_patterns_test {
+namespace catena::scene::time_step_patterns_test {
 
 TEST(SeriesPattern, FilesOfASeriesInAnyOrderMakeAPattern) {
   const test::TemporaryFolder folder;
@@ -66,7 +64,7 @@ void settle(const std::string& path) {
   ASSERT_EQ(::utimensat(AT_FDCWD, path.c_str(), past, 0), 0);
 }
 
-class GrowingSeries : public testing::Test {
+class GrowingSeries : public InFolder {
  protected:
   ~GrowingSeries() override { field::clear_cache(); }
   void write(int step, bool half = false) {
@@ -80,24 +78,22 @@ class GrowingSeries : public testing::Test {
     test::write_file(path, half ? bytes.substr(0, bytes.size() / 2) : bytes);
   }
   std::string file(int step) { return folder_ / ("f_" + std::to_string(step) + ".vdb"); }
-  test::TemporaryFolder folder_;
 };
 
 TEST_F(GrowingSeries, AStepIsAddedOnceCompleteAndUnchanged) {
   for (const int step : {8, 9}) write(step), settle(file(step));
-  auto scene = parse_scene(R"({"fields": {"r": {"file": "f_*.vdb"}}})", folder_ / "s.json");
-  ASSERT_TRUE(scene) << scene.error().message;
-  EXPECT_EQ(step_count(*scene), 2);
-  ASSERT_TRUE(start_following(*scene));
-  EXPECT_EQ(step_count(*scene), 1) << "the newest may be half written";
-  ASSERT_TRUE(resolve_field(*scene, find_field(*scene, "r"), {}));
+  Scene scene = parsed(R"({"fields": {"r": {"file": "f_*.vdb"}}})", folder_ / "s.json");
+  EXPECT_EQ(step_count(scene), 2);
+  ASSERT_TRUE(start_following(scene));
+  EXPECT_EQ(step_count(scene), 1) << "the newest may be half written";
+  ASSERT_TRUE(resolve_field(scene, find_field(scene, "r"), {}));
   const auto look = [&] {
-    std::vector<FollowedSource> all = followed_sources(*scene);
+    std::vector<FollowedSource> all = followed_sources(scene);
     for (FollowedSource& one : all) poll_steps(one);
-    return apply_steps(*scene, all);
+    return apply_steps(scene, all);
   };
   EXPECT_TRUE(look());
-  EXPECT_EQ(step_count(*scene), 2);
+  EXPECT_EQ(step_count(scene), 2);
   // A partial file, whether old or new; and a file of another series.
   write(10, /*half=*/true);
   EXPECT_FALSE(look());
@@ -111,12 +107,10 @@ TEST_F(GrowingSeries, AStepIsAddedOnceCompleteAndUnchanged) {
   EXPECT_FALSE(look());
   settle(file(10));
   EXPECT_TRUE(look());
-  EXPECT_EQ(step_count(*scene), 3);
-  set_step(*scene, 2);
-  EXPECT_TRUE(field::is_cached(*scene->entities.get<FieldSource>(find_field(*scene, "r")).file));
-  const auto newest = resolve_field(*scene, find_field(*scene, "r"), {});
-  ASSERT_TRUE(newest) << newest.error().message;
-  EXPECT_EQ(newest->scalar->min_value(), 10);
+  EXPECT_EQ(step_count(scene), 3);
+  set_step(scene, 2);
+  EXPECT_TRUE(field::is_cached(*scene.entities.get<FieldSource>(find_field(scene, "r")).file));
+  EXPECT_EQ(value_of(resolve_field(scene, find_field(scene, "r"), {})).scalar->min_value(), 10);
 }
 
 TEST_F(GrowingSeries, FindsTheFollowedPatternOfAName) {
@@ -128,5 +122,4 @@ TEST_F(GrowingSeries, FindsTheFollowedPatternOfAName) {
   EXPECT_FALSE(find_followable_path(folder_ / "whole.vdb"));
 }
 
-}  // namespace time_step_patterns_test
-}  // namespace catena::scene
+}  // namespace catena::scene::time_step_patterns_test

@@ -9,8 +9,7 @@
 #include "engine/field/grid/grid.h"
 #include "tests/support/mesh_shapes.h"
 
-namespace catena::scene {
-namespace uniform_sampling_test {
+namespace catena::scene::uniform_sampling_test {
 
 constexpr std::size_t kMaxCount = 20000;
 
@@ -165,5 +164,4 @@ TEST(UniformSampling, TooManySamplesAreCountedButNotMade) {
   EXPECT_EQ(more.expected_count, static_cast<double>(fit.positions.size()));
 }
 
-}  // namespace uniform_sampling_test
-}  // namespace catena::scene
+}  // namespace catena::scene::uniform_sampling_test

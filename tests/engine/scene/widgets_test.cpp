@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/widgets.h"
 
-#include <gtest/gtest.h>
-
 #include <limits>
 
 #include "engine/scene/prepare.h"
 #include "engine/scene/streamlines.h"
+#include "tests/engine/scene/scene_fixture.h"
 
-namespace catena::scene {
-namespace widgets_test {
+namespace catena::scene::widgets_test {
 
 using widget::Kind;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-Scene parsed(const std::string& rest) {
-  auto scene = parse_scene(
-      R"({"fields": {"s": {"analytic": "sphere", "resolution": 21, "box": [-1, 1]}, "v": {"analytic": "circle"}},)" + rest + "}", "s.json");
-  EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
-  return scene ? std::move(*scene) : Scene{};
+Scene scene_of(const std::string& rest) {
+  return parsed(R"({"fields": {"s": {"analytic": "sphere", "resolution": 21, "box": [-1, 1]}, "v": {"analytic": "circle"}},)" + rest + "}");
+}
+
+/// Moves the first point of a widget, as from a panel.
+void move(Scene& scene, const char* name, const Vec3& to) {
+  ASSERT_TRUE(set_widget_pose(scene, find_widget(scene, name), {{to, Vec3(0)}, kIdentityRotation}));
 }
 
 Widget& get(Scene& scene, const char* name) { return scene.entities.get<Widget>(find_widget(scene, name)); }
@@ -30,24 +30,12 @@ HapticState state_of(Scene& scene) {
   return state;
 }
 
-WidgetChanges driven(Scene& scene) {
-  auto changes = propagate_widgets(scene);
-  EXPECT_TRUE(changes) << (changes ? "" : changes.error().message);
-  return changes ? *changes : WidgetChanges{};
-}
+WidgetChanges driven(Scene& scene) { return value_of(propagate_widgets(scene)); }
 
-template <class T>
-T& only(Scene& scene) {
-  T* found = nullptr;
-  scene.entities.each<T>([&](Entity, T& item) { found = &item; });
-  return *found;
-}
-
-template <class T>
-Entity only_entity(Scene& scene) {
-  Entity found;
-  scene.entities.each<T>([&](Entity e, T&) { found = e; });
-  return found;
+/// Samples a field on n^3 nodes of a cube, as if it were of a file.
+void load_grid(Scene& scene, const char* name, int n, double lo, double hi) {
+  const Entity e = find_field(scene, name);
+  scene.entities.get<FieldSource>(e).loaded = value_of(field::try_sample_on_grid(*resolve_field(scene, e, {}), n, lo, hi));
 }
 
 const std::string kCut = R"({"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1])";
@@ -55,10 +43,8 @@ const std::string kSeed = R"({"name": "p", "type": "seed", "position": [1, 0, 0]
 
 TEST(Widgets, SizesFollowTheScenesExtent) {
   const auto spec_of = [](const std::string& rest, const char* name) {
-    Scene scene = parsed(rest);
-    const auto spec = resolve_widget(scene, find_widget(scene, name));
-    EXPECT_TRUE(spec) << (spec ? "" : spec.error().message);
-    return spec ? *spec : widget::Spec{};
+    Scene scene = scene_of(rest);
+    return value_of(resolve_widget(scene, find_widget(scene, name)));
   };
   const widget::Spec alone = spec_of("\"widgets\": [" + kCut + "}]", "cut");
   EXPECT_EQ(alone.length, 4);
@@ -72,21 +58,17 @@ TEST(Widgets, SizesFollowTheScenesExtent) {
   EXPECT_DOUBLE_EQ(handle.grab_distance, 0.12);
   EXPECT_DOUBLE_EQ(handle.step, 0.08);
   // The domain of a file is ten times as long.
-  Scene scene = parsed("\"widgets\": [" + kCut + R"(, "grab_distance": 0.5}], "volumes": [{"field": "s"}])");
-  const Entity s = find_field(scene, "s");
-  const auto grid = field::try_sample_on_grid(*resolve_field(scene, s, {}), 5, -20, 20);
-  ASSERT_TRUE(grid);
-  scene.entities.get<FieldSource>(s).loaded = *grid;
-  const auto large = resolve_widget(scene, find_widget(scene, "cut"));
-  ASSERT_TRUE(large) << large.error().message;
-  EXPECT_EQ(large->length, 40);
-  EXPECT_DOUBLE_EQ(large->radius, 4.8);
-  EXPECT_EQ(large->grab_distance, 0.5) << "stated";
+  Scene scene = scene_of("\"widgets\": [" + kCut + R"(, "grab_distance": 0.5}], "volumes": [{"field": "s"}])");
+  load_grid(scene, "s", 5, -20, 20);
+  const widget::Spec large = value_of(resolve_widget(scene, find_widget(scene, "cut")));
+  EXPECT_EQ(large.length, 40);
+  EXPECT_DOUBLE_EQ(large.radius, 4.8);
+  EXPECT_EQ(large.grab_distance, 0.5) << "stated";
 }
 
 TEST(Widgets, TheDefaultOfSnapOrReleaseFitsAStatedOne) {
   Scene scene =
-      parsed("\"widgets\": [" + kCut + R"(, "snap": 3}, {"name": "b", "type": "cutting_plane", "center": [0, 0, 0], "normal": [1, 0, 0],
+      scene_of("\"widgets\": [" + kCut + R"(, "snap": 3}, {"name": "b", "type": "cutting_plane", "center": [0, 0, 0], "normal": [1, 0, 0],
     "release": 0.01}])");
   const auto a = resolve_widget(scene, find_widget(scene, "cut")), b = resolve_widget(scene, find_widget(scene, "b"));
   ASSERT_TRUE(a && b);
@@ -95,35 +77,25 @@ TEST(Widgets, TheDefaultOfSnapOrReleaseFitsAStatedOne) {
 }
 
 TEST(Widgets, AnIsolevelHasTheFieldsValue) {
-  Scene scene = parsed(R"("widgets": [{"name": "l", "type": "isolevel", "field": "s", "position": [0.3, 0, 0.4]}])");
-  const auto spec = resolve_widget(scene, find_widget(scene, "l"));
-  ASSERT_TRUE(spec) << spec.error().message;
-  EXPECT_TRUE(spec->field);
+  Scene scene = scene_of(R"("widgets": [{"name": "l", "type": "isolevel", "field": "s", "position": [0.3, 0, 0.4]}])");
+  EXPECT_TRUE(value_of(resolve_widget(scene, find_widget(scene, "l"))).field);
   EXPECT_DOUBLE_EQ(get(scene, "l").report.value, 0.5);
-  for (const auto& [item, expected] :
-       {std::pair{R"({"name": "l", "type": "isolevel", "field": "v", "position": [0, 0, 0]})", "a scalar field was expected"}}) {
-    Scene wrong = parsed("\n\"widgets\": [" + std::string(item) + "]");
-    const auto failed = resolve_widget(wrong, find_widget(wrong, "l"));
-    ASSERT_FALSE(failed);
-    EXPECT_NE(failed.error().message.find(expected), std::string::npos) << failed.error().message;
-    EXPECT_EQ(failed.error().message.find("s.json:2: "), 0u) << failed.error().message;
-  }
+  Scene wrong = scene_of(
+      "\n"
+      R"("widgets": [{"name": "l", "type": "isolevel", "field": "v", "position": [0, 0, 0]}])");
+  expect_error(resolve_widget(wrong, find_widget(wrong, "l")), "s.json:2: ", {"a scalar field was expected"});
 }
 
 TEST(Widgets, AnIsolevelOutsideItsFieldIsRefused) {
-  Scene scene = parsed(
+  Scene scene = scene_of(
       "\n"
       R"("widgets": [{"name": "l", "type": "isolevel", "field": "s", "position": [5, 0, 0]}])");
-  const Entity s = find_field(scene, "s");
-  scene.entities.get<FieldSource>(s).loaded = *field::try_sample_on_grid(*resolve_field(scene, s, {}), 5, -1, 1);
-  const auto spec = resolve_widget(scene, find_widget(scene, "l"));
-  ASSERT_FALSE(spec);
-  EXPECT_NE(spec.error().message.find("outside the domain"), std::string::npos) << spec.error().message;
-  EXPECT_EQ(spec.error().message.find("s.json:2: "), 0u) << spec.error().message;
+  load_grid(scene, "s", 5, -1, 1);
+  expect_error(resolve_widget(scene, find_widget(scene, "l")), "s.json:2: ", {"outside the domain"});
 }
 
 TEST(Widgets, ReportsAreApplied) {
-  Scene scene = parsed("\"widgets\": [" + kCut + "}, " + kSeed + "]");
+  Scene scene = scene_of("\"widgets\": [" + kCut + "}, " + kSeed + "]");
   HapticState state = state_of(scene);
   EXPECT_FALSE(update_widgets(scene, state)) << "nothing new";
   state.widgets[1].pose.points[0] = {1, 2, 3};
@@ -141,7 +113,7 @@ TEST(Widgets, ReportsAreApplied) {
 }
 
 TEST(Widgets, InvalidReportsAreIgnored) {
-  Scene scene = parsed("\"widgets\": [" + kSeed + "]");
+  Scene scene = scene_of("\"widgets\": [" + kSeed + "]");
   const widget::Report before = get(scene, "p").report;
   const auto ignored = [&](auto&& change) {
     HapticState state = state_of(scene);
@@ -160,7 +132,7 @@ TEST(Widgets, InvalidReportsAreIgnored) {
 }
 
 TEST(Widgets, ASetPoseIsNotOverwrittenByOlderReports) {
-  Scene scene = parsed("\"widgets\": [" + kSeed + R"(, {"name": "b", "type": "box", "min": [0, 0, 0], "max": [1, 1, 1]}])");
+  Scene scene = scene_of("\"widgets\": [" + kSeed + R"(, {"name": "b", "type": "box", "min": [0, 0, 0], "max": [1, 1, 1]}])");
   HapticState old = state_of(scene);
   old.widgets[0].pose.points[0] = {9, 9, 9};
   const Entity p = find_widget(scene, "p");
@@ -181,7 +153,7 @@ TEST(Widgets, ASetPoseIsNotOverwrittenByOlderReports) {
 }
 
 TEST(Widgets, SlicesAndClipsFollow) {
-  Scene scene = parsed("\"widgets\": [" + kCut + R"(}, {"name": "b", "type": "box", "min": [-1, -1, -1], "max": [1, 1, 1]}],
+  Scene scene = scene_of("\"widgets\": [" + kCut + R"(}, {"name": "b", "type": "box", "min": [-1, -1, -1], "max": [1, 1, 1]}],
     "slices": [{"field": "s", "widget": "cut"}], "clip": [{"widget": "cut"}, {"widget": "b"}])");
   driven(scene);
   EXPECT_FALSE(driven(scene).any()) << "nothing moved";
@@ -191,7 +163,7 @@ TEST(Widgets, SlicesAndClipsFollow) {
   WidgetChanges changes = driven(scene);
   EXPECT_TRUE(changes.slices && changes.clip);
   EXPECT_FALSE(changes.seeds || changes.levels || changes.links);
-  const Slice& slice = only<Slice>(scene);
+  const auto slice = only<Slice>(scene);
   EXPECT_EQ(slice.point, Vec3(0.1, 0.2, 0.3));
   EXPECT_LT(norm(slice.normal - Vec3(0, -1, 0)), 1e-15) << "a quarter turn about x carries z to -y";
   EXPECT_EQ(scene.clip_planes[0].point, slice.point);
@@ -206,7 +178,7 @@ TEST(Widgets, SlicesAndClipsFollow) {
 }
 
 TEST(Widgets, LevelsFollowWithinTheFieldsRange) {
-  Scene scene = parsed(R"("widgets": [{"name": "l", "type": "isolevel", "field": "s", "position": [0.5, 0, 0]}],
+  Scene scene = scene_of(R"("widgets": [{"name": "l", "type": "isolevel", "field": "s", "position": [0.5, 0, 0]}],
     "isosurfaces": [{"field": "s", "level": {"widget": "l"}}])");
   EXPECT_TRUE(driven(scene).levels);
   EXPECT_EQ(only<Isosurface>(scene).level, 0.5);
@@ -225,13 +197,13 @@ TEST(Widgets, LevelsFollowWithinTheFieldsRange) {
   EXPECT_EQ(only<Isosurface>(scene).level, grid->scalar->max_value());
   EXPECT_TRUE(check_level(*grid->scalar, only<Isosurface>(scene).level, {}));
   // If the widget is moved from a panel, the value follows its position.
-  ASSERT_TRUE(set_widget_pose(scene, find_widget(scene, "l"), {{Vec3(0, 0.25, 0), Vec3(0)}, kIdentityRotation}));
+  move(scene, "l", {0, 0.25, 0});
   EXPECT_TRUE(driven(scene).levels);
   EXPECT_EQ(only<Isosurface>(scene).level, 0.25);
 }
 
 TEST(Widgets, ChangesOfWidgetsWithLinksAreReported) {
-  Scene scene = parsed("\"widgets\": [" + kCut + "}, " + kSeed + R"(],
+  Scene scene = scene_of("\"widgets\": [" + kCut + "}, " + kSeed + R"(],
     "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": {"widget": "p"}}])");
   EXPECT_TRUE(has_haptic_link(scene, find_widget(scene, "p")));
   EXPECT_FALSE(has_haptic_link(scene, find_widget(scene, "cut")));
@@ -247,14 +219,14 @@ TEST(Widgets, ChangesOfWidgetsWithLinksAreReported) {
 }
 
 TEST(Widgets, LinesFollowTheirSeeds) {
-  Scene scene = parsed("\"widgets\": [" + kSeed + R"(], "streamlines": [{"field": "v", "seeds": {"widget": "p"}}])");
+  Scene scene = scene_of("\"widgets\": [" + kSeed + R"(], "streamlines": [{"field": "v", "seeds": {"widget": "p"}}])");
   driven(scene);
-  const Entity set = only_entity<StreamlineSet>(scene);
+  const Entity set = entities_of<StreamlineSet>(scene).at(0);
   const auto first = resolve_lines(scene, set), again = resolve_lines(scene, set);
   ASSERT_TRUE(first && again);
   ASSERT_EQ(first->size(), 1u);
   EXPECT_EQ(*first, *again) << "traced once";
-  ASSERT_TRUE(set_widget_pose(scene, find_widget(scene, "p"), {{Vec3(0.5, 0, 0), Vec3(0)}, kIdentityRotation}));
+  move(scene, "p", {0.5, 0, 0});
   EXPECT_TRUE(driven(scene).seeds);
   const auto moved = resolve_lines(scene, set);
   ASSERT_TRUE(moved);
@@ -268,45 +240,39 @@ TEST(Widgets, LinesFollowTheirSeeds) {
 
 TEST(Widgets, SeedsWithoutALineAreLeftOut) {
   // The middle seed is at a point of zero velocity.
-  Scene scene = parsed(R"("widgets": [{"name": "r", "type": "rake", "from": [-1, 0, 0], "to": [1, 0, 0]},)" + kSeed + R"(],
+  Scene scene = scene_of(R"("widgets": [{"name": "r", "type": "rake", "from": [-1, 0, 0], "to": [1, 0, 0]},)" + kSeed + R"(],
     "streamlines": [{"field": "v", "seeds": {"widget": "r", "count": 3}}])");
   driven(scene);
-  const auto rake = resolve_lines(scene, only_entity<StreamlineSet>(scene));
-  ASSERT_TRUE(rake) << rake.error().message;
-  EXPECT_EQ(rake->size(), 2u);
+  EXPECT_EQ(value_of(resolve_lines(scene, entities_of<StreamlineSet>(scene).at(0))).size(), 2u);
 
   // A seed outside the domain of a grid, with both tracers.
   for (const char* tolerance : {"1e-10", "1e-5"}) {
-    Scene grid = parsed("\"widgets\": [" + kSeed + R"(], "streamlines": [{"field": "v", "seeds": {"widget": "p"}, "tolerance": )" +
-                        tolerance + "}]");
-    const Entity v = find_field(grid, "v");
-    grid.entities.get<FieldSource>(v).loaded = *field::try_sample_on_grid(*resolve_field(grid, v, {}), 9, -2, 2);
+    Scene grid = scene_of("\"widgets\": [" + kSeed + R"(], "streamlines": [{"field": "v", "seeds": {"widget": "p"}, "tolerance": )" +
+                          tolerance + "}]");
+    load_grid(grid, "v", 9, -2, 2);
     driven(grid);
-    const Entity set = only_entity<StreamlineSet>(grid);
+    const Entity set = entities_of<StreamlineSet>(grid).at(0);
     EXPECT_EQ(resolve_lines(grid, set)->size(), 1u);
-    ASSERT_TRUE(set_widget_pose(grid, find_widget(grid, "p"), {{Vec3(7, 0, 0), Vec3(0)}, kIdentityRotation}));
+    move(grid, "p", {7, 0, 0});
     driven(grid);
-    const auto out = resolve_lines(grid, set);
-    ASSERT_TRUE(out) << out.error().message;
-    EXPECT_TRUE(out->empty());
-    ASSERT_TRUE(set_widget_pose(grid, find_widget(grid, "p"), {{Vec3(0, 1, 0), Vec3(0)}, kIdentityRotation}));
+    EXPECT_TRUE(value_of(resolve_lines(grid, set)).empty());
+    move(grid, "p", {0, 1, 0});
     driven(grid);
     EXPECT_EQ(resolve_lines(grid, set)->size(), 1u) << "and back";
   }
 }
 
 TEST(Widgets, CurvesOfMovingSeedsAreReleased) {
-  Scene scene = parsed("\"widgets\": [" + kSeed + R"(], "streamlines": [{"field": "v", "seeds": {"widget": "p"}},
+  Scene scene = scene_of("\"widgets\": [" + kSeed + R"(], "streamlines": [{"field": "v", "seeds": {"widget": "p"}},
     {"field": "v", "seeds": [[0.3, 0, 0], [0.4, 0, 0]]}])");
-  std::vector<Entity> sets;
-  scene.entities.each<StreamlineSet>([&](Entity e, StreamlineSet&) { sets.push_back(e); });
+  const std::vector<Entity> sets = entities_of<StreamlineSet>(scene);
   driven(scene);
   const auto fixed = resolve_lines(scene, sets[1]);
   ASSERT_TRUE(fixed);
   const field::AnyField v = *resolve_field(scene, find_field(scene, "v"), {});
   const auto felt = *resolve_streamline(scene, {v.vector.get()}, {0.7, 0, 0}, {});
   for (int i = 0; i < 500; ++i) {
-    ASSERT_TRUE(set_widget_pose(scene, find_widget(scene, "p"), {{Vec3(0.5 + 0.001 * i, 0, 0), Vec3(0)}, kIdentityRotation}));
+    move(scene, "p", {0.5 + 0.001 * i, 0, 0});
     driven(scene);
     ASSERT_TRUE(resolve_lines(scene, sets[0]));
     ASSERT_LE(scene.traced_curves.size(), 4u) << "two fixed ones, the felt one, the moving one";
@@ -321,13 +287,10 @@ TEST(Widgets, CurvesOfMovingSeedsAreReleased) {
 }
 
 TEST(Widgets, FixedSeedsKeepTheirErrors) {
-  Scene scene = parsed(
+  Scene scene = scene_of(
       "\n"
       R"("streamlines": [{"field": "v", "seeds": [[1, 0, 0], [0, 0, 0]]}])");
-  const auto lines = resolve_lines(scene, only_entity<StreamlineSet>(scene));
-  ASSERT_FALSE(lines);
-  EXPECT_EQ(lines.error().message.find("s.json:2: "), 0u) << lines.error().message;
+  expect_error(resolve_lines(scene, entities_of<StreamlineSet>(scene).at(0)), "s.json:2: ", {});
 }
 
-}  // namespace widgets_test
-}  // namespace catena::scene
+}  // namespace catena::scene::widgets_test

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The model of a human subject, and its simulated trials.
-#include <gtest/gtest.h>
-
 #include <numbers>
 
 #include "engine/study/human_model.h"

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The study file: its values, and errors with their line.
-#include <gtest/gtest.h>
-
 #include "engine/scene/scene.h"
 #include "engine/study/trial_scene.h"
 #include "haptics/build/build_program.h"
@@ -35,12 +33,10 @@ TEST(ReadStudy, ReadsThePapersDesign) {
   EXPECT_NEAR(std::hypot(study.human_model.speed_spread_subject, study.human_model.speed_spread_trial), 0.45, 1e-12);
 }
 
-struct Mistake {
-  const char *from, *to, *says;
-};
-
 TEST(ReadStudy, ErrorsAreOneLineWithTheirPosition) {
-  const Mistake mistakes[] = {
+  const struct {
+    const char *from, *to, *says;
+  } mistakes[] = {
       {R"("trials": 3)", R"("trials": 0)", "small.json:2:"},
       {R"("training": 1)", R"("trainings": 1)", "did you mean \"training\""},
       {R"("name": "small")", R"("seed": 4)", "\"name\""},
@@ -61,20 +57,20 @@ TEST(ReadStudy, ErrorsAreOneLineWithTheirPosition) {
       {R"("training": 1,)", R"("training": 1, "operator": {"yield_n": "3"},)", "\"yield_n\""},
       {R"("training": 1,)", R"("training": 1, "questionnaire": [{"name": "q"}],)", "\"question\""},
   };
-  for (const Mistake& mistake : mistakes) {
-    const auto read = study::parse_study(small_study_text(mistake.from, mistake.to), "small.json");
-    ASSERT_FALSE(read) << mistake.to;
-    const std::string& error_of = read.error().message;
-    EXPECT_NE(error_of.find(mistake.says), std::string::npos) << mistake.to << "\n" << error_of;
-    EXPECT_TRUE(error_of.starts_with("small.json:")) << error_of;
-    EXPECT_EQ(error_of.find('\n'), std::string::npos) << error_of;
+  for (const auto& [from, to, says] : mistakes) {
+    const auto read = study::parse_study(small_study_text(from, to), "small.json");
+    ASSERT_FALSE(read) << to;
+    const std::string& error = read.error().message;
+    EXPECT_NE(error.find(says), std::string::npos) << to << "\n" << error;
+    EXPECT_TRUE(error.starts_with("small.json:")) << error;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
   }
 }
 
 /// An error in a template or a chain is found when a trial is made; it is reported with the line of the study file.
 TEST(ReadStudy, ErrorsInScenesAndChainsNameTheLineOfTheStudyFile) {
   const auto error_of = [](const char* from, const char* to, int condition) -> std::string {
-    const study::Study study = study::parse_study(small_study_text(from, to), "small.json").value();
+    const study::Study study = study_rig::small(from, to);
     study::Trial trial;
     trial.condition = condition;
     study::Stimulus stimulus;

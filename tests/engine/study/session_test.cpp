@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The design over 24 subjects: the Latin square, interleaved conditions, and seeds that follow from the subject's number.
-#include <gtest/gtest.h>
-
 #include <map>
 #include <set>
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The paper's rules for stimuli, over 200 seeds for each task, checked independently of the generator: with a Runge-Kutta method of small
 // fixed steps, in the field of the trial's scene.
-#include <gtest/gtest.h>
-
 #include <numbers>
 
 #include "engine/scene/scene.h"
@@ -179,19 +177,13 @@ TEST(Stimulus, IsRepeatableAndDependsOnTheSeed) {
 }
 
 TEST(Stimulus, ImpossibleRulesAreAnErrorWithTheirLine) {
-  const study::Study study =
-      study::parse_study(
-          study_rig::small_study_text(R"("analytic": "vortices", "dimensions": 2, "seed": "$seed")", R"("analytic": "node")"), "small.json")
-          .value();
-  study::Study long_path = study;
+  const std::string vortices = R"("analytic": "vortices", "dimensions": 2, "seed": "$seed")";
+  study::Study long_path = study_rig::small(vortices, R"("analytic": "node")");
   long_path.tasks[0].rules.path_mm = 1000;
   const auto made = study::StimulusGenerator(long_path).generate(0, 1);
   ASSERT_FALSE(made);
   EXPECT_TRUE(made.error().message.starts_with("small.json:4: task \"trace\": no start")) << made.error().message;
-  const study::Study scalar = study::parse_study(study_rig::small_study_text(R"("analytic": "vortices", "dimensions": 2, "seed": "$seed")",
-                                                                             R"("analytic": "sphere")"),
-                                                 "small.json")
-                                  .value();
+  const study::Study scalar = study_rig::small(vortices, R"("analytic": "sphere")");
   EXPECT_NE(study::StimulusGenerator(scalar).generate(0, 1).error().message.find("scalar"), std::string::npos);
 }
 

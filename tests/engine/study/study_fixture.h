@@ -41,6 +41,8 @@ inline std::string small_study_text(const std::string& from = {}, const std::str
   return text;
 }
 
-inline study::Study small() { return study::parse_study(small_study_text(), "small.json").value(); }
+inline study::Study small(const std::string& from = {}, const std::string& to = {}) {
+  return study::parse_study(small_study_text(from, to), "small.json").value();
+}
 
 }  // namespace study_rig

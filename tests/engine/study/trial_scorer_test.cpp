@@ -23,6 +23,9 @@ study::Task task_of(study::TaskKind kind, int dimensions, study::Target target) 
   return task;
 }
 
+const study::Task kTracing = task_of(study::TaskKind::tracing, 3, study::Target::end);
+const study::Task kPlane = task_of(study::TaskKind::advection, 3, study::Target::plane);
+
 /// A path with a corner: from the origin 10 along x, then 10 down.
 study::Stimulus bent() {
   study::Stimulus s;
@@ -43,8 +46,7 @@ study::Stimulus straight() {
 }
 
 TEST(TrialScorer, TheClockStartsWhenTheCursorLeavesTheStart) {
-  const study::Task task = task_of(study::TaskKind::tracing, 3, study::Target::end);
-  TrialScorer scorer(task, straight());
+  TrialScorer scorer(kTracing, straight());
   EXPECT_EQ(scorer.tick(0, Vec3(3, 0, 0), 0), Phase::waiting) << "it has not been at the start";
   EXPECT_EQ(scorer.tick(100, Vec3(0.1, 0, 0), 9), Phase::ready) << "waiting takes no time";
   EXPECT_EQ(scorer.tick(200, Vec3(0, 0.19, 0), 9), Phase::ready);
@@ -61,8 +63,7 @@ TEST(TrialScorer, TheClockStartsWhenTheCursorLeavesTheStart) {
 }
 
 TEST(TrialScorer, TheTracingErrorIsTheMeanDistanceToThePath) {
-  const study::Task task = task_of(study::TaskKind::tracing, 3, study::Target::end);
-  TrialScorer scorer(task, bent());
+  TrialScorer scorer(kTracing, bent());
   scorer.tick(0, Vec3(0.0), 0);
   scorer.tick(1, Vec3(1, 2, 0), 0);                            // 2 away from the first segment
   scorer.tick(2, Vec3(13, 0, 4), 0);                           // 5 away from the corner
@@ -102,8 +103,7 @@ TEST(TrialScorer, ACircleIsCrossedBetweenTwoTicks) {
 }
 
 TEST(TrialScorer, APlaneIsCrossedFromAboveOnly) {
-  const study::Task task = task_of(study::TaskKind::advection, 3, study::Target::plane);
-  TrialScorer scorer(task, bent());
+  TrialScorer scorer(kPlane, bent());
   scorer.tick(0, Vec3(0.0), 0);
   EXPECT_EQ(scorer.tick(1, Vec3(10, 3, -8), 0), Phase::running);
   EXPECT_EQ(scorer.tick(2, Vec3(10, 3, -12), 0), Phase::ended);
@@ -114,8 +114,7 @@ TEST(TrialScorer, APlaneIsCrossedFromAboveOnly) {
 }
 
 TEST(TrialScorer, TheTimeLimitEndsTheTrial) {
-  const study::Task advection = task_of(study::TaskKind::advection, 3, study::Target::plane);
-  TrialScorer scorer(advection, bent());
+  TrialScorer scorer(kPlane, bent());
   scorer.tick(0, Vec3(0.0), 0);
   scorer.tick(1, Vec3(1, 0, 0), 0);
   EXPECT_EQ(scorer.tick(5.999, Vec3(10, 0, -6), 0), Phase::running);
@@ -124,7 +123,7 @@ TEST(TrialScorer, TheTimeLimitEndsTheTrial) {
   EXPECT_DOUBLE_EQ(scorer.result().time_s, 5);
   EXPECT_NEAR(scorer.result().error_mm, 50, 1e-9) << "from the cursor to the end";
 
-  TrialScorer never(advection, bent());
+  TrialScorer never(kPlane, bent());
   never.tick(0, Vec3(0.0), 0);
   EXPECT_EQ(never.tick(1000, Vec3(0.1, 0, 0), 0), Phase::ready);
   EXPECT_FALSE(never.aborted_result().reached_target);
@@ -132,8 +131,7 @@ TEST(TrialScorer, TheTimeLimitEndsTheTrial) {
 }
 
 TEST(TrialScorer, NonFinitePositionsAreIgnored) {
-  const study::Task task = task_of(study::TaskKind::tracing, 3, study::Target::end);
-  TrialScorer scorer(task, straight());
+  TrialScorer scorer(kTracing, straight());
   scorer.tick(0, Vec3(0.0), 0);
   scorer.tick(1, Vec3(1, 0, 0), 0);
   EXPECT_EQ(scorer.tick(2, Vec3(std::nan("")), 0), Phase::running);

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Rows of trials: they read back exactly, and a row that a kill has truncated is dropped, but no other row.
-#include <gtest/gtest.h>
-
 #include <filesystem>
 
 #include "engine/study/protocol_deviations.h"
@@ -11,6 +9,13 @@
 namespace trial_table_test {
 
 using namespace catena;
+using study::ParticipantKind;
+
+class TrialTable : public testing::Test {
+ protected:
+  auto open_people() const { return study::DataFolder::open(folder_ / "d", study_rig::small(), ParticipantKind::people); }
+  test::TemporaryFolder folder_;
+};
 
 study::TrialRow row(int subject, int index) {
   study::TrialRow r;
@@ -27,14 +32,14 @@ study::TrialRow row(int subject, int index) {
   return r;
 }
 
-TEST(TrialTable, RowsReadBackExactly) {
+TEST_F(TrialTable, RowsReadBackExactly) {
   const std::string text = study::table_header() + study::format_row(row(1, 0)) + study::format_row(row(1, 1));
   const auto rows = study::parse_rows(text, "t.csv");
   ASSERT_TRUE(rows) << rows.error().message;
   EXPECT_EQ(*rows, (std::vector<study::TrialRow>{row(1, 0), row(1, 1)}));
 }
 
-TEST(TrialTable, ErrorsNameTheLine) {
+TEST_F(TrialTable, ErrorsNameTheLine) {
   const std::string header = study::table_header(), good = study::format_row(row(1, 0));
   const auto said = [](const std::string& text) {
     const auto rows = study::parse_rows(text, "t.csv");
@@ -48,13 +53,11 @@ TEST(TrialTable, ErrorsNameTheLine) {
   EXPECT_TRUE(said("").starts_with("t.csv:1:"));
 }
 
-TEST(TrialTable, ATruncationLosesAtMostTheLastRow) {
-  const test::TemporaryFolder folder;
-  const study::Study study = study_rig::small();
-  const auto data = study::DataFolder::open(folder / "d", study, study::ParticipantKind::people);
+TEST_F(TrialTable, ATruncationLosesAtMostTheLastRow) {
+  const auto data = open_people();
   ASSERT_TRUE(data);
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(data->append(row(4, i)));
-  const std::string path = study::subject_file(folder / "d", 4), whole = test::read_file(path);
+  const std::string path = study::subject_file(folder_ / "d", 4), whole = test::read_file(path);
   EXPECT_TRUE(path.ends_with("d/subjects/004.csv"));
   std::size_t lines = 0;
   for (std::size_t cut = 0; cut <= whole.size(); ++cut) {
@@ -96,92 +99,84 @@ TEST(ProtocolDeviations, AreRowsThatAreNotInTheDesign) {
   EXPECT_TRUE(study::find_protocol_deviations(study, rows)[3].ends_with(" more trials deviate")) << "a few, the rest counted";
 }
 
-TEST(TrialTable, AFolderHasOneStudyAndOneWriter) {
-  const test::TemporaryFolder folder;
-  const study::Study study = study_rig::small();
-  {
-    const auto first = study::DataFolder::open(folder / "d", study, study::ParticipantKind::people);
-    ASSERT_TRUE(first);
-    const auto second = study::DataFolder::open(folder / "d", study, study::ParticipantKind::people);
-    ASSERT_FALSE(second) << "two at a time";
-    EXPECT_NE(second.error().message.find("another session writes to it"), std::string::npos);
-  }
-  EXPECT_EQ(test::read_file(folder / "d/study.json"), study.text) << "verbatim";
-  const study::Study other = study::parse_study(study_rig::small_study_text("small", "other"), "other.json").value();
-  const auto refused = study::DataFolder::open(folder / "d", other, study::ParticipantKind::people);
-  ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("another study"), std::string::npos);
-  EXPECT_EQ(test::read_file(folder / "d/study.json"), study.text);
+/// Expects that the folder is not opened, for the stated reason.
+void refused(const std::string& folder, const study::Study& study, ParticipantKind kind, const std::string& reason) {
+  const auto data = study::DataFolder::open(folder, study, kind);
+  ASSERT_FALSE(data) << reason;
+  EXPECT_NE(data.error().message.find(reason), std::string::npos) << data.error().message;
 }
 
-TEST(TrialTable, PeopleAndModelsNeverShareAFolder) {
-  const test::TemporaryFolder folder;
+TEST_F(TrialTable, AFolderHasOneStudyAndOneWriter) {
   const study::Study study = study_rig::small();
-  using study::ParticipantKind;
   {
-    const auto people = study::DataFolder::open(folder / "p", study, ParticipantKind::people);
+    const auto first = open_people();
+    ASSERT_TRUE(first);
+    refused(folder_ / "d", study, ParticipantKind::people, "another session writes to it");
+  }
+  EXPECT_EQ(test::read_file(folder_ / "d/study.json"), study.text) << "verbatim";
+  refused(folder_ / "d", study_rig::small("small", "other"), ParticipantKind::people, "another study");
+  EXPECT_EQ(test::read_file(folder_ / "d/study.json"), study.text);
+}
+
+TEST_F(TrialTable, PeopleAndModelsNeverShareAFolder) {
+  const study::Study study = study_rig::small();
+  {
+    const auto people = study::DataFolder::open(folder_ / "p", study, ParticipantKind::people);
     ASSERT_TRUE(people && people->append(row(1, 0)));
-    const auto model = study::DataFolder::open(folder / "m", study, ParticipantKind::model);
+    const auto model = study::DataFolder::open(folder_ / "m", study, ParticipantKind::model);
     ASSERT_TRUE(model && model->append(row(1, 0)));
   }
-  EXPECT_FALSE(study::is_simulated(folder / "p"));
-  EXPECT_TRUE(study::is_simulated(folder / "m"));
-  const auto model = study::DataFolder::open(folder / "p", study, ParticipantKind::model),
-             people = study::DataFolder::open(folder / "m", study, ParticipantKind::people);
-  ASSERT_FALSE(model);
-  EXPECT_NE(model.error().message.find("contains trials of people"), std::string::npos);
-  ASSERT_FALSE(people);
-  EXPECT_NE(people.error().message.find("contains trials of a model"), std::string::npos);
-  EXPECT_FALSE(study::is_simulated(folder / "p"));
+  EXPECT_FALSE(study::is_simulated(folder_ / "p"));
+  EXPECT_TRUE(study::is_simulated(folder_ / "m"));
+  refused(folder_ / "p", study, ParticipantKind::model, "contains trials of people");
+  refused(folder_ / "m", study, ParticipantKind::people, "contains trials of a model");
+  EXPECT_FALSE(study::is_simulated(folder_ / "p"));
 }
 
-TEST(TrialTable, StrayFilesHaveNotesAndWrongSubjectsAreRefused) {
-  const test::TemporaryFolder folder;
-  const auto data = study::DataFolder::open(folder / "d", study_rig::small(), study::ParticipantKind::people);
+TEST_F(TrialTable, StrayFilesHaveNotesAndWrongSubjectsAreRefused) {
+  const auto data = open_people();
   ASSERT_TRUE(data && data->append(row(1, 0)) && data->append(row(2, 0)));
-  const std::string subjects = folder / "d/subjects/";
+  const std::string subjects = folder_ / "d/subjects/";
   test::write_file(subjects + "001 (copy).csv", "");
   test::write_file(subjects + "0004.csv", "");
   test::write_file(subjects + "003.csv", "");
-  auto table = study::read_trial_table(folder / "d");
+  auto table = study::read_trial_table(folder_ / "d");
   ASSERT_TRUE(table);
   EXPECT_EQ(table->rows.size(), 2u);
   EXPECT_EQ(table->notes.size(), 3u);
   std::filesystem::rename(subjects + "002.csv", subjects + "003.csv");
-  const auto other = study::read_trial_table(folder / "d");
+  const auto other = study::read_trial_table(folder_ / "d");
   ASSERT_FALSE(other);
-  EXPECT_TRUE(other.error().message.ends_with("003.csv:2: the trial belongs to subject 2; subject 3 was expected"))
-      << other.error().message;
+  EXPECT_TRUE(other.error().message.ends_with("003.csv:2: the trial belongs to subject 2; subject 3 was expected"));
   std::filesystem::remove(subjects + "003.csv");
   std::filesystem::create_symlink("nowhere.csv", subjects + "003.csv");
-  EXPECT_FALSE(study::read_trial_table(folder / "d")) << "a link that leads nowhere";
+  EXPECT_FALSE(study::read_trial_table(folder_ / "d")) << "a link that leads nowhere";
 }
 
-TEST(TrialTable, IsReadFromSubjectsFilesOrFromTheTable) {
-  const test::TemporaryFolder folder;
-  const auto data = study::DataFolder::open(folder / "d", study_rig::small(), study::ParticipantKind::people);
+TEST_F(TrialTable, IsReadFromSubjectsFilesOrFromTheTable) {
+  const auto data = open_people();
   ASSERT_TRUE(data);
   for (const int subject : {2, 1, 1000, 11}) ASSERT_TRUE(data->append(row(subject, 0)));
-  const auto loose = study::read_trial_table(folder / "d");
+  const auto loose = study::read_trial_table(folder_ / "d");
   ASSERT_TRUE(loose);
   EXPECT_EQ(loose->rows.size(), 4u);
   EXPECT_EQ(loose->rows.back().subject, 1000) << "by number, not by name";
   ASSERT_TRUE(data->write_table());
-  EXPECT_TRUE(study::read_trial_table(folder / "d")->notes.empty());
+  EXPECT_TRUE(study::read_trial_table(folder_ / "d")->notes.empty());
   // Rows of a later session count before they are in the table, and a truncated row does not matter.
   ASSERT_TRUE(data->append(row(11, 1)));
-  const std::string torn = test::read_file(study::subject_file(folder / "d", 1)) + "1,1,tra";
-  test::write_file(study::subject_file(folder / "d", 1), torn);
-  const auto newer = study::read_trial_table(folder / "d");
+  const std::string torn = test::read_file(study::subject_file(folder_ / "d", 1)) + "1,1,tra";
+  test::write_file(study::subject_file(folder_ / "d", 1), torn);
+  const auto newer = study::read_trial_table(folder_ / "d");
   ASSERT_TRUE(newer);
   EXPECT_EQ(newer->notes.size(), 2u) << "torn, and another table";
   EXPECT_EQ(newer->rows.size(), 5u);
-  EXPECT_EQ(test::read_file(study::subject_file(folder / "d", 1)), torn) << "who reads writes nothing";
-  std::filesystem::remove_all(folder / "d/subjects");
-  const auto table = study::read_trial_table(folder / "d");
+  EXPECT_EQ(test::read_file(study::subject_file(folder_ / "d", 1)), torn) << "who reads writes nothing";
+  std::filesystem::remove_all(folder_ / "d/subjects");
+  const auto table = study::read_trial_table(folder_ / "d");
   ASSERT_TRUE(table);
   EXPECT_EQ(table->rows, loose->rows);
-  EXPECT_FALSE(study::read_trial_table(folder / "nothing"));
+  EXPECT_FALSE(study::read_trial_table(folder_ / "nothing"));
 }
 
 }  // namespace trial_table_test

@@ -6,7 +6,6 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <new>
 
 #include "engine/base/helper_process.h"
@@ -18,8 +17,7 @@
 #include "tests/fuzz/vdb/vdb_corpus.h"
 #include "tests/support/support.h"
 
-namespace catena::field {
-namespace response_fuzz_test {
+namespace catena::field::response_fuzz_test {
 
 using catena::test::Random;
 using catena::test::TemporaryFolder;
@@ -115,15 +113,9 @@ TEST_F(ResponseFuzz, ForgedResponsesThroughTheWholePath) {
       EXPECT_EQ(field.error().message.find('\n'), std::string::npos);
       continue;
     }
-    const Box box = field->scalar ? field->scalar->grid()->index_box() : field->vector->grid()->index_box();
+    const Box box = field->get()->index_box();
     Cursor cursor;
-    for (const Vec3& at : {box.lo, box.hi, 0.5 * (box.lo + box.hi)}) {
-      const Vec3 world = field->get()->mapping().world_from_index(at);
-      if (field->scalar)
-        field->scalar->sample(world, cursor);
-      else
-        field->vector->sample(world, cursor);
-    }
+    for (const Vec3& at : {box.lo, box.hi, 0.5 * (box.lo + box.hi)}) catena::test::sample_at_index(*field, at, cursor);
   }
   if (inputs.is_long_run()) fmt::print("{} answers: {} loaded, {} refused\n", inputs.count(), loaded, refused);
   EXPECT_GT(refused, 0);
@@ -189,14 +181,11 @@ void fuzz_buffer(const std::string& answer, const BufferRange& piece, std::uint6
   EXPECT_LT(passed, inputs.count());
 }
 
-TEST_F(ResponseFuzz, BuffersOfNumbers) {
-  const std::string answer = honest("blosc", "density");
-  fuzz_buffer<float>(answer, reply_of(answer).values, 21);
-}
-
-TEST_F(ResponseFuzz, BuffersWithTiles) {
-  const std::string answer = honest("tiles", "density");
-  fuzz_buffer<float>(answer, reply_of(answer).values, 22);
+TEST_F(ResponseFuzz, BuffersOfNumbersAndTiles) {
+  for (const auto& [specimen, seed] : {std::pair{"blosc", 21u}, {"tiles", 22u}}) {
+    const std::string answer = honest(specimen, "density");
+    fuzz_buffer<float>(answer, reply_of(answer).values, seed);
+  }
 }
 
 TEST_F(ResponseFuzz, BuffersOfVectors) {
@@ -210,5 +199,4 @@ TEST_F(ResponseFuzz, BuffersOfMasks) {
   fuzz_buffer<nanovdb::ValueMask>(answer, reply_of(answer).valid_cells, 25);
 }
 
-}  // namespace response_fuzz_test
-}  // namespace catena::field
+}  // namespace catena::field::response_fuzz_test

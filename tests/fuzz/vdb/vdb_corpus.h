@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/io/volume/load_field.h"
+
 namespace catena::test {
 
 struct VdbFile {
@@ -40,6 +42,15 @@ inline std::string vdb_bytes(const openvdb::GridCPtrVec& grids, std::uint32_t co
   std::ostringstream out;
   archive.put(out, grids, offsets);
   return out.str();
+}
+
+/// Samples a field of either kind at an index position.
+inline void sample_at_index(const field::AnyField& field, const Vec3& index, field::Cursor& cursor) {
+  const Vec3 world = field.get()->mapping().world_from_index(index);
+  if (field.scalar)
+    field.scalar->sample(world, cursor);
+  else
+    field.vector->sample(world, cursor);
 }
 
 inline std::vector<VdbFile> vdb_corpus() {

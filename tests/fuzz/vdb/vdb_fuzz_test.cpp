@@ -16,17 +16,11 @@
 #include "tests/fuzz/vdb/vdb_corpus.h"
 #include "tests/support/support.h"
 
-namespace catena::field {
-namespace vdb_fuzz_test {
+namespace catena::field::vdb_fuzz_test {
 
 using catena::test::Random;
 using catena::test::TemporaryFolder;
 using catena::test::VdbFile;
-
-std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
-  const char* text = std::getenv(variable);
-  return text ? std::strtoull(text, nullptr, 10) : otherwise;
-}
 
 /// Counts of the results, by their error message.
 struct Tally {
@@ -61,14 +55,10 @@ void expect_sentence(const std::string& message, const std::string& path, Tally&
 void use(const AnyField& field, Random& random) {
   const auto between = [&](double lo, double hi) { return lo + (hi - lo) * static_cast<double>(random.below(1001)) / 1000; };
   Cursor cursor;
-  const Box box = field.scalar ? field.scalar->grid()->index_box() : field.vector->grid()->index_box();
+  const Box box = field.get()->index_box();
   for (int i = 0; i < 20; ++i) {
     const Vec3 index(between(box.lo.x, box.hi.x), between(box.lo.y, box.hi.y), between(box.lo.z, box.hi.z));
-    const Vec3 world = field.get()->mapping().world_from_index(index);
-    if (field.scalar)
-      field.scalar->sample(world, cursor);
-    else
-      field.vector->sample(world, cursor);
+    catena::test::sample_at_index(field, index, cursor);
   }
   EXPECT_TRUE(std::isfinite(field.get()->domain_length()) && field.get()->domain_length() >= 0) << "0: of one voxel";
 }
@@ -112,7 +102,7 @@ TEST_F(VdbFuzz, TheCorpusIsValid) {
 
 TEST_F(VdbFuzz, OneChangedByteOfACompressedFile) {
   Random random{2};
-  const std::uint64_t stride = number_of("CATENA_FUZZ_STRIDE", 397);
+  const std::uint64_t stride = catena::test::FuzzInputs::number("CATENA_FUZZ_STRIDE", 397);
   for (const VdbFile& specimen : catena::test::vdb_corpus()) {
     if (specimen.name != "blosc" && specimen.name != "half-blosc") continue;
     for (std::size_t at = 0; at < specimen.bytes.size() && !HasFailure(); at += stride) {
@@ -161,5 +151,4 @@ TEST_F(VdbFuzz, AFalseNumberOfTilesIsAnErrorInOneLine) {
   EXPECT_EQ(tally_.ends["took more than"], 0);
 }
 
-}  // namespace vdb_fuzz_test
-}  // namespace catena::field
+}  // namespace catena::field::vdb_fuzz_test

@@ -1,35 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// The link key "align" from scene to tick: its keys, and the alignment of the tool's axis with every kind of feature.
-#include <gtest/gtest.h>
+#include "tests/haptics/build/build_fixture.h"
 
-#include "haptics/build/build_program.h"
-#include "haptics/chain/tick.h"
-#include "tests/support/support.h"
+namespace catena::haptics::align_test {
 
-namespace catena::haptics {
-namespace align_test {
-
-scene::Scene scene_of(const std::string& text) {
-  auto scene = scene::parse_scene(text, "scene.json");
-  EXPECT_TRUE(scene) << scene.error().message;
-  return scene ? std::move(*scene) : scene::Scene{};
-}
-
-std::shared_ptr<const HapticProgram> program_of(const std::string& text) {
-  scene::Scene scene = scene_of(text);
-  const auto program = build_program(scene);
-  EXPECT_TRUE(program) << program.error().message;
-  return program ? *program : nullptr;
-}
-
-void expect_error(const std::string& text, int line, std::initializer_list<const char*> parts) {
-  scene::Scene scene = scene_of(text);
-  const auto program = build_program(scene);
-  ASSERT_FALSE(program) << text;
-  const std::string& message = program.error().message;
-  EXPECT_TRUE(message.starts_with("scene.json:" + std::to_string(line) + ": ")) << message;
-  for (const char* part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks " << part;
-}
+using build_tests::expect_error;
+using build_tests::program_of;
 
 constexpr const char* kFields = R"("fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}}, )";
 
@@ -68,16 +44,9 @@ TEST(ExtractAlign, ErrorsNameTheirLine) {
   expect_error(with_link(plane + "{}", R"({"method": "pipe"})"), 2, {"\"align\" needs", "\"chain\" was expected"});
 }
 
-struct Hand {
-  std::shared_ptr<const HapticProgram> program;
-  std::unique_ptr<ChainState> state = std::make_unique<ChainState>();
-  std::unique_ptr<ChainScratch> scratch = std::make_unique<ChainScratch>();
-  HapticState out;
-  double t = 0;
-  void step(const Vec3& p, const Quat& q) {
-    tick(*program, {t, p, 0, q}, *state, *scratch, out);
-    t += 1e-3;
-  }
+struct Hand : test::ChainDriver {
+  explicit Hand(const std::string& text) : ChainDriver(*program_of(text)) {}
+  void step(const Vec3& p, const Quat& q) { at(t + 1e-3, p, 0, q); }
 };
 
 struct Case {
@@ -107,11 +76,8 @@ const Case kCases[] = {
 
 TEST(ExtractAlign, TheToolsAxisAlignsWithEveryKindOfFeature) {
   for (const Case& c : kCases) {
-    Hand hand;
-    hand.program = program_of(with_link(std::string(c.keys) + R"(, "align": {"axis": [1, 0, 1], "stiffness": 0.3})"));
-    Hand plain;
-    plain.program = program_of(with_link(c.keys));
-    ASSERT_TRUE(hand.program && plain.program);
+    Hand hand(with_link(std::string(c.keys) + R"(, "align": {"axis": [1, 0, 1], "stiffness": 0.3})")), plain(with_link(c.keys));
+    ASSERT_EQ(hand.program.links.size() + plain.program.links.size(), 2u);
     const Vec3 tool = direction({1, 0, 1});
     Vec3 end(0.0);
     for (int k = 0; k < 200; ++k) {
@@ -120,10 +86,10 @@ TEST(ExtractAlign, TheToolsAxisAlignsWithEveryKindOfFeature) {
       const Quat q = rotation_from_vector({std::sin(2 * a), 0.3 * a, std::cos(a)});
       hand.step(p, q);
       plain.step(p, q);
-      const LinkReport& link = hand.out.links[0];
-      EXPECT_EQ(link.proxy, plain.out.links[0].proxy) << c.keys;  // alignment does not change the position
+      const LinkReport& link = hand.link();
+      EXPECT_EQ(link.proxy, plain.link().proxy) << c.keys;  // alignment does not change the position
       EXPECT_LE(link.evaluations, kMaxEvaluations);
-      EXPECT_LE(link.evaluations - plain.out.links[0].evaluations, 1) << c.keys;
+      EXPECT_LE(link.evaluations - plain.link().evaluations, 1) << c.keys;
       const Vec3 n = c.axis(link.proxy), before = rotate(q, tool), after = rotate(link.orientation, tool);
       // the axis keeps the last tick's sign until the tool is 10 degrees past perpendicular
       Vec3 goal = dot(k > 0 ? end : before, n) < 0 ? -n : n;
@@ -137,30 +103,27 @@ TEST(ExtractAlign, TheToolsAxisAlignsWithEveryKindOfFeature) {
 }
 
 TEST(ExtractAlign, OnTheFreeSideTheToolIsFree) {
-  Hand hand;
-  hand.program = program_of(with_link(R"("type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "free": "above", "align": {})"));
+  Hand hand(with_link(R"("type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "free": "above", "align": {})"));
   const Quat q = rotation_from_vector({0.4, 0, 0});
   hand.step({0, 0, 0.1}, q);
   EXPECT_EQ(hand.out.torque_nm, Vec3(0.0));
-  EXPECT_EQ(hand.out.links[0].orientation, q);
+  EXPECT_EQ(hand.link().orientation, q);
   hand.step({0, 0, -0.01}, q);
   EXPECT_NEAR(hand.out.torque_nm.x, -0.5 * 0.4, 1e-12);
 }
 
 TEST(ExtractAlign, ASurfaceAndAStreamlineFixTheOrientation) {
   // the tool's z along the surface's normal and its x along the curve: compatible on a circle of the sphere
-  Hand hand;
-  hand.program = program_of(std::string("{") + kFields + R"("chain": [
+  Hand hand(std::string("{") + kFields + R"("chain": [
     {"name": "skin", "type": "isosurface", "field": "s", "level": 0.5, "align": {"axis": [0, 0, 1], "sign": "same"}},
     {"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0], "align": {"axis": [1, 0, 0], "sign": "same"}}]})");
   for (int k = 0; k < 100; ++k) {
     const double a = 0.03 * k;
     hand.step({0.52 * std::cos(a), 0.52 * std::sin(a), 0}, rotation_from_vector({0.3, 1.2, a - 0.4}));
-    const LinkReport& curve = hand.out.links[1];
+    const LinkReport& curve = hand.link(1);
     EXPECT_LE(norm(rotate(curve.orientation, {1, 0, 0}) - around(curve.proxy)), kCurve);
     EXPECT_LE(norm(rotate(curve.orientation, {0, 0, 1}) - radial(curve.proxy)), kCurve);
   }
 }
 
-}  // namespace align_test
-}  // namespace catena::haptics
+}  // namespace catena::haptics::align_test

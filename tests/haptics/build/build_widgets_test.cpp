@@ -1,42 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "haptics/build/build_program.h"
-
-#include <gtest/gtest.h>
-
 #include "engine/scene/widgets.h"
-#include "haptics/chain/tick.h"
-#include "tests/support/support.h"
+#include "tests/haptics/build/build_fixture.h"
 
-namespace catena::haptics {
-namespace build_widgets_test {
+namespace catena::haptics::build_widgets_test {
 
-scene::Scene scene_of(const std::string& text) {
-  auto scene = scene::parse_scene(text, "scene.json");
-  EXPECT_TRUE(scene) << scene.error().message;
-  return scene ? std::move(*scene) : scene::Scene{};
-}
-
-std::shared_ptr<const HapticProgram> program_of(scene::Scene& scene) {
-  auto program = build_program(scene);
-  EXPECT_TRUE(program) << program.error().message;
-  return program ? *program : std::make_shared<const HapticProgram>();
-}
-
-void expect_error(const std::string& text, int line, std::initializer_list<const char*> parts) {
-  scene::Scene scene = scene_of(text);
-  const auto program = build_program(scene);
-  ASSERT_FALSE(program) << text;
-  const std::string& message = program.error().message;
-  EXPECT_TRUE(message.starts_with("scene.json:" + std::to_string(line) + ": ")) << message;
-  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-  for (const char* part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks " << part;
-}
+using build_tests::expect_error;
+using build_tests::program_of;
+using build_tests::scene_of;
 
 TEST(ExtractWidgets, WidgetLinksFollowTheScenesLinks) {
-  scene::Scene scene = scene_of(R"({"chain": [{"name": "a", "type": "point", "position": [0, 0, 0]}],
+  const auto program = program_of(R"({"chain": [{"name": "a", "type": "point", "position": [0, 0, 0]}],
     "widgets": [{"name": "cut", "type": "cutting_plane", "center": [1, 2, 3], "normal": [0, 0, 2]},
                 {"name": "s", "type": "seed", "position": [4, 5, 6], "button": 3}], "coupling": {"stiffness": 123}})");
-  const auto program = program_of(scene);
   ASSERT_EQ(program->links.size(), 5u);
   EXPECT_EQ(program->first_widget_link, 1);
   EXPECT_EQ(program->scene_link_count(), 1u);
@@ -53,8 +28,7 @@ TEST(ExtractWidgets, WidgetLinksFollowTheScenesLinks) {
 }
 
 TEST(ExtractWidgets, WithoutWidgetsThereAreNoWidgetLinks) {
-  scene::Scene scene = scene_of(R"({"chain": [{"name": "a", "type": "point", "position": [0, 0, 0]}]})");
-  const auto program = program_of(scene);
+  const auto program = program_of(R"({"chain": [{"name": "a", "type": "point", "position": [0, 0, 0]}]})");
   EXPECT_EQ(program->links.size(), 1u);
   EXPECT_EQ(program->first_widget_link, -1);
   EXPECT_EQ(program->scene_link_count(), 1u);
@@ -64,8 +38,8 @@ TEST(ExtractWidgets, EightSceneLinksAndFourWidgetLinksFit) {
   std::string links;
   for (int i = 0; i < 8; ++i)
     links += std::string(i > 0 ? ",\n" : "") + R"({"name": "l)" + std::to_string(i) + R"(", "type": "point", "position": [0, 0, 0]})";
-  scene::Scene scene = scene_of("{\"chain\": [" + links + R"(], "widgets": [{"name": "s", "type": "seed", "position": [0, 0, 0]}]})");
-  EXPECT_EQ(program_of(scene)->links.size(), 12u);
+  const std::string text = "{\"chain\": [" + links + R"(], "widgets": [{"name": "s", "type": "seed", "position": [0, 0, 0]}]})";
+  EXPECT_EQ(program_of(text)->links.size(), 12u);
 }
 
 TEST(ExtractWidgets, PosesAreTheScenesCurrentOnes) {
@@ -95,23 +69,16 @@ TEST(ExtractWidgets, LinksFollowASeedAndAnIsolevel) {
   const auto a = program_of(with), b = program_of(without);
   ASSERT_EQ(a->links.size(), 6u);
   const Vec3 probe(0.4, 0.3, 0.2);
-  HapticState outs[2];
-  for (const auto& [program, result] : {std::pair{a, &outs[0]}, {b, &outs[1]}}) {
-    auto state = std::make_unique<ChainState>();
-    auto scratch = std::make_unique<ChainScratch>();
-    tick(*program, {0, probe}, *state, *scratch, *result);
-  }
-  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(outs[0].links[i].proxy, outs[1].links[i].proxy);
+  test::ChainDriver first(*a), second(*b);
+  first.at(0, probe);
+  second.at(0, probe);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(first.link(i).proxy, second.link(i).proxy);
   // a moved widget changes the spec hash, so that the link restarts
   with.entities.get<scene::Widget>(scene::find_widget(with, "s")).report.pose.points[0] = {0.6, 0, 0.25};
   with.entities.get<scene::Widget>(scene::find_widget(with, "l")).report.value = 0.5;
   const auto moved = program_of(with);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_NE(moved->links[i].spec_hash, a->links[i].spec_hash);
-  HapticState out;
-  auto state = std::make_unique<ChainState>();
-  auto scratch = std::make_unique<ChainScratch>();
-  tick(*moved, {0, {0.6, 0.1, 0.2}}, *state, *scratch, out);
-  EXPECT_NEAR(norm(out.links[1].proxy), 0.5, 1e-9);
+  EXPECT_NEAR(norm(test::ChainDriver(*moved).at(0, {0.6, 0.1, 0.2}).links[1].proxy), 0.5, 1e-9);
 }
 
 TEST(ExtractWidgets, ARulerGoesAlongLinksByName) {
@@ -119,8 +86,7 @@ TEST(ExtractWidgets, ARulerGoesAlongLinksByName) {
       R"({"chain": [{"name": "a", "type": "point", "position": [0, 0, 0]}, {"name": "b", "type": "point", "position": [1, 0, 0]}],
 "widgets": [{"name": "r", "type": "ruler", "from": [0, 0, 0], "to": [1, 0, 0],
 "along": [)";
-  scene::Scene scene = scene_of(text + "\"b\", \"a\"]}]}");
-  EXPECT_EQ(program_of(scene)->widgets[0].along_links, (std::vector<int>{1, 0}));
+  EXPECT_EQ(program_of(text + "\"b\", \"a\"]}]}")->widgets[0].along_links, (std::vector<int>{1, 0}));
 }
 
 TEST(ExtractWidgets, UnsupportedUsesAreErrorsInOneLine) {
@@ -140,5 +106,4 @@ TEST(ExtractWidgets, UnsupportedUsesAreErrorsInOneLine) {
                {"\"widget_x\"", "reserved for widgets"});
 }
 
-}  // namespace build_widgets_test
-}  // namespace catena::haptics
+}  // namespace catena::haptics::build_widgets_test

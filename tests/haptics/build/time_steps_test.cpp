@@ -2,16 +2,12 @@
 /// Time steps in the haptic chain: a series of files, of which the next one replaces the current one.
 #include "engine/scene/time_steps.h"
 
-#include <gtest/gtest.h>
-
 #include "engine/io/field_cache.h"
 #include "engine/io/volume/load_field.h"
-#include "haptics/build/build_program.h"
-#include "haptics/chain/tick.h"
-#include "tests/support/support.h"
+#include "tests/haptics/build/build_fixture.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
-namespace catena::haptics {
-namespace time_steps_test {
+namespace catena::haptics::time_steps_test {
 
 /// Three balls of radius 1, 1.15 and 1.3; their file names sort numerically (2 before 10).
 class GrowingTimeSeries : public testing::Test {
@@ -19,27 +15,19 @@ class GrowingTimeSeries : public testing::Test {
   GrowingTimeSeries() {
     const char* names[] = {"ball_2.vdb", "ball_10.vdb", "ball_11.vdb"};
     for (int s = 0; s < 3; ++s) {
-      constexpr int kNodes = 49;
-      std::vector<float> values;
-      for (int k = 0; k < kNodes; ++k)
-        for (int j = 0; j < kNodes; ++j)
-          for (int i = 0; i < kNodes; ++i) values.push_back(static_cast<float>(norm(Vec3(i, j, k) / 12.0 - 2.0) - 0.15 * s));
-      const auto mapping = field::Mapping::from_linear(Mat3(1.0 / 12), Vec3(-2.0));
       field::AnyField field;
-      field.scalar = field::make_scalar_grid("r", mapping, {kNodes, kNodes, kNodes}, values);
+      field.scalar = haptics::tests::cube_grid(49, [&](const Vec3& p) { return norm(p) - 0.15 * s; });
       EXPECT_TRUE(field::write_vdb(folder_ / names[s], {{field, "r"}}));
     }
   }
   ~GrowingTimeSeries() override { field::clear_cache(); }
   scene::Scene read(const std::string& more = {}) {
-    auto scene = scene::parse_scene(
+    return build_tests::scene_of(
         R"({"fields": {"r": {"file": "ball_*.vdb"}},
             "chain": [{"name": "skin", "type": "isosurface", "field": "r", "level": 1, "free": "above"}],
             "coupling": {"stiffness": 300, "max_force": 8, "ramp_s": 0.02}, "workspace": {"metres_per_unit": 0.05})" +
             more + "}",
         folder_ / "s.json");
-    EXPECT_TRUE(scene) << scene.error().message;
-    return std::move(*scene);
   }
   static double radius_at(scene::Scene& scene) {
     const auto field = scene::resolve_field(scene, scene::find_field(scene, "r"), {});
@@ -78,31 +66,21 @@ TEST_F(GrowingTimeSeries, APrefetchedStepIsNotLoadedTwice) {
 
 TEST_F(GrowingTimeSeries, TheForceDoesNotJumpAtATimeStep) {
   scene::Scene scene = read();
-  auto first = build_program(scene);
-  ASSERT_TRUE(first) << first.error().message;
-  HapticProgram program = **first;
-  ChainState state;
-  ChainScratch scratch;
-  HapticState out;
-  double t = 0;
+  test::ChainDriver hand(*build_tests::program_of(scene));
   Vec3 force(0.0);
-  double largest_step = 0, before_n = 0;
+  double largest_step = 0;
   const auto ticks = [&](int n, const auto& place) {
     for (int k = 0; k < n; ++k) {
-      tick(program, {t += 1e-3, place(k), 0}, state, scratch, out);
-      if (t > 0.1) largest_step = std::max(largest_step, norm(out.force_n - force));
-      force = out.force_n;
+      hand.step(place(k));
+      if (hand.t > 0.1) largest_step = std::max(largest_step, norm(hand.out.force_n - force));
+      force = hand.out.force_n;
     }
   };
   ticks(300, [](int k) { return Vec3(1.2 - 0.3 * std::min(k, 200) / 200, 0, 0); });
-  before_n = norm(force);
-  EXPECT_NEAR(before_n, 300 * 0.05 * 0.1, 0.02);
+  EXPECT_NEAR(norm(force), 300 * 0.05 * 0.1, 0.02);
   for (int step = 1; step <= 2; ++step) {
     scene::set_step(scene, step);
-    auto next = build_program(scene);
-    ASSERT_TRUE(next) << next.error().message;
-    rebind_program(program, **next, state, scratch);
-    program = **next;
+    hand.replace(*build_tests::program_of(scene));
     ticks(200, [](int) { return Vec3(0.9, 0, 0); });
     EXPECT_NEAR(norm(force), 300 * 0.05 * (0.1 + 0.15 * step), 0.02) << "the new surface is felt";
   }
@@ -117,5 +95,4 @@ TEST_F(GrowingTimeSeries, APatternWithoutFilesIsRefused) {
   EXPECT_NE(scene.error().message.find("s.json:2: field \"r\": no file matches the pattern"), std::string::npos) << scene.error().message;
 }
 
-}  // namespace time_steps_test
-}  // namespace catena::haptics
+}  // namespace catena::haptics::time_steps_test

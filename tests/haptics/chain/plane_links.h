@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// Links whose order matters: projections on planes that are not perpendicular to each other, and a driver of the tick.
+/// Links whose order matters: projections on planes that are not perpendicular to each other.
 #pragma once
 #include <gtest/gtest.h>
 
-#include "haptics/chain/tick.h"
+#include "tests/haptics/chain/chain_driver.h"
 
 namespace catena::test {
 
@@ -44,22 +44,5 @@ inline haptics::HapticProgram make_order_program(double ramp_s) {
   program.coupling.max_force_n = 1e9;
   return program;
 }
-
-struct ChainDriver {
-  haptics::HapticProgram program;
-  haptics::ChainState state;
-  haptics::ChainScratch scratch;
-  HapticState out;
-  double t = 0;
-  explicit ChainDriver(haptics::HapticProgram p) : program(std::move(p)) {}
-  const Vec3& step(const Vec3& probe, std::uint32_t buttons = 0, double dt = 1e-3) {
-    haptics::tick(program, {t += dt, probe, buttons}, state, scratch, out);
-    return out.force_n;
-  }
-  void replace(const haptics::HapticProgram& next) {
-    haptics::rebind_program(program, next, state, scratch);
-    program = next;
-  }
-};
 
 }  // namespace catena::test

@@ -9,8 +9,7 @@
 #include "engine/base/memory_limit.h"
 #include "tests/haptics/chain/plane_links.h"
 
-namespace catena::haptics {
-namespace ramp_test {
+namespace catena::haptics::ramp_test {
 
 using catena::test::ChainDriver;
 using catena::test::hold_plane;
@@ -63,8 +62,7 @@ TEST(Ramp, WithoutARampSwitchesActAtOnce) {
   for (const std::uint32_t buttons : {0u, 1u, 3u, 7u, 4u, 8u, 0u, 2u, 12u}) {
     ramped.step(kProbe, buttons);
     fresh.state = ChainState{};
-    fresh.step(kProbe, buttons);
-    EXPECT_EQ(ramped.out.force_n, fresh.out.force_n) << buttons;
+    EXPECT_EQ(ramped.out.force_n, fresh.step(kProbe, buttons)) << buttons;
   }
 }
 
@@ -86,14 +84,11 @@ TEST(Ramp, BoundsTheForceChangeUnderSwitchesOrderChangesMotionAndLoss) {
       at = kProbe + (at + Vec3(way, -way, i % 2 ? way : -way) - kProbe) * 0.9;
       const double allowed = k * norm(at - last) + fall + 1e-9;
       if (lost) {
-        hand.step(Vec3(std::numeric_limits<double>::quiet_NaN()), buttons, 1 / rate);
-        ASSERT_EQ(hand.out.force_n, Vec3(0.0)) << "at once";
-        hand.step(at, buttons, 1 / rate);
-        ASSERT_LE(norm(hand.out.force_n), allowed) << i;
+        ASSERT_EQ(hand.step(Vec3(std::numeric_limits<double>::quiet_NaN()), buttons, 1 / rate), Vec3(0.0)) << "at once";
+        ASSERT_LE(norm(hand.step(at, buttons, 1 / rate)), allowed) << i;
         continue;
       }
-      hand.step(at, buttons, 1 / rate);
-      ASSERT_LE(norm(hand.out.force_n - before), allowed) << i;
+      ASSERT_LE(norm(hand.step(at, buttons, 1 / rate) - before), allowed) << i;
       minimum = std::min(minimum, norm(hand.out.force_n));
       maximum = std::max(maximum, norm(hand.out.force_n));
     }
@@ -107,8 +102,7 @@ TEST(Ramp, AfterTheRampTheForceIsThatOfTheNewOrder) {
       ChainDriver hand(ordered()), fresh(ordered());
       for (int i = 0; i < 5; ++i) hand.step(kProbe, from);
       for (int i = 0; i < 45; ++i) hand.step(kProbe, to);
-      fresh.step(kProbe, to);
-      EXPECT_LE(norm(hand.out.force_n - fresh.out.force_n), 1e-12) << from << " " << to;
+      EXPECT_LE(norm(hand.out.force_n - fresh.step(kProbe, to)), 1e-12) << from << " " << to;
     }
 }
 
@@ -139,8 +133,7 @@ TEST(Ramp, BoundsTheForceChangeWhenAProgramIsReplaced) {
       for (int i = 0; i < 45; ++i) fresh.step(kProbe, buttons);
       for (int i = 0; i < 45; ++i) {
         const Vec3 before = hand.out.force_n;
-        hand.step(kProbe, buttons);
-        ASSERT_LE(norm(hand.out.force_n - before), kMaxForceN / 20 + 1e-12) << c << " " << buttons << " tick " << i;
+        ASSERT_LE(norm(hand.step(kProbe, buttons) - before), kMaxForceN / 20 + 1e-12) << c << " " << buttons << " tick " << i;
       }
       EXPECT_LE(norm(hand.out.force_n - fresh.out.force_n), 1e-10) << c << " " << buttons;
     }
@@ -154,8 +147,7 @@ TEST(Ramp, IsDeterministicAndAllocatesNothing) {
     const auto buttons = static_cast<std::uint32_t>(random() % 16);
     const Vec3 probe = kProbe * (1 + 0.1 * static_cast<double>(random() % 100) / 100);
     a.step(probe, buttons);
-    b.step(probe, buttons);
-    ASSERT_EQ(a.out.force_n, b.out.force_n) << i;
+    ASSERT_EQ(a.out.force_n, b.step(probe, buttons)) << i;
   }
   EXPECT_EQ(guard.count(), 0u);
 }
@@ -165,13 +157,10 @@ TEST(Ramp, OverflowingForcesLeaveNoResidue) {
   hand.step({1e308, -1e308, 1e308}, 3);
   hand.step({1e308, -1e308, 1e308}, 4);
   for (int i = 0; i < 45; ++i) {
-    hand.step(kProbe, 0);
-    ASSERT_TRUE(is_finite(hand.out.force_n)) << i;
+    ASSERT_TRUE(is_finite(hand.step(kProbe, 0))) << i;
   }
   ChainDriver fresh(ordered());
-  fresh.step(kProbe, 0);
-  EXPECT_LE(norm(hand.out.force_n - fresh.out.force_n), 1e-10);
+  EXPECT_LE(norm(hand.out.force_n - fresh.step(kProbe, 0)), 1e-10);
 }
 
-}  // namespace ramp_test
-}  // namespace catena::haptics
+}  // namespace catena::haptics::ramp_test

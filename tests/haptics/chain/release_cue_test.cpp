@@ -5,8 +5,7 @@
 
 #include "tests/haptics/chain/plane_links.h"
 
-namespace catena::haptics {
-namespace release_cue_test {
+namespace catena::haptics::release_cue_test {
 
 using Cue = ReleaseCue::Type;
 
@@ -151,9 +150,7 @@ TEST(ReleaseCue, InTheChainCuesRampInAndEndWithTheirLink) {
     else
       EXPECT_EQ(hand.out.force_n, Vec3(0.0)) << i;
     swing = std::max(swing, std::fabs(hand.out.force_n.z));
-    if (i >= 101 && i < 200) {
-      EXPECT_DOUBLE_EQ(hand.out.links[0].release_ratio, 0.5);
-    }
+    EXPECT_DOUBLE_EQ(i >= 101 && i < 200 ? hand.link().release_ratio : 0.5, 0.5);
   }
   EXPECT_GT(swing, 0.9);
 }
@@ -169,5 +166,4 @@ TEST(ReleaseCue, ABadProbeReportsNoGap) {
   EXPECT_EQ(hand.out.force_n, Vec3(0.0));
 }
 
-}  // namespace release_cue_test
-}  // namespace catena::haptics
+}  // namespace catena::haptics::release_cue_test

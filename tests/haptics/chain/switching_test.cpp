@@ -3,8 +3,7 @@
 
 #include "tests/haptics/chain/plane_links.h"
 
-namespace catena::haptics {
-namespace switching_test {
+namespace catena::haptics::switching_test {
 
 using test::ChainDriver;
 using test::hold_plane;
@@ -38,10 +37,8 @@ TEST(Switching, EachOf32ButtonsSwitchesWhileHeld) {
     const HapticProgram program = with({.button = button});
     SwitchState state;
     const std::uint32_t bit = 1u << (button - 1);
-    EXPECT_EQ(step_switches(program, ~bit, 0, state).count, 0);
-    EXPECT_EQ(step_switches(program, bit, 0, state).count, 1);
-    EXPECT_EQ(step_switches(program, bit, 0, state).count, 1);
-    EXPECT_EQ(step_switches(program, 0, 0, state).count, 0);
+    for (const auto& [buttons, on] : {std::pair{~bit, 0}, {bit, 1}, {bit, 1}, {0u, 0}})
+      EXPECT_EQ(step_switches(program, buttons, 0, state).count, on) << buttons;
   }
 }
 
@@ -67,17 +64,14 @@ TEST(Switching, AForceSwitchesWithHysteresis) {
 TEST(Switching, ModesOrderTheLinksAndTheFirstActiveModeWins) {
   const HapticProgram program = test::make_order_program(0);
   SwitchState state;
-  EXPECT_EQ(word(step_switches(program, 0, 0, state)), "ac");
-  EXPECT_EQ(word(step_switches(program, 3, 0, state)), "abcd");
-  const LinkOrder turned = step_switches(program, 4 + 3, 0, state);
-  EXPECT_EQ(word(turned), "dcba");
-  EXPECT_EQ(turned.mode, 0);
-  EXPECT_EQ(word(step_switches(program, 4, 0, state)), "ca") << "a link's own switch still counts";
-  const LinkOrder few = step_switches(program, 8 + 3, 0, state);
-  EXPECT_EQ(word(few), "ca");
-  EXPECT_EQ(few.mode, 1);
-  EXPECT_EQ(step_switches(program, 8 + 4, 0, state).mode, 0);
-  EXPECT_EQ(step_switches(program, 0, 0, state).mode, -1);
+  // a link's own switch counts in a mode, too
+  const std::tuple<std::uint32_t, const char*, int> steps[] = {{0, "ac", -1},    {3, "abcd", -1},  {4 + 3, "dcba", 0}, {4, "ca", 0},
+                                                               {8 + 3, "ca", 1}, {8 + 4, "ca", 0}, {0, "ac", -1}};
+  for (const auto& [buttons, order, mode] : steps) {
+    const LinkOrder now = step_switches(program, buttons, 0, state);
+    EXPECT_EQ(word(now), order) << buttons;
+    EXPECT_EQ(now.mode, mode) << buttons;
+  }
 }
 
 TEST(Switching, AModeByForceAndAModeByToggle) {
@@ -147,5 +141,4 @@ TEST(Switching, RebindKeepsTogglesOfLinksAndModesByName) {
   EXPECT_TRUE(hand.out.links[0].active) << "b was toggled on";
 }
 
-}  // namespace switching_test
-}  // namespace catena::haptics
+}  // namespace catena::haptics::switching_test

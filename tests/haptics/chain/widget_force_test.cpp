@@ -7,8 +7,7 @@
 #include "tests/haptics/chain/plane_links.h"
 #include "tests/haptics/chain/widget_probe.h"
 
-namespace catena::haptics {
-namespace widget_force_test {
+namespace catena::haptics::widget_force_test {
 
 using test::make_widget_program;
 using test::make_widget_spec;
@@ -41,17 +40,15 @@ std::vector<Step> handles_script() {
 
 struct Jumps {
   double maximum = 0;
-  double over = 0;  // maximum excess of a tick over allowed()
+  double over = 0;  // maximum excess of a tick over the bound of ramp.h
   int changes = 0;
 };
 
-// Allowed force change of a tick by ramp.h, with an upper bound of K.
-double allowed(const WidgetProbe& hand, double ramp_step, double move) {
-  return ramp_step * hand.program.coupling.max_force_n + 8 * 500 * move;
-}
-
-void drive(WidgetProbe& hand, const std::vector<Step>& script, double speed, double dt, double ramp_s, Jumps& out) {
+Jumps drive(const HapticProgram& program, const std::vector<Step>& script, double speed, double dt, double ramp_s) {
   const double move = speed * dt;
+  WidgetProbe hand(program);
+  hand.step({1, 0, 0.5});
+  Jumps out;
   Vec3 before = hand.out.force_n;
   LinkOrder order = hand.state.order;
   for (const Step& step : script) {
@@ -61,12 +58,14 @@ void drive(WidgetProbe& hand, const std::vector<Step>& script, double speed, dou
       hand.step(i >= n ? step.to : from + (step.to - from) * (static_cast<double>(i) / n), step.buttons, dt);
       const double jump = norm(hand.out.force_n - before);
       out.maximum = std::max(out.maximum, jump);
-      out.over = std::max(out.over, jump - allowed(hand, dt / ramp_s, i <= n ? move : 0));
+      // max_force dt / ramp_s + K |dx|, with an upper bound of K
+      out.over = std::max(out.over, jump - (dt / ramp_s * program.coupling.max_force_n + 8 * 500 * (i <= n ? move : 0)));
       before = hand.out.force_n;
       out.changes += order == hand.state.order ? 0 : 1;
       order = hand.state.order;
     }
   }
+  return out;
 }
 
 std::vector<Link> scene_links() { return {test::hold_plane("a", {0.2, 1, 0}, 0.1, 300), test::hold_plane("b", {1, 0, 0.3}, -0.2, 400)}; }
@@ -80,10 +79,8 @@ TEST(WidgetForce, NoTransitionOfACuttingPlaneMakesTheForceJump) {
           Spec spec = make_widget_spec(Kind::cutting_plane);
           spec.rotation = turning;
           spec.rotate_on_contact = touch;
-          WidgetProbe hand(make_widget_program({spec}, with_links ? scene_links() : std::vector<Link>{}, 0.05));
-          hand.step({1, 0, 0.5});
-          Jumps jumps;
-          drive(hand, plane_script(), 2, dt, 0.05, jumps);
+          const HapticProgram program = make_widget_program({spec}, with_links ? scene_links() : std::vector<Link>{}, 0.05);
+          const Jumps jumps = drive(program, plane_script(), 2, dt, 0.05);
           EXPECT_GT(jumps.changes, 12);
           EXPECT_LE(jumps.over, 1e-9) << dt;
           maximum.push_back(jumps.maximum);
@@ -95,10 +92,8 @@ TEST(WidgetForce, NoTransitionOfACuttingPlaneMakesTheForceJump) {
 }
 
 TEST(WidgetForce, WithoutTheRampTheForceJumps) {
-  WidgetProbe hand(make_widget_program({make_widget_spec(Kind::cutting_plane)}, scene_links(), 0));
-  hand.step({1, 0, 0.5});
-  Jumps jumps;
-  drive(hand, plane_script(), 2, 1e-3, 0.05, jumps);
+  const HapticProgram program = make_widget_program({make_widget_spec(Kind::cutting_plane)}, scene_links(), 0);
+  const Jumps jumps = drive(program, plane_script(), 2, 1e-3, 0.05);
   EXPECT_GT(jumps.maximum, 50);
   EXPECT_GT(jumps.over, 20) << "what the other tests hold forces to is no idle bound";
 }
@@ -108,10 +103,7 @@ TEST(WidgetForce, NoTransitionOfHandlesMakesTheForceJump) {
                           make_widget_spec(Kind::box, {-1, -0.5, -0.4}, {-0.5, 0.5, 0.6})};
   std::vector<double> maximum;
   for (const double dt : {1e-3, 2.5e-4}) {
-    WidgetProbe hand(make_widget_program(specs, scene_links(), 0.05));
-    hand.step({1, 0, 0.5});
-    Jumps jumps;
-    drive(hand, handles_script(), 2, dt, 0.05, jumps);
+    const Jumps jumps = drive(make_widget_program(specs, scene_links(), 0.05), handles_script(), 2, dt, 0.05);
     EXPECT_GT(jumps.changes, 9);
     EXPECT_LE(jumps.over, 1e-9) << dt;
     maximum.push_back(jumps.maximum);
@@ -126,8 +118,7 @@ TEST(WidgetForce, ALinkWithAChangedShapeRestartsAndItsOldForceRampsOut) {
   hand.step({1, 0, 0.05});
   for (int k = 0; k < 150; ++k) hand.step({1, 0, 0.1});
   EXPECT_NEAR(hand.out.force_n.z, -50, 1e-9);
-  hand.step({1, 0, 0.1}, 1);
-  EXPECT_EQ(hand.link_order(), "widget_x widget_y widget_z");
+  hand.expect({1, 0, 0.1}, 1, "translate", "widget_x widget_y widget_z");
   EXPECT_NEAR(hand.out.force_n.z, -50 + 5, 1e-9) << "max_force in 0.1 s";
   EXPECT_NEAR(hand.out.links[2].weight, 0.01, 1e-12);
   for (int k = 2; k <= 10; ++k) {
@@ -140,14 +131,11 @@ TEST(WidgetForce, ALinkWithAChangedShapeRestartsAndItsOldForceRampsOut) {
 
 TEST(WidgetForce, WhileAWidgetIsGrabbedTheScenesLinksAreOff) {
   WidgetProbe hand(make_widget_program({make_widget_spec(Kind::cutting_plane)}, scene_links()));
-  hand.step({1, 0, 0});
-  EXPECT_EQ(hand.link_order(), "a b widget_z");
-  hand.step({1, 0, 0}, 1);
-  EXPECT_EQ(hand.link_order(), "widget_x widget_y widget_z");
+  hand.expect({1, 0, 0}, 0, "explore", "a b widget_z");
+  hand.expect({1, 0, 0}, 1, "translate", "widget_x widget_y widget_z");
   EXPECT_FALSE(hand.out.links[0].active);
   EXPECT_EQ(hand.out.links[0].proxy, Vec3(1, 0, 0));
-  hand.step({1, 0, 0}, 0);
-  EXPECT_EQ(hand.link_order(), "a b widget_z");
+  hand.expect({1, 0, 0}, 0, "explore", "a b widget_z");
 }
 
 HapticProgram everything(double ramp_s) {
@@ -220,5 +208,4 @@ TEST(WidgetForce, ATickAllocatesNothing) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace widget_force_test
-}  // namespace catena::haptics
+}  // namespace catena::haptics::widget_force_test

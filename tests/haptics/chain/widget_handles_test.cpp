@@ -3,8 +3,7 @@
 #include "tests/haptics/chain/plane_links.h"
 #include "tests/haptics/chain/widget_probe.h"
 
-namespace catena::haptics {
-namespace widget_handles_test {
+namespace catena::haptics::widget_handles_test {
 
 using test::distance_between;
 using test::make_widget_program;
@@ -16,41 +15,42 @@ using widget::Spec;
 constexpr double kStep = 0.08;
 
 /// Hovers over a handle and grabs it.
-void take(WidgetProbe& hand, const Vec3& at) {
+void take(WidgetProbe& hand, const Vec3& at, int handle) {
   hand.step(at);
   ASSERT_EQ(hand.mode_name(), "hover");
   hand.step(at, 1);
   ASSERT_EQ(hand.mode_name(), "drag");
+  ASSERT_EQ(hand.report().handle, handle);
+}
+WidgetProbe dragged_plane() {
+  WidgetProbe hand({make_widget_spec(Kind::cutting_plane)});
+  hand.grab({1, 0, 0.01});
+  hand.step({1.3, 0, 0.01}, 1);
+  return hand;
 }
 
 TEST(WidgetHandles, AHandleAttractsTheProbeAndIsDraggedOnThePlanes) {
   const Vec3 at(0.3, -0.2, 0.1);
   WidgetProbe hand({make_widget_spec(Kind::seed, at)});
-  hand.step({1, 0, 0});
-  EXPECT_EQ(hand.mode_name(), "away");
-  EXPECT_EQ(hand.report().handle, -1);
-  hand.step(at + Vec3(0.05, 0.03, 0));
-  EXPECT_EQ(hand.mode_name(), "hover");
-  EXPECT_EQ(hand.report().handle, 0);
-  EXPECT_EQ(hand.link_order(), "widget_sphere");
-  EXPECT_EQ(hand.out.links[3].proxy, at);
-  EXPECT_LE(distance_between(hand.out.force_n, Vec3(0.05, 0.03, 0) * -500.0), 1e-12);
   const Vec3 grab = at + Vec3(0.05, 0.03, 0);
-  hand.step(grab, 1);
-  EXPECT_EQ(hand.link_order(), "widget_x widget_y widget_z");
+  hand.expect({1, 0, 0}, 0, "away", "");
+  EXPECT_EQ(hand.report().handle, -1);
+  hand.expect(grab, 0, "hover", "widget_sphere");
+  EXPECT_EQ(hand.report().handle, 0);
+  EXPECT_EQ(hand.link(3).proxy, at);
+  EXPECT_LE(distance_between(hand.out.force_n, Vec3(0.05, 0.03, 0) * -500.0), 1e-12);
+  hand.expect(grab, 1, "drag", "widget_x widget_y widget_z");
   EXPECT_EQ(hand.widget_position(), at);
   for (int k = 1; k <= 100; ++k) {
     const double u = 0.01 * k;
-    hand.step(grab + Vec3(-u, 0.9 * kStep, -0.9 * kStep), 1);
-    ASSERT_EQ(hand.widget_position().y, at.y);
+    ASSERT_EQ(hand.step(grab + Vec3(-u, 0.9 * kStep, -0.9 * kStep), 1).pose.points[0].y, at.y);
     ASSERT_EQ(hand.widget_position().z, at.z);
     ASSERT_NEAR(hand.widget_position().x, at.x - (u > kStep ? u - kStep : 0), 1e-15);
   }
   hand.step(grab + Vec3(0.4, 0.5, -0.6), 1);
   EXPECT_LE(distance_between(hand.widget_position(), at + Vec3(0.4 - kStep, 0.5 - kStep, -0.6 + kStep)), 1e-15);
   const Vec3 left = hand.widget_position();
-  hand.step(grab + Vec3(0.4, 0.5, -0.6), 0);
-  EXPECT_EQ(hand.widget_position(), left);
+  EXPECT_EQ(hand.step(grab + Vec3(0.4, 0.5, -0.6), 0).pose.points[0], left);
 }
 
 TEST(WidgetHandles, ARakeIsDraggedByItsEndsAndItsMiddle) {
@@ -58,8 +58,7 @@ TEST(WidgetHandles, ARakeIsDraggedByItsEndsAndItsMiddle) {
   for (int handle = 0; handle < 3; ++handle) {
     WidgetProbe hand({make_widget_spec(Kind::rake, from, to)});
     const Vec3 at = handle == 0 ? from : handle == 1 ? to : (from + to) * 0.5;
-    take(hand, at);
-    EXPECT_EQ(hand.report().handle, handle);
+    take(hand, at, handle);
     hand.move_to(at + move, 1);
     const auto& points = hand.report().pose.points;
     EXPECT_LE(distance_between(points[0], handle == 1 ? from : from + moved), 1e-15);
@@ -67,8 +66,7 @@ TEST(WidgetHandles, ARakeIsDraggedByItsEndsAndItsMiddle) {
     EXPECT_EQ(points[0].y, 0);
     EXPECT_EQ(points[1].y, 0);
     hand.step(at + move, 0);
-    hand.step({3, 3, 3}, 0);
-    EXPECT_EQ(hand.report().handle, -1);
+    EXPECT_EQ(hand.step({3, 3, 3}, 0).handle, -1);
   }
 }
 
@@ -80,8 +78,7 @@ TEST(WidgetHandles, EveryFaceOfABoxMovesAlongItsNormalAndStopsBeforeTheOppositeF
     WidgetProbe hand({make_widget_spec(Kind::box, lo, hi)});
     Vec3 at = (lo + hi) * 0.5;
     at[axis] = face % 2 == 0 ? lo[axis] : hi[axis];
-    take(hand, at);
-    EXPECT_EQ(hand.report().handle, face);
+    take(hand, at, face);
     EXPECT_EQ(hand.report().active_planes, 7 & ~(1 << axis));
     const auto drag = [&](double by) {
       Vec3 probe = at + Vec3(0.3, -0.2, 0.25);  // off the axis: the planes hold at any distance
@@ -103,8 +100,7 @@ TEST(WidgetHandles, EveryFaceOfABoxMovesAlongItsNormalAndStopsBeforeTheOppositeF
 TEST(WidgetHandles, TheCentreOfABoxMovesTheWholeBox) {
   const Vec3 lo(-0.5, -0.4, -0.3), hi(0.5, 0.4, 0.7);
   WidgetProbe hand({make_widget_spec(Kind::box, lo, hi)});
-  take(hand, (lo + hi) * 0.5);
-  EXPECT_EQ(hand.report().handle, 6);
+  take(hand, (lo + hi) * 0.5, 6);
   hand.move_to((lo + hi) * 0.5 + Vec3(0, 0.5, 0), 1);
   EXPECT_LE(distance_between(hand.report().pose.points[0], lo + Vec3(0, 0.5 - kStep, 0)), 1e-15);
   EXPECT_LE(distance_between(hand.report().pose.points[1], hi + Vec3(0, 0.5 - kStep, 0)), 1e-15);
@@ -112,13 +108,9 @@ TEST(WidgetHandles, TheCentreOfABoxMovesTheWholeBox) {
 
 TEST(WidgetHandles, AThinBoxIsNotMadeThicker) {
   WidgetProbe hand({make_widget_spec(Kind::box, {0, -1, -1}, {0.01, 1, 1})});
-  hand.step({0.11, 0, 0});
-  ASSERT_EQ(hand.mode_name(), "hover");
-  ASSERT_EQ(hand.report().handle, 1);
-  hand.step({0.11, 0, 0}, 1);
+  take(hand, {0.11, 0, 0}, 1);
   EXPECT_EQ(hand.report().pose.points[1].x, 0.01);
-  hand.step({-1, 0, 0}, 1);
-  EXPECT_EQ(hand.report().pose.points[1].x, 0.01);
+  EXPECT_EQ(hand.step({-1, 0, 0}, 1).pose.points[1].x, 0.01);
 }
 
 /// s = a . x + b |x|^2 / 2, within |x_i| <= 2.
@@ -142,74 +134,61 @@ TEST(WidgetHandles, AnIsolevelMovesAlongTheGradientAndReportsTheValue) {
   spec.field = std::make_shared<Bowl>(a, 0.7);
   const auto value = [&](const Vec3& x) { return dot(a, x) + 0.35 * dot(x, x); };
   WidgetProbe hand({spec});
-  hand.step({1, 1, 1});
-  EXPECT_EQ(hand.report().value, value(at));
-  take(hand, at + Vec3(0.02, 0.01, 0));
+  EXPECT_EQ(hand.step({1, 1, 1}).value, value(at));
+  take(hand, at + Vec3(0.02, 0.01, 0), 0);
   EXPECT_EQ(hand.report().active_planes, 3);
   EXPECT_EQ(hand.link_order(), "widget_x widget_y");
   EXPECT_EQ(hand.widget_position(), at);
   const Vec3 n = direction(a + at * 0.7), aside = direction(cross(n, {0, 0, 1}));
   for (int k = -50; k <= 50; ++k) {
     const double u = 0.01 * k;
-    hand.step(at + Vec3(0.02, 0.01, 0) + n * u + aside * (0.3 * u), 1);
-    ASSERT_LE(distance_between(hand.widget_position(), at + n * u), 1e-14) << k;
+    ASSERT_LE(distance_between(hand.step(at + Vec3(0.02, 0.01, 0) + n * u + aside * (0.3 * u), 1).pose.points[0], at + n * u), 1e-14) << k;
     ASSERT_EQ(hand.report().value, value(hand.widget_position()));
   }
   // outside the field the last value is kept
   const double last = hand.report().value;
-  hand.step(at + n * 30.0, 1);
-  EXPECT_EQ(hand.report().value, last);
+  EXPECT_EQ(hand.step(at + n * 30.0, 1).value, last);
 }
 
 TEST(WidgetHandles, AnIsolevelWithoutAGradientMovesLikeASeed) {
   Spec spec = make_widget_spec(Kind::isolevel, {0.3, -0.2, 0.1});
   spec.field = std::make_shared<Bowl>(Vec3(0.0), 0);
   WidgetProbe hand({spec});
-  take(hand, {0.3, -0.2, 0.1});
+  take(hand, {0.3, -0.2, 0.1}, 0);
   EXPECT_EQ(hand.report().active_planes, 7);
-  hand.step({0.3, 0.3, 0.1}, 1);
-  EXPECT_LE(distance_between(hand.widget_position(), {0.3, 0.3 - kStep, 0.1}), 1e-15);
+  EXPECT_LE(distance_between(hand.step({0.3, 0.3, 0.1}, 1).pose.points[0], {0.3, 0.3 - kStep, 0.1}), 1e-15);
 }
 
 TEST(WidgetHandles, ARulersEndFollowsTheProxyOfItsLinks) {
   Spec spec = make_widget_spec(Kind::ruler, {0, 0, 0}, {1, 0, 0});
   spec.along_links = {1, 0};
   WidgetProbe hand(make_widget_program({spec}, {test::hold_plane("a", {1, 0.2, 0}, 0.9), test::hold_plane("b", {0.3, 1, 0.1}, -0.2)}));
-  take(hand, {1, 0, 0});
-  EXPECT_EQ(hand.report().handle, 1);
+  take(hand, {1, 0, 0}, 1);
   EXPECT_EQ(hand.link_order(), "b a");
   for (int k = 0; k < 20; ++k) {
     hand.step({1, 0.1 * k, 0.05 * k}, 1);
-    ASSERT_EQ(hand.report().pose.points[1], hand.out.links[0].proxy);
+    ASSERT_EQ(hand.report().pose.points[1], hand.link(0).proxy);
     ASSERT_EQ(hand.report().pose.points[0], Vec3(0.0));
   }
   // a link that is switched off is skipped
   hand.program.links[0].active_when.button = 5;
   hand.step({1, 0, 0}, 1);
   EXPECT_EQ(hand.link_order(), "b");
-  EXPECT_EQ(hand.report().pose.points[1], hand.out.links[1].proxy);
+  EXPECT_EQ(hand.report().pose.points[1], hand.link(1).proxy);
   // the middle handle moves freely
   hand.step({9, 9, 9});
   const auto points = hand.report().pose.points;
-  const Vec3 middle = (points[0] + points[1]) * 0.5;
-  take(hand, middle);
-  EXPECT_EQ(hand.report().handle, 2);
+  take(hand, (points[0] + points[1]) * 0.5, 2);
   EXPECT_EQ(hand.link_order(), "widget_x widget_y widget_z");
 }
 
-// ---- lost probes and replaced programs ----
-
 TEST(WidgetGrab, AGrabIsHeldWithoutAProbeAndContinuesWithoutAJump) {
   for (const TickCondition condition : {TickCondition::normal, TickCondition::no_device, TickCondition::watchdog}) {
-    WidgetProbe hand({make_widget_spec(Kind::cutting_plane)});
-    hand.step({1, 0, 0.01});
-    hand.step({1, 0, 0.01}, 1);
-    hand.step({1.3, 0, 0.01}, 1);
+    WidgetProbe hand = dragged_plane();
     const auto before = hand.report();
     const double lost = condition == TickCondition::normal ? NAN : 0;
     for (int k = 0; k < 5; ++k) {
-      hand.t += 1e-3;
-      tick(hand.program, {hand.t, Vec3(lost), k % 2 ? 1u : 0u, kIdentityRotation, condition}, hand.state, hand.scratch, hand.out);
+      hand.at(hand.t + 1e-3, Vec3(lost), k % 2 ? 1u : 0u, kIdentityRotation, condition);
       ASSERT_EQ(hand.report().pose, before.pose);
       ASSERT_EQ(hand.mode_name(), "translate");
       ASSERT_EQ(hand.out.force_n, Vec3(0.0));
@@ -224,10 +203,7 @@ TEST(WidgetGrab, AGrabIsHeldWithoutAProbeAndContinuesWithoutAJump) {
 }
 
 TEST(WidgetGrab, AGrabEndsIfTheProbeReturnsWithoutTheButton) {
-  WidgetProbe hand({make_widget_spec(Kind::cutting_plane)});
-  hand.step({1, 0, 0.01});
-  hand.step({1, 0, 0.01}, 1);
-  hand.step({1.3, 0, 0.01}, 1);
+  WidgetProbe hand = dragged_plane();
   const Vec3 before = hand.widget_position();
   hand.step({NAN, 0, 0}, 1);
   hand.step({-2, 1, 0}, 0);
@@ -244,17 +220,17 @@ TEST(WidgetGrab, ATurnContinuesWithoutAJump) {
     Spec spec = make_widget_spec(Kind::cutting_plane);
     spec.rotation = turning;
     WidgetProbe hand({spec});
-    hand.step({0.4, 0.26, 0});
-    hand.step({0.4, 0.26, 0}, 1);
+    hand.grab({0.4, 0.26, 0});
     hand.step({0.3, 0.4, 0}, 1);
     const Quat before = hand.report().pose.orientation;
+    const auto angle = [&] { return norm(rotation_vector(normalized(hand.report().pose.orientation * glm::conjugate(before)))); };
     EXPECT_GT(distance_between(rotate(before, {1, 0, 0}), {1, 0, 0}), 0.1);
     hand.step({NAN, 0, 0}, 1);
     hand.step({-0.4, 0.2, 0}, 1);
     EXPECT_EQ(hand.mode_name(), "turn");
-    EXPECT_LE(norm(rotation_vector(normalized(hand.report().pose.orientation * glm::conjugate(before)))), 1e-15);
+    EXPECT_LE(angle(), 1e-15);
     hand.step({-0.2, -0.4, 0}, 1);
-    EXPECT_NEAR(norm(rotation_vector(normalized(hand.report().pose.orientation * glm::conjugate(before)))), std::acos(0.0), 1e-12);
+    EXPECT_NEAR(angle(), std::acos(0.0), 1e-12);
   }
 }
 
@@ -262,7 +238,7 @@ TEST(WidgetGrab, ARulersEndOnLinksIsReleased) {
   Spec spec = make_widget_spec(Kind::ruler, {0, 0, 0}, {1, 0, 0});
   spec.along_links = {0};
   WidgetProbe hand(make_widget_program({spec}, {test::hold_plane("a", {1, 0.2, 0}, 0.9)}));
-  take(hand, {1, 0, 0});
+  take(hand, {1, 0, 0}, 1);
   const auto before = hand.report().pose;
   hand.step({NAN, 0, 0}, 1);
   hand.step({-2, 1, 3}, 1);
@@ -272,16 +248,18 @@ TEST(WidgetGrab, ARulersEndOnLinksIsReleased) {
 
 TEST(WidgetRebind, KeepsThePoseByHandUnlessANewerOneWasSet) {
   WidgetProbe hand(make_widget_program({make_widget_spec(Kind::seed, {5, 5, 5}), make_widget_spec(Kind::cutting_plane)}, {}, 0.05));
-  hand.step({1, 0, 0.01});
-  hand.step({1, 0, 0.01}, 1);
+  hand.grab({1, 0, 0.01});
   hand.step({1.3, 0, 0.01}, 1);
   const auto before = hand.report(1);
   // widgets are matched by name under another order and with another link before theirs
   HapticProgram next = make_widget_program({make_widget_spec(Kind::cutting_plane), make_widget_spec(Kind::seed, {7, 7, 7})},
                                            {test::hold_plane("a", {0, 1, 0}, 0)}, 0.05);
   next.widget_names = {"w1", "w0"};
-  hand.replace(next);
-  hand.step({1.3, 0, 0.01}, 1);
+  const auto replace = [&] {
+    hand.replace(next);
+    hand.step({1.3, 0, 0.01}, 1);
+  };
+  replace();
   EXPECT_EQ(hand.mode_name(0), "translate");
   EXPECT_EQ(hand.report(0).pose, before.pose);
   EXPECT_EQ(hand.widget_position(1), Vec3(5, 5, 5)) << "the revision is the same";
@@ -289,21 +267,18 @@ TEST(WidgetRebind, KeepsThePoseByHandUnlessANewerOneWasSet) {
   // a newer pose set by the scene
   next.widgets[0].revision = 1;
   next.widgets[0].pose.points[0] = {0.5, 0.5, 3};
-  hand.replace(next);
-  hand.step({1.3, 0, 0.01}, 1);
+  replace();
   EXPECT_EQ(hand.mode_name(0), "away");
   EXPECT_EQ(hand.widget_position(0), Vec3(0.5, 0.5, 3));
   EXPECT_EQ(hand.report(0).revision, 1u);
   // an older revision is ignored
   next.widgets[0].revision = 0;
   next.widgets[0].pose.points[0] = {9, 9, 9};
-  hand.replace(next);
-  hand.step({1.3, 0, 0.01}, 1);
+  replace();
   EXPECT_EQ(hand.widget_position(0), Vec3(0.5, 0.5, 3));
   // a widget of another kind with the same name is another widget
   next.widgets[0] = make_widget_spec(Kind::seed, {2, 2, 2});
-  hand.replace(next);
-  hand.step({1.3, 0, 0.01}, 1);
+  replace();
   EXPECT_EQ(hand.widget_position(0), Vec3(2, 2, 2));
 }
 
@@ -314,5 +289,4 @@ TEST(WidgetRebind, ReportsThePosesWithoutAValidProbe) {
   EXPECT_EQ(hand.widget_position(), Vec3(1, 2, 3));
 }
 
-}  // namespace widget_handles_test
-}  // namespace catena::haptics
+}  // namespace catena::haptics::widget_handles_test

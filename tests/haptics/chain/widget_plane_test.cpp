@@ -4,8 +4,7 @@
 
 #include "tests/haptics/chain/widget_probe.h"
 
-namespace catena::haptics {
-namespace widget_plane_test {
+namespace catena::haptics::widget_plane_test {
 
 using test::distance_between;
 using test::make_widget_spec;
@@ -30,46 +29,30 @@ struct Frame {
 };
 
 TEST(WidgetPlane, ModesAndTheirChainsInOrder) {
+  const Vec3 place(0.12 + 0.48 * 0.8, 0, 0.48 * 0.6);
   WidgetProbe hand({plane({0, 0, 0})});
-  hand.step({1, 0, 1});
-  EXPECT_EQ(hand.mode_name(), "away");
-  EXPECT_EQ(hand.link_order(), "");
-  hand.step({1, 0, 0.05});
-  EXPECT_EQ(hand.mode_name(), "explore");
-  EXPECT_EQ(hand.link_order(), "widget_z");
+  hand.expect({1, 0, 1}, 0, "away", "");
+  hand.expect({1, 0, 0.05}, 0, "explore", "widget_z");
   EXPECT_EQ(hand.report().active_planes, 4);
-  EXPECT_EQ(hand.out.links[2].proxy, Vec3(1, 0, 0));
-  hand.step({1, 0, 0.05}, 1);
-  EXPECT_EQ(hand.mode_name(), "translate");
-  EXPECT_EQ(hand.link_order(), "widget_x widget_y widget_z");
+  EXPECT_EQ(hand.link(2).proxy, Vec3(1, 0, 0));
+  hand.expect({1, 0, 0.05}, 1, "translate", "widget_x widget_y widget_z");
   EXPECT_EQ(hand.report().active_planes, 7);
+  hand.expect({1.2, 0, 0.05}, 1, "translate", "widget_y widget_z");
+  hand.expect({1.2, 0.3, -0.3}, 1, "translate", "");
   hand.step({1.2, 0, 0.05}, 1);
-  EXPECT_EQ(hand.link_order(), "widget_y widget_z");
-  hand.step({1.2, 0.3, -0.3}, 1);
-  EXPECT_EQ(hand.link_order(), "");
-  hand.step({1.2, 0, 0.05}, 1);
-  hand.step({1.2, 0, 0.05}, 0);
-  EXPECT_EQ(hand.mode_name(), "explore");
-  hand.step({0.12 + 0.48 * 0.8, 0, 0.48 * 0.6}, 0);
-  EXPECT_EQ(hand.mode_name(), "rotate");
-  EXPECT_EQ(hand.link_order(), "widget_y widget_sphere");
-  EXPECT_NEAR(hand.out.links[3].proxy.y, 0, 1e-15);
-  hand.step({0.12 + 0.48 * 0.8, 0, 0.48 * 0.6}, 1);
-  EXPECT_EQ(hand.mode_name(), "turn");
-  EXPECT_EQ(hand.link_order(), "widget_y widget_sphere");
+  hand.expect({1.2, 0, 0.05}, 0, "explore", "widget_z");
+  hand.expect(place, 0, "rotate", "widget_y widget_sphere");
+  EXPECT_NEAR(hand.link(3).proxy.y, 0, 1e-15);
+  hand.expect(place, 1, "turn", "widget_y widget_sphere");
   EXPECT_EQ(hand.report().active_planes, 2);
-  hand.step({0.12 + 0.48 * 0.8, 0.09, 0.48 * 0.6}, 1);  // the plane of the great circle releases
-  EXPECT_EQ(hand.link_order(), "widget_sphere");
-  hand.step({0.12 + 0.48 * 0.8, 0, 0.48 * 0.6}, 1);  // it stays released until the button is
-  EXPECT_EQ(hand.link_order(), "widget_sphere");
-  hand.step({5, 5, 5}, 0);
-  EXPECT_EQ(hand.mode_name(), "away");
+  hand.expect(place + Vec3(0, 0.09, 0), 1, "turn", "widget_sphere");  // the plane of the great circle releases
+  hand.expect(place, 1, "turn", "widget_sphere");                     // it stays released until the button is
+  hand.expect({5, 5, 5}, 0, "away", "");
 }
 
 TEST(WidgetPlane, AtAPoleTwoGreatCirclesAreActive) {
   WidgetProbe hand({plane({0, 0, 0})});
-  hand.step({0.02, -0.03, 0.5});
-  EXPECT_EQ(hand.link_order(), "widget_x widget_y widget_sphere");
+  hand.expect({0.02, -0.03, 0.5}, 0, "rotate", "widget_x widget_y widget_sphere");
   EXPECT_EQ(hand.report().active_planes, 3);
   EXPECT_LE(distance_between(hand.out.links[3].proxy, {0, 0, 0.48}), 1e-15);
 }
@@ -81,8 +64,7 @@ TEST(WidgetPlane, ADragAlongXKeepsYAndZBitForBit) {
   const Vec3 center{0.1, -0.2, 0.3};
   WidgetProbe hand({plane(center)});
   const Vec3 grab = center + Vec3(0.9, 0.4, 0.03);
-  hand.step(grab);
-  hand.step(grab, 1);
+  hand.grab(grab);
   ASSERT_EQ(hand.mode_name(), "translate");
   for (int k = 1; k <= 2000; ++k) {
     const double x = 1.5 * k / 2000 - 0.3;
@@ -104,14 +86,12 @@ TEST(WidgetPlane, ADragInARotatedFrameStaysOnItsAxis) {
     const Frame frame{{0.1, -0.2, 0.3}, test::kTilted};
     WidgetProbe hand({plane(frame.center, frame.q)});
     const Vec3 grab = frame.world({0.9, 0.4, 0.03});
-    hand.step(grab);
-    hand.step(grab, 1);
+    hand.grab(grab);
     ASSERT_EQ(hand.mode_name(), "translate");
     for (int k = 1; k <= 500; ++k) {
       Vec3 local(jitter(random), jitter(random), jitter(random));
       local[axis] = -1.5 * k / 500;
-      const Vec3 probe = grab + frame.axis(0) * local.x + frame.axis(1) * local.y + frame.axis(2) * local.z;
-      const Vec3 moved = hand.step(probe, 1).pose.points[0] - frame.center;
+      const Vec3 moved = hand.step(grab + frame.world(local) - frame.center, 1).pose.points[0] - frame.center;
       for (int i = 0; i < 3; ++i) {
         const double expected = i != axis ? 0 : local[i] < -kStep ? local[i] + kStep : 0;
         ASSERT_NEAR(dot(frame.axis(i), moved), expected, 1e-12) << axis << " " << k;
@@ -123,8 +103,7 @@ TEST(WidgetPlane, ADragInARotatedFrameStaysOnItsAxis) {
 TEST(WidgetPlane, MotionAlongTwoAndThreeAxes) {
   const Vec3 center{0.1, -0.2, 0.3}, grab = center + Vec3(0.9, 0.4, 0.03);
   WidgetProbe hand({plane(center)});
-  hand.step(grab);
-  hand.step(grab, 1);
+  hand.grab(grab);
   hand.move_to(grab + Vec3(0.5, 0.01, -0.6), 1);
   EXPECT_LE(distance_between(hand.widget_position(), center + Vec3(0.5 - kStep, 0, -0.6 + kStep)), 1e-15);
   EXPECT_EQ(hand.widget_position().y, center.y);
@@ -140,15 +119,12 @@ TEST(WidgetPlane, TranslationIsIndependentOfThePath) {
   std::uniform_real_distribution<double> anywhere(-2, 2);
   WidgetProbe straight({plane(frame.center, frame.q)}), wandering({plane(frame.center, frame.q)});
   for (WidgetProbe* hand : {&straight, &wandering}) {
-    hand->step(grab);
-    hand->step(grab, 1);
+    hand->grab(grab);
   }
   straight.step(end, 1);
   for (int k = 0; k < 300; ++k) wandering.step(grab + Vec3(anywhere(random), anywhere(random), anywhere(random)), 1);
-  wandering.step(end, 1);
-  EXPECT_EQ(straight.widget_position(), wandering.widget_position());
-  wandering.step(grab, 1);
-  EXPECT_EQ(wandering.widget_position(), frame.center);
+  EXPECT_EQ(straight.widget_position(), wandering.step(end, 1).pose.points[0]);
+  EXPECT_EQ(wandering.step(grab, 1).pose.points[0], frame.center);
 }
 
 TEST(WidgetPlane, GrabbingAndReleasingDoNotMoveThePlane) {
@@ -200,8 +176,7 @@ TEST(WidgetPlane, AxisRotationKeepsTheAxisAndRotatesByTheHandsAngle) {
 TEST(WidgetPlane, AWorldAxisStaysFixedBitForBit) {
   const Frame frame{{0, 0, 0}, kIdentityRotation};
   WidgetProbe hand({plane(frame.center)});
-  hand.step(on_circle(frame, 2, 0.7, 0.48));
-  hand.step(on_circle(frame, 2, 0.7, 0.48), 1);
+  hand.grab(on_circle(frame, 2, 0.7, 0.48));
   for (int k = 0; k < 1000; ++k) {
     const Quat& q = hand.step(on_circle(frame, 2, 0.7 + 0.3 * k, 0.5), 1).pose.orientation;
     ASSERT_EQ(q.x, 0);
@@ -218,8 +193,7 @@ TEST(WidgetPlane, FreeRotationAlongAGreatCircleIsARotationInItsPlane) {
   WidgetProbe hand({spec});
   hand.step(on_circle(circle, 2, 0.2, 0.48));
   EXPECT_EQ(hand.link_order(), "widget_sphere");
-  hand.step(on_circle(circle, 2, 0.2, 0.48), 1);
-  EXPECT_EQ(hand.report().active_planes, 0);
+  EXPECT_EQ(hand.step(on_circle(circle, 2, 0.2, 0.48), 1).active_planes, 0);
   for (int k = 1; k <= 2000; ++k) {
     const double angle = 0.01 * k;
     const auto& report = hand.step(on_circle(circle, 2, 0.2 + angle, 0.3 + 0.1 * (k % 7)), 1);
@@ -233,8 +207,7 @@ TEST(WidgetPlane, FreeRotationAlongAGreatCircleIsARotationInItsPlane) {
 TEST(WidgetPlane, InModeAnyTheRotationBecomesFreeWithoutAJump) {
   const Frame frame{{0, 0, 0}, test::kTilted};
   WidgetProbe hand({plane(frame.center, frame.q)});
-  hand.step(on_circle(frame, 0, 0.3, 0.48));
-  hand.step(on_circle(frame, 0, 0.3, 0.48), 1);
+  hand.grab(on_circle(frame, 0, 0.3, 0.48));
   Quat before = hand.report().pose.orientation;
   bool free = false;
   for (int k = 1; k <= 400; ++k) {
@@ -256,10 +229,8 @@ TEST(WidgetPlane, InModeAxisTheNearestGreatCircleHoldsAtAnyDistance) {
   WidgetProbe hand({spec});
   // nearest to the great circle perpendicular to y, but within the snap distance of none
   const Vec3 place = Vec3(0.7, 0.35, 0.6) * (0.48 / norm(Vec3(0.7, 0.35, 0.6)));
-  hand.step(place);
-  EXPECT_EQ(hand.link_order(), "widget_sphere");
-  hand.step(place, 1);
-  EXPECT_EQ(hand.link_order(), "widget_y widget_sphere");
+  hand.expect(place, 0, "rotate", "widget_sphere");
+  hand.expect(place, 1, "turn", "widget_y widget_sphere");
   EXPECT_EQ(hand.report().pose.orientation, kIdentityRotation);
   const double from = std::atan2(0.7, 0.6);
   for (int k = 1; k <= 300; ++k) {
@@ -276,17 +247,14 @@ TEST(WidgetPlane, RotateOnContactTurnsWithoutTheButton) {
   const Frame frame{{0, 0, 0}, kIdentityRotation};
   WidgetProbe hand({spec});
   hand.step({5, 5, 5});
-  hand.step(on_circle(frame, 0, 0.4, 0.5));
-  EXPECT_EQ(hand.mode_name(), "turn");
-  EXPECT_EQ(hand.link_order(), "widget_x widget_sphere");
+  hand.expect(on_circle(frame, 0, 0.4, 0.5), 0, "turn", "widget_x widget_sphere");
   for (int k = 1; k <= 100; ++k) hand.step(on_circle(frame, 0, 0.4 + 0.01 * k, 0.5));
   const Frame turned{frame.center, hand.report().pose.orientation};
   EXPECT_LE(distance_between(turned.axis(1), {0, std::cos(1), std::sin(1)}), 1e-12);
   // leaving the sphere releases it, unless the button is held
   hand.step(on_circle(frame, 0, 1.4, 0.6));
   EXPECT_NE(hand.mode_name(), "turn");
-  hand.step(on_circle(frame, 0, 1.4, 0.5));
-  hand.step(on_circle(frame, 0, 1.4, 0.5), 1);
+  hand.grab(on_circle(frame, 0, 1.4, 0.5));
   hand.step(on_circle(frame, 0, 1.4, 0.9), 1);
   EXPECT_EQ(hand.mode_name(), "turn");
   hand.step(on_circle(frame, 0, 1.4, 0.9), 0);
@@ -299,8 +267,7 @@ TEST(WidgetPlane, ConsecutiveTurnsUseTheRotatedAxes) {
   Frame now = start;
   for (const int axis : {0, 1, 2, 1}) {
     hand.step({5, 5, 5});
-    hand.step(on_circle(now, axis, 0.6, 0.48));
-    hand.step(on_circle(now, axis, 0.6, 0.48), 1);
+    hand.grab(on_circle(now, axis, 0.6, 0.48));
     const Vec3 held_axis = now.axis(axis);
     for (int k = 1; k <= 50; ++k) hand.step(on_circle(now, axis, 0.6 + 0.02 * k, 0.48), 1);
     const Quat expected = normalized(rotation_from_vector(held_axis) * now.q);
@@ -310,5 +277,4 @@ TEST(WidgetPlane, ConsecutiveTurnsUseTheRotatedAxes) {
   }
 }
 
-}  // namespace widget_plane_test
-}  // namespace catena::haptics
+}  // namespace catena::haptics::widget_plane_test

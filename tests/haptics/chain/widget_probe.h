@@ -3,8 +3,8 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include "haptics/chain/tick.h"
 #include "haptics/constraints/widget_link.h"
+#include "tests/haptics/chain/chain_driver.h"
 
 namespace catena::test {
 
@@ -33,21 +33,27 @@ inline haptics::HapticProgram make_widget_program(std::vector<widget::Spec> spec
   return program;
 }
 
-struct WidgetProbe {
-  haptics::HapticProgram program;
-  haptics::ChainState state;
-  haptics::ChainScratch scratch;
-  HapticState out;
+struct WidgetProbe : ChainDriver {
   Vec3 position{0.0};
-  double t = 0;
 
-  explicit WidgetProbe(haptics::HapticProgram p) : program(std::move(p)) {}
-  explicit WidgetProbe(std::vector<widget::Spec> specs) : WidgetProbe(make_widget_program(std::move(specs))) {}
+  using ChainDriver::ChainDriver;
+  explicit WidgetProbe(std::vector<widget::Spec> specs) : ChainDriver(make_widget_program(std::move(specs))) {}
 
   const WidgetReport& step(const Vec3& probe, std::uint32_t buttons = 0, double dt = 1e-3) {
     position = probe;
-    haptics::tick(program, {t += dt, probe, buttons}, state, scratch, out);
+    ChainDriver::step(probe, buttons, dt);
     return out.widgets[0];
+  }
+  /// Presses button 1 at a place.
+  const WidgetReport& grab(const Vec3& at) {
+    step(at);
+    return step(at, 1);
+  }
+  /// A tick, and then the first widget's mode and the active links.
+  void expect(const Vec3& probe, std::uint32_t buttons, const std::string& mode, const std::string& order) {
+    step(probe, buttons);
+    EXPECT_EQ(mode_name(), mode);
+    EXPECT_EQ(link_order(), order);
   }
   /// Moves in `n` steps from the current position.
   const WidgetReport& move_to(const Vec3& to, std::uint32_t buttons = 0, int n = 50) {
@@ -64,10 +70,6 @@ struct WidgetProbe {
     for (int k = 0; k < state.order.count; ++k)
       names += (k > 0 ? " " : "") + program.links[static_cast<std::size_t>(state.order.links[static_cast<std::size_t>(k)])].name;
     return names;
-  }
-  void replace(const haptics::HapticProgram& next) {
-    haptics::rebind_program(program, next, state, scratch);
-    program = next;
   }
 };
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// Helpers of the constraint tests: fields by name, a constraint from JSON text, a link driven tick by tick.
 #pragma once
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <map>
+#include <optional>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,39 +40,49 @@ std::shared_ptr<const field::ScalarGrid> sample_scalar_grid(const field::Mapping
   return field::make_scalar_grid("made", mapping, size, values, valid);
 }
 
+/// Looks a name up for a BuildContext; the error has the line of the name.
+template <class T>
+auto finder(const std::map<std::string, T>& named, const std::string& kind) {
+  return [&named, kind](const json::Node& where, const std::string& name) -> Result<T> {
+    const auto it = named.find(name);
+    if (it == named.end()) return json::error_at(where, "no " + kind + " " + name);
+    return it->second;
+  };
+}
+
 struct Fields {
   std::map<std::string, field::AnyField> named;
   std::map<std::string, mesh::MeshPtr> meshes;
   std::map<std::string, curves::CurveSetPtr> curves;
   std::map<std::string, curves::PointSetPtr> points;
   double proxy_tolerance = BuildContext().proxy_tolerance;
+  mutable flow::CurvePtr last_curve{};  ///< the last curve traced for a link
+
   BuildContext context() const {
     BuildContext c;
     c.proxy_tolerance = proxy_tolerance;
-    c.field = [this](const json::Node& where, const std::string& name) -> Result<field::AnyField> {
-      const auto it = named.find(name);
-      if (it == named.end()) return json::error_at(where, "no field " + name);
-      return it->second;
+    c.field = finder(named, "field");
+    c.mesh = finder(meshes, "mesh");
+    c.points = finder(points, "points");
+    c.curves = finder(curves, "curves");
+    c.curve = [this](const json::Node& where, const std::string&, const flow::Flow& flow, const Vec3& seed) -> Result<flow::CurvePtr> {
+      auto curve = flow::trace(flow, seed);
+      if (!curve) return json::error_at(where, curve.error().message);
+      return last_curve = *curve;
     };
-    c.mesh = [this](const json::Node& where, const std::string& name) -> Result<mesh::MeshPtr> {
-      const auto it = meshes.find(name);
-      if (it == meshes.end()) return json::error_at(where, "no mesh " + name);
-      return it->second;
-    };
-    c.points = [this](const json::Node& where, const std::string& name) -> Result<curves::PointSetPtr> {
-      const auto it = points.find(name);
-      if (it == points.end()) return json::error_at(where, "no points " + name);
-      return it->second;
-    };
-    c.curves = [this](const json::Node& where, const std::string& name) -> Result<curves::CurveSetPtr> {
-      const auto it = curves.find(name);
-      if (it == curves.end()) return json::error_at(where, "no curves " + name);
-      return it->second;
-    };
-    c.curve = [](const json::Node&, const std::string&, const flow::Flow& flow, const Vec3& seed) { return flow::trace(flow, seed); };
     return c;
   }
 };
+
+inline Fields scalars(std::initializer_list<std::pair<const std::string, field::ScalarFieldPtr>> named) {
+  Fields fields;
+  for (const auto& [name, scalar] : named) fields.named[name].scalar = scalar;
+  return fields;
+}
+
+/// Shortest text that reads back to the same number or vector.
+inline std::string to_json(double v) { return fmt::format("{}", v); }
+inline std::string to_json(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
 
 inline Result<ConstraintPtr> try_build(const std::string& text, const Fields& fields = {}) {
   auto node = json::parse(text, "scene.json");
@@ -87,12 +99,33 @@ inline ConstraintPtr build(const std::string& text, const Fields& fields = {}) {
   return *made;
 }
 
+/// The link is refused, with a message of one line that has the place and these parts.
+inline void expect_refused(const std::string& text, int line, std::initializer_list<const char*> parts, const Fields& fields = {}) {
+  const auto made = try_build(text, fields);
+  ASSERT_FALSE(made) << text;
+  const std::string& message = made.error().message;
+  EXPECT_TRUE(message.starts_with(fmt::format("scene.json:{}:", line))) << message;
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  for (const char* part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks " << part;
+}
+
 inline ConstraintPtr isosurface(field::ScalarFieldPtr f, double level, const std::string& more = "") {
-  Fields fields;
-  fields.named["f"].scalar = std::move(f);
-  char number[40];
-  std::snprintf(number, sizeof number, "%.17g", level);
-  return build(std::string(R"({"name": "a", "type": "isosurface", "field": "f", "level": )") + number + more + "}", fields);
+  return build(R"({"name": "a", "type": "isosurface", "field": "f", "level": )" + to_json(level) + more + "}",
+               scalars({{"f", std::move(f)}}));
+}
+
+/// The closest point of the segment a..b in extended precision.
+inline Vec3 closest_on_segment(const Vec3& a, const Vec3& b, const Vec3& x) {
+  long double up = 0, down = 0;
+  for (int i = 0; i < 3; ++i) {
+    const long double d = static_cast<long double>(b[i]) - a[i];
+    up += (static_cast<long double>(x[i]) - a[i]) * d;
+    down += d * d;
+  }
+  const long double t = std::clamp(up / down, 0.0L, 1.0L);
+  Vec3 p;
+  for (int i = 0; i < 3; ++i) p[i] = static_cast<double>(a[i] + t * (static_cast<long double>(b[i]) - a[i]));
+  return p;
 }
 
 /// Error of a proxy relative to the closest point on a level, by the field's own samples.
@@ -107,6 +140,12 @@ inline SurfaceCheck check_on_surface(const field::ScalarField& f, double level, 
   return {std::fabs(s.value - level) / norm(s.gradient) / f.domain_length(), norm(e - n * dot(n, e)) / f.domain_length()};
 }
 
+/// A grid of the cube -2..2 from a function of the world position, with `nodes` nodes per axis.
+template <class F>
+std::shared_ptr<const field::ScalarGrid> cube_grid(int nodes, const F& f, const std::vector<std::uint8_t>& valid = {}) {
+  return sample_scalar_grid(field::Mapping::from_linear(Mat3(4.0 / (nodes - 1)), Vec3(-2.0)), {nodes, nodes, nodes}, f, valid);
+}
+
 /// One link, driven as in the tick.
 struct Rig {
   explicit Rig(ConstraintPtr c) : constraint(std::move(c)) {}
@@ -119,10 +158,57 @@ struct Rig {
     constraint->advance(probe, state, scratch);
     return state;
   }
+  /// Holds the probe still for up to `more` ticks until the proxy has arrived. True if that took more than one tick.
+  bool arrive(const Vec3& probe, int more = 3) {
+    if (tick(probe).status != LinkStatus::budget) return false;
+    for (int k = 0; k < more && state.status == LinkStatus::budget; ++k) tick(probe);
+    return true;
+  }
   ConstraintPtr constraint;
   LinkState state;
   LinkScratch scratch;
 };
+
+constexpr LinkStatus kOk = LinkStatus::ok, kFree = LinkStatus::free, kReleased = LinkStatus::released;
+
+/// A probe, and what is expected after its tick: the status, the proxy bit for bit.
+struct Step {
+  Vec3 probe;
+  std::optional<LinkStatus> status{};
+  Vec3 proxy = Vec3(std::nan(""));  ///< NaN: any
+};
+inline void expect_steps(Rig& rig, std::span<const Step> steps) {
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    rig.tick(steps[i].probe);
+    EXPECT_EQ(rig.state.status, steps[i].status.value_or(rig.state.status)) << "step " << i;
+    EXPECT_TRUE(!is_finite(steps[i].proxy) || bitwise_equal(rig.state.proxy, steps[i].proxy)) << "step " << i;
+  }
+}
+inline void expect_steps(Rig& rig, std::initializer_list<Step> steps) { expect_steps(rig, std::span(steps.begin(), steps.size())); }
+template <class Steps = std::initializer_list<Step>>
+void expect_steps(const std::string& text, const Steps& steps) {
+  Rig rig(build(text));
+  expect_steps(rig, steps);
+}
+
+/// Along `path(0)`, ..., `path(count)` no step of the proxy is longer than `factor` times the probe's plus `slack`.
+template <class Path>
+void expect_no_jumps(Rig& rig, int count, const Path& path, double factor, double slack = 0) {
+  Vec3 last = rig.tick(path(0)).proxy;
+  for (int i = 1; i <= count; ++i) {
+    const Vec3 proxy = rig.tick(path(i)).proxy;
+    ASSERT_LE(norm(proxy - last), norm(path(i) - path(i - 1)) * factor + slack) << i;
+    last = proxy;
+  }
+}
+
+inline void expect_primitive(Rig& rig, const Vec3& at, Primitive::Kind kind, const Vec3& origin, const Vec3& axis = Vec3(0.0)) {
+  Primitive primitive;
+  ASSERT_TRUE(rig.constraint->primitive(at, rig.state, rig.scratch, primitive));
+  EXPECT_EQ(primitive.kind, kind);
+  EXPECT_TRUE(bitwise_equal(primitive.origin, origin));
+  EXPECT_EQ(primitive.axis, axis);
+}
 
 struct Random {
   std::mt19937_64 engine;
@@ -144,6 +230,38 @@ struct Quantiles {
   int at_quantile(double part) {
     std::sort(values.begin(), values.end());
     return values.empty() ? 0 : values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
+  }
+};
+
+/// Errors of many proxies on a level, as fractions of L.
+struct SurfaceTally {
+  int runs = 0, bad = 0;
+  double worst_off = 0, worst_tangential = 0;
+  Quantiles evaluations;
+  void add(const LinkState& state, bool is_bad, double off, double tangential) {
+    ++runs;
+    bad += is_bad;
+    worst_off = std::max(worst_off, off);
+    worst_tangential = std::max(worst_tangential, tangential);
+    evaluations.add(state.evaluations);
+    EXPECT_LE(state.evaluations, kMaxEvaluations);
+    EXPECT_LE(state.work(), kMaxWork);
+  }
+  std::string text() {
+    return fmt::format("{} of {} bad; off level {:.2g} L, tangential {:.2g} L; evaluations p50 {} p99 {} max {}", bad, runs, worst_off,
+                       worst_tangential, evaluations.at_quantile(0.5), evaluations.at_quantile(0.99), evaluations.at_quantile(1));
+  }
+};
+
+/// A hand that wanders at `speed` units a tick within a ball; `turn`: its change of velocity.
+struct Wanderer {
+  Random random;
+  double speed, turn, radius;
+  Vec3 probe, velocity = random.unit() * speed;
+  const Vec3& step() {
+    velocity = direction(velocity + random.unit() * turn) * speed;
+    if (norm(probe + velocity) > radius) velocity = -velocity;
+    return probe += velocity;
   }
 };
 

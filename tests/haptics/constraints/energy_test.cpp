@@ -1,25 +1,22 @@
 // SPDX-License-Identifier: MIT
 // Work of a chain along slow closed loops of the hand, in units of K gap^2: by the paper's sum of spring forces, and by virtual work, the
 // gradient of an energy. The work is integrated by the trapezoid rule over the loop's parameter, refined until halving the step changes
-// it by less than 1e-10 K gap^2; gap is the hand's maximum distance from the last proxy. Prints the table of pairs.
-#include "haptics/chain/tick.h"
+// it by less than 1e-10 K gap^2; gap is the hand's maximum distance from the last proxy.
 #include "haptics/constraints/common/link_schema.h"
-#include "tests/engine/geometry/flow/lambda_field.h"
+#include "tests/haptics/chain/chain_driver.h"
 #include "tests/haptics/constraints/constraint_fixture.h"
 
-namespace catena::haptics::tests {
-namespace energy_test {
+namespace catena::haptics::tests::energy_test {
 
 constexpr double kStiffness = 100;
 
 Fields fields() {
-  Fields made;
+  Fields made = scalars({{"sphere", analytic_field("sphere")},
+                         {"torus", analytic_field("torus")},
+                         {"torus_grid", sampled_field("torus", 33)},
+                         {"slope", cube_grid(9, [](const Vec3& p) { return p.x; })}});
   made.proxy_tolerance = 1e-10;  // tolerance of a conservative chain
-  for (const char* name : {"sphere", "torus"}) made.named[name].scalar = analytic_field(name);
   for (const char* name : {"circle", "helix"}) made.named[name].vector = field::make_analytic(name)->vector;
-  made.named["torus_grid"].scalar = sampled_field("torus", 33);
-  made.named["slope"].scalar =
-      sample_scalar_grid(field::Mapping::from_linear(Mat3(0.5), Vec3(-2.0)), {9, 9, 9}, [](const Vec3& p) { return p.x; });
   return made;
 }
 
@@ -46,35 +43,26 @@ struct Result {
 
 Result work_of(const std::vector<std::string>& links, CouplingForce force, const Loop& loop, int maximum = 1 << 14) {
   static const Fields all = fields();
-  HapticProgram program;
-  for (const std::string& text : links) {
-    Link link;
-    link.name = "l" + std::to_string(program.links.size());
-    link.constraint = build(R"({"name": "a", )" + text + "}", all);
-    link.stiffness_n_per_m = kStiffness;
-    program.links.push_back(std::move(link));
-  }
-  program.coupling.force = force;
-  program.coupling.max_force_n = 1e9;
+  catena::test::ChainDriver fresh;
+  for (const std::string& text : links) fresh.add(build(R"({"name": "a", )" + text + "}", all), kStiffness);
+  fresh.program.coupling.force = force;
   Result result;
   double before = 0;
   for (int n = 64; n <= maximum; n *= 2) {
-    ChainState state;
-    ChainScratch scratch;
-    HapticState out;
-    double gap = 0, work = 0, t = 0, left = 0;
+    catena::test::ChainDriver hand = fresh;
+    double gap = 0, work = 0, left = 0;
     // one lap to settle, one to measure
     for (int k = 0; k <= 2 * n; ++k) {
       const Vec3 next = loop.at(static_cast<double>(k % n) / n);
-      tick(program, {t += 1e-3, next, 0}, state, scratch, out);
-      if (k == n) left = out.omitted_work_j;
+      hand.step(next);
+      if (k == n) left = hand.out.omitted_work_j;
       if (k > n) {
-        work += dot(out.force_n, loop.velocity(static_cast<double>(k % n) / n)) / n;
-        gap = std::max(gap, norm(out.links[program.links.size() - 1].proxy - next));
+        work += dot(hand.out.force_n, loop.velocity(static_cast<double>(k % n) / n)) / n;
+        gap = std::max(gap, norm(hand.link(links.size() - 1).proxy - next));
       }
     }
     const double unit = kStiffness * gap * gap;
-    result = {work / unit, (out.omitted_work_j - left) / unit, n > 64 && std::fabs(work - before) <= 1e-10 * unit};
+    result = {work / unit, (hand.out.omitted_work_j - left) / unit, n > 64 && std::fabs(work - before) <= 1e-10 * unit};
     if (result.converged) break;
     before = work;
   }
@@ -83,17 +71,27 @@ Result work_of(const std::vector<std::string>& links, CouplingForce force, const
 
 std::string plane(const Vec3& n, double height = 0) {
   const Vec3 p = direction(n) * height;
-  return fmt::format(R"("type": "plane", "point": [{}, {}, {}], "normal": [{}, {}, {}])", p.x, p.y, p.z, n.x, n.y, n.z);
+  return R"("type": "plane", "point": )" + to_json(p) + R"(, "normal": )" + to_json(n);
 }
-std::string line(const Vec3& p, const Vec3& d) {
-  return fmt::format(R"("type": "line", "point": [{}, {}, {}], "direction": [{}, {}, {}])", p.x, p.y, p.z, d.x, d.y, d.z);
-}
+std::string line(const Vec3& p, const Vec3& d) { return R"("type": "line", "point": )" + to_json(p) + R"(, "direction": )" + to_json(d); }
 const std::string kSphere = R"("type": "sphere", "center": [0, 0, 0], "radius": 1.5)";
 const std::string kBall = R"("type": "isosurface", "field": "sphere", "level": 1.5)";
 const std::string kTorus = R"("type": "isosurface", "field": "torus", "level": 0.4)";
 const std::string kCircle = R"("type": "streamline", "field": "circle", "seed": [1.5, 0, 0])";
 const std::string kHelix = R"("type": "streamline", "field": "helix", "seed": [1.5, 0, 0])";
 const std::string kOnline = R"("type": "streamline", "field": "circle", "seed": [1.5, 0, 0], "follow": "online")";
+
+/// A loop near the circle of radius 1.5 in z = 0, where the closest point of every link is unique and smooth.
+Loop near_the_circle(Random& random) {
+  const Vec3 centre = Vec3(1.65, 0.1, 0.1) + random.box(0.05), a = random.box(0.15), b = random.box(0.15);
+  return {centre, a, b, random.box(0.1)};
+}
+/// The chain conserves energy along the loop, without a jump.
+void expect_conservative(const std::vector<std::string>& links, const Loop& loop) {
+  const Result result = work_of(links, CouplingForce::conservative, loop);
+  EXPECT_LE(std::fabs(result.work), 1e-9);
+  EXPECT_EQ(result.left_out, 0);
+}
 
 TEST(Energy, TwoPlanesAt45DegreesGainEnergyByThePaperAndNoneByVirtualWork) {
   const double s = std::sqrt(0.5);
@@ -111,28 +109,12 @@ TEST(Energy, TwoPlanesAt45DegreesGainEnergyByThePaperAndNoneByVirtualWork) {
 
 TEST(Energy, SmoothProjectionsOverRandomLoops) {
   Random random(2);
-  const std::vector<std::pair<const char*, std::string>> links{{"plane", plane({1, 2, 3}, 0.3)},
-                                                               {"line", line({0.2, 0.1, 0}, {1, 0.5, -0.3})},
-                                                               {"sphere", kSphere},
-                                                               {"ball", kBall},
-                                                               {"torus", kTorus},
-                                                               {"circle", kCircle},
-                                                               {"helix", kHelix},
-                                                               {"online", kOnline}};
-  std::printf("%-10s%-10s%14s%18s\n", "first", "second", "paper", "virtual work");
-  for (const auto& [first, a] : links)
-    for (const auto& [second, b] : links) {
-      double paper = 0, conservative = 0;
-      {
-        // near the circle of radius 1.5 in z = 0, where the closest point of every link is unique and smooth
-        const Loop loop{Vec3(1.65, 0.1, 0.1) + random.box(0.05), random.box(0.15), random.box(0.15), random.box(0.1)};
-        paper = std::max(paper, std::fabs(work_of({a, b}, CouplingForce::paper, loop).work));
-        const Result result = work_of({a, b}, CouplingForce::conservative, loop);
-        conservative = std::max(conservative, std::fabs(result.work));
-        EXPECT_EQ(result.left_out, 0) << first << ", " << second;
-      }
-      std::printf("%-10s%-10s%14.2e%18.1e\n", first, second, paper, conservative);
-      EXPECT_LE(conservative, 1e-9) << first << ", " << second;
+  const std::vector<std::string> links{
+      plane({1, 2, 3}, 0.3), line({0.2, 0.1, 0}, {1, 0.5, -0.3}), kSphere, kBall, kTorus, kCircle, kHelix, kOnline};
+  for (const std::string& a : links)
+    for (const std::string& b : links) {
+      SCOPED_TRACE(a + ", " + b);
+      expect_conservative({a, b}, near_the_circle(random));
     }
 }
 
@@ -143,12 +125,7 @@ TEST(Energy, ThreeLinks) {
                                                      {kHelix, plane({0, 1, 1}), kSphere},
                                                      {plane({1, 0, 1}), plane({0, 1, 1}), plane({1, 1, 0})}};
   for (const auto& chain : chains)
-    for (int i = 0; i < 3; ++i) {
-      const Loop loop{Vec3(1.65, 0.1, 0.1) + random.box(0.05), random.box(0.15), random.box(0.15), random.box(0.1)};
-      const Result result = work_of(chain, CouplingForce::conservative, loop);
-      EXPECT_LE(std::fabs(result.work), 1e-9);
-      EXPECT_EQ(result.left_out, 0);
-    }
+    for (int i = 0; i < 3; ++i) expect_conservative(chain, near_the_circle(random));
 }
 
 TEST(Energy, JumpsAtConcaveCornersAreExcludedFromTheLedger) {
@@ -175,8 +152,7 @@ TEST(Energy, TemporaryContactsAndGridCells) {
                                                      {grid, kCircle}};
   for (const auto& chain : chains) {
     // the force jumps where a contact begins, so that the sum over the loop is only first order in its step
-    const Loop loop{Vec3(1.65, 0.1, 0.1) + random.box(0.05), random.box(0.15), random.box(0.15), random.box(0.1)};
-    const Result result = work_of(chain, CouplingForce::conservative, loop, 1 << 19);
+    const Result result = work_of(chain, CouplingForce::conservative, near_the_circle(random), 1 << 19);
     EXPECT_LE(std::fabs(result.work + result.left_out), 1e-6) << chain[0] << " " << chain[1];
   }
 }
@@ -187,27 +163,19 @@ TEST(Energy, AStiffnessThatFollowsAField) {
   const auto map = get_parameter(*node, "k", 0.0, json::NumberRange::non_negative, all.context());
   ASSERT_TRUE(map);
   for (const CouplingForce force : {CouplingForce::paper, CouplingForce::conservative}) {
-    HapticProgram program;
-    Link link;
-    link.name = "a";
-    link.constraint = build(R"({"name": "a", )" + plane({0, 0, 1}) + "}");
-    link.stiffness_n_per_m = *map;
-    program.links = {link};
-    program.coupling.force = force;
-    program.coupling.max_force_n = 1e9;
-    ChainState state;
-    ChainScratch scratch;
-    HapticState out;
+    catena::test::ChainDriver hand;
+    hand.add(build(R"({"name": "a", )" + plane({0, 0, 1}) + "}")).stiffness_n_per_m = *map;
+    hand.program.coupling.force = force;
     const Loop loop{Vec3(0.1, 0, 0.3), Vec3(0.3, 0, 0), Vec3(0, 0, 0.2), Vec3(0.0)};
-    double work = 0, t = 0;
+    double work = 0;
     Vec3 x(0.0), f(0.0);
     const int n = 1 << 14;
     for (int k = 0; k <= 2 * n; ++k) {
       const Vec3 next = loop.at(static_cast<double>(k % n) / n);
-      tick(program, {t += 1e-3, next, 0}, state, scratch, out);
-      if (k > n) work += 0.5 * dot(out.force_n + f, next - x);
+      hand.step(next);
+      if (k > n) work += 0.5 * dot(hand.out.force_n + f, next - x);
       x = next;
-      f = out.force_n;
+      f = hand.out.force_n;
     }
     if (force == CouplingForce::paper)
       EXPECT_GT(std::fabs(work), 0.01 * 175 * 0.25);
@@ -216,5 +184,4 @@ TEST(Energy, AStiffnessThatFollowsAField) {
   }
 }
 
-}  // namespace energy_test
-}  // namespace catena::haptics::tests
+}  // namespace catena::haptics::tests::energy_test

@@ -2,15 +2,16 @@
 /// Examples of every constraint type, and the fields that they name, for the conformance and the endurance tests.
 /// A new type needs a row in examples().
 #pragma once
-#include <limits>
-#include "tests/support/curve_files.h"
-
 #include "engine/io/curves/load_points.h"
 #include "tests/engine/geometry/flow/lambda_field.h"
-#include "tests/haptics/constraints/constraint_fixture.h"
-#include "tests/support/mesh_shapes.h"
+#include "tests/haptics/constraints/mesh_fixture.h"
+#include "tests/support/curve_files.h"
 
 namespace catena::haptics::tests {
+
+using catena::test::make_curve_set;
+using catena::test::Polylines;
+using catena::test::sample_vector_grid;
 
 /// A polyline of many corners, near and far from each other.
 inline std::string zigzag(int points) {
@@ -19,17 +20,15 @@ inline std::string zigzag(int points) {
   Vec3 p(0.0);
   for (int i = 0; i < points; ++i) {
     p = p * 0.99 + random.box(0.2);
-    char corner[96];
-    std::snprintf(corner, sizeof corner, "%s[%.17g, %.17g, %.17g]", i ? ", " : "", p.x, p.y, p.z);
-    text += corner;
+    text += (i ? ", " : "") + to_json(p);
   }
   return text + "]";
 }
 
 /// Wandering lines with random starts in the box -1..1.
-inline catena::test::Polylines random_fibers(int lines, int points, double step) {
+inline Polylines random_fibers(int lines, int points, double step) {
   Random random(17);
-  catena::test::Polylines all(static_cast<std::size_t>(lines));
+  Polylines all(static_cast<std::size_t>(lines));
   for (auto& line : all) {
     line.push_back(random.box(1));
     Vec3 way = direction(random.box(1));
@@ -159,30 +158,24 @@ inline const Fields& fields() {
     made.named["sphere_grid"].scalar = sampled_field("sphere", 25);
     made.named["torus_grid"].scalar = sampled_field("torus", 33);
     made.named["circle_grid"].vector = field::sample_on_grid(*made.named["circle"].vector, 24, -2, 2);
-    Mat3 boxes(0.0);
-    boxes[0] = Vec3(0.1, 0.02, 0);
-    boxes[1] = Vec3(-0.05, 0.25, 0);
-    boxes[2] = Vec3(0, 0.03, 0.4);
+    const Mat3 boxes(Vec3(0.1, 0.02, 0), Vec3(-0.05, 0.25, 0), Vec3(0, 0.03, 0.4));
     made.named["boxes_grid"].scalar =
         sample_scalar_grid(field::Mapping::from_linear(boxes, Vec3(-1.2, -1.8, -2)), {30, 15, 10}, [](const Vec3& p) { return norm(p); });
     Random random(99);
-    made.named["noise_grid"].scalar = sample_scalar_grid(field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0)), {21, 21, 21},
-                                                         [&](const Vec3&) { return random.uniform(-1, 1); });
-    made.named["broken_grid"].scalar =
-        sample_scalar_grid(field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0)), {21, 21, 21}, [&](const Vec3&) {
-          const double v = random.uniform(0, 1);
-          return v < 0.03 ? std::numeric_limits<double>::quiet_NaN() : v < 0.04 ? std::numeric_limits<double>::infinity() : v;
-        });
+    made.named["noise_grid"].scalar = cube_grid(21, [&](const Vec3&) { return random.uniform(-1, 1); });
+    made.named["broken_grid"].scalar = cube_grid(21, [&](const Vec3&) {
+      const double v = random.uniform(0, 1);
+      return v < 0.03 ? std::numeric_limits<double>::quiet_NaN() : v < 0.04 ? std::numeric_limits<double>::infinity() : v;
+    });
     std::vector<float> vectors;
     for (int i = 0; i < 3 * 21 * 21 * 21; ++i) {
       const double v = random.uniform(-1, 1);
       vectors.push_back(std::fabs(v) < 0.01 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(v));
     }
-    made.named["broken_vectors"].vector =
-        field::make_vector_grid("made", field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0)), {21, 21, 21}, vectors);
     const auto nodes = field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0));
-    made.named["noise_vectors"].vector = catena::test::sample_vector_grid(nodes, {21, 21, 21}, [&](const Vec3&) { return random.box(1); });
-    made.named["broken_circle"].vector = catena::test::sample_vector_grid(nodes, {21, 21, 21}, [&](const Vec3& p) {
+    made.named["broken_vectors"].vector = field::make_vector_grid("made", nodes, {21, 21, 21}, vectors);
+    made.named["noise_vectors"].vector = sample_vector_grid(nodes, {21, 21, 21}, [&](const Vec3&) { return random.box(1); });
+    made.named["broken_circle"].vector = sample_vector_grid(nodes, {21, 21, 21}, [&](const Vec3& p) {
       return random.uniform(0, 1) < 0.03 ? Vec3(std::numeric_limits<double>::quiet_NaN()) : Vec3(-p.y, p.x, 0.1);
     });
     // the same voxels in cubic cells
@@ -191,24 +184,27 @@ inline const Fields& fields() {
       made.named[cubic].scalar = made.named[linear].scalar->grid()->as_cubic().value();
     for (const auto& [cubic, linear] : {std::pair{"cubic_circle", "circle_grid"}, {"cubic_vectors", "broken_vectors"}})
       made.named[cubic].vector = made.named[linear].vector->grid()->as_cubic().value();
-    made.meshes["box"] = catena::test::make_mesh_from(catena::test::box_soup());
-    made.meshes["sheet"] =
-        catena::test::make_mesh_from(catena::test::sheet_soup(12, 1, [](double x, double y) { return 0.3 * x * x - 0.4 * y; }));
-    made.meshes["sphere"] = catena::test::make_mesh_from(catena::test::sphere_soup(12));
-    made.meshes["plate"] = catena::test::make_mesh_from(catena::test::box_soup({-1, -1, -5e-4}, {1, 1, 5e-4}));
+    made.meshes["box"] = make_mesh_from(box_soup());
+    made.meshes["sheet"] = make_mesh_from(sheet_soup(12, 1, [](double x, double y) { return 0.3 * x * x - 0.4 * y; }));
+    made.meshes["sphere"] = make_mesh_from(sphere_soup(12));
+    made.meshes["plate"] = make_mesh_from(box_soup({-1, -1, -5e-4}, {1, 1, 5e-4}));
     // three sheets at a common edge, one of them with inverted orientation
     mesh::TriangleSoup book;
-    catena::test::add_quad(book, {0, -1, 0}, {1, -1, 0.2}, {1, 1, 0.2}, {0, 1, 0});
-    catena::test::add_quad(book, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0.2}, {-1, -1, 0.2});
-    catena::test::add_quad(book, {0, -1, 0}, {0, -1, 1}, {0, 1, 1}, {0, 1, 0});
-    made.meshes["book"] = catena::test::make_mesh_from(std::move(book));
+    add_quad(book, {0, -1, 0}, {1, -1, 0.2}, {1, 1, 0.2}, {0, 1, 0});
+    add_quad(book, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0.2}, {-1, -1, 0.2});
+    add_quad(book, {0, -1, 0}, {0, -1, 1}, {0, 1, 1}, {0, 1, 0});
+    made.meshes["book"] = make_mesh_from(std::move(book));
     made.points["cloud"] = point_cloud(2000);
     made.points["one"] = point_cloud(1);
-    made.curves["fibres"] = catena::test::make_curve_set(random_fibers(200, 60, 0.1));
-    made.curves["two"] = catena::test::make_curve_set({{{-1, 0, 0}, {1, 0, 0}}, {{0, 1e-12, -1}, {0, 0, 1}}});
+    made.curves["fibres"] = make_curve_set(random_fibers(200, 60, 0.1));
+    made.curves["two"] = make_curve_set({{{-1, 0, 0}, {1, 0, 0}}, {{0, 1e-12, -1}, {0, 0, 1}}});
     return made;
   }();
   return all;
+}
+
+inline ConstraintPtr build_example(const std::string& type, const std::string& body) {
+  return build(R"({"name": "a", "type": ")" + type + "\", " + body + "}", fields());
 }
 
 struct Example {

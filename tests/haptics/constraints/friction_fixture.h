@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// Input of the friction links: the proxies of an isosurface link along a random walk of the hand.
 #pragma once
-#include "haptics/constraints/isosurface/level_set_field.h"
+#include "tests/engine/geometry/flow/lambda_field.h"
 #include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
+
+using catena::test::lambda_field;
 
 /// `step`: the hand's step in world units per tick. Starts near `from`.
 inline std::vector<Vec3> walk_on_surface(const field::ScalarFieldPtr& surface, double level, const Vec3& from, double step, int ticks,
@@ -29,11 +31,6 @@ inline double off_level(const field::ScalarField& surface, double level, const V
   field::Cursor cursor;
   const field::ScalarSample s = surface.sample(p, cursor);
   return std::fabs(s.value - level) / norm(s.gradient);
-}
-
-inline Vec3 normal_at(const field::ScalarField& surface, const Vec3& p) {
-  field::Cursor cursor;
-  return direction(surface.sample(p, cursor).gradient);
 }
 
 }  // namespace catena::haptics::tests

@@ -2,22 +2,9 @@
 // Isosurface links on formulas and sampled grids: closest points, convergence and evaluations. Figures are printed on failure.
 #include "tests/haptics/constraints/constraint_fixture.h"
 
-namespace catena::haptics::tests {
-namespace isosurface_test {
+namespace catena::haptics::tests::isosurface_test {
 
 constexpr double kOffAnalytic = 1e-11, kOffSampled = 1e-9, kTangential = 1e-6;  // fractions of L
-
-struct Tally {
-  int runs = 0, bad = 0;
-  double worst_off = 0, worst_tangential = 0;
-  Quantiles evaluations;
-  std::string text() {
-    char line[200];
-    std::snprintf(line, sizeof line, "%d of %d bad; off level %.2g L, tangential %.2g L; evaluations p50 %d p99 %d max %d", bad, runs,
-                  worst_off, worst_tangential, evaluations.at_quantile(0.5), evaluations.at_quantile(0.99), evaluations.at_quantile(1));
-    return line;
-  }
-};
 
 struct Formula {
   const char* name;
@@ -25,72 +12,49 @@ struct Formula {
 };
 void PrintTo(const Formula& f, std::ostream* out) { *out << f.name << " at " << f.level; }
 
-class AnalyticIsosurface : public testing::TestWithParam<Formula> {};
+class AnalyticIsosurface : public testing::TestWithParam<Formula> {
+ protected:
+  void count(const Vec3& probe, const LinkState& state) {
+    const SurfaceCheck j = check_on_surface(*field, GetParam().level, probe, state.proxy);
+    const bool good = state.status == LinkStatus::ok && j.off_level <= kOffAnalytic && j.tangential <= kTangential;
+    tally.add(state, !good, j.off_level, j.tangential);
+  }
+  const field::ScalarFieldPtr field = analytic_field(GetParam().name);
+  const ConstraintPtr constraint = isosurface(field, GetParam().level);
+  SurfaceTally tally;
+};
 
 TEST_P(AnalyticIsosurface, ReachesTheClosestPointFromAnyStart) {
-  const auto f = analytic_field(GetParam().name);
-  const auto constraint = isosurface(f, GetParam().level);
   Random random(7);
-  Tally tally;
   for (int i = 0; i < 5000; ++i) {
     const Vec3 probe = random.box(2);
-    Rig rig(constraint);
-    rig.tick(probe);
-    const SurfaceCheck j = check_on_surface(*f, GetParam().level, probe, rig.state.proxy);
-    ++tally.runs;
-    tally.evaluations.add(rig.state.evaluations);
-    tally.worst_off = std::max(tally.worst_off, j.off_level);
-    tally.worst_tangential = std::max(tally.worst_tangential, j.tangential);
-    tally.bad += rig.state.status != LinkStatus::ok || !(j.off_level <= kOffAnalytic) || !(j.tangential <= kTangential);
+    count(probe, Rig(constraint).tick(probe));
   }
   EXPECT_EQ(tally.bad, 0) << tally.text();
-  RecordProperty("figures", tally.text());
 }
 
 TEST_P(AnalyticIsosurface, FollowsJumpsWithinTheTick) {
-  const auto f = analytic_field(GetParam().name);
-  const auto constraint = isosurface(f, GetParam().level);
   Random random(8);
-  Tally tally;
   Rig rig(constraint);
   rig.tick(random.box(1));
   for (int i = 0; i < 5000; ++i) {
     const Vec3 probe = random.box(1.5);
-    rig.tick(probe);
-    const SurfaceCheck j = check_on_surface(*f, GetParam().level, probe, rig.state.proxy);
-    ++tally.runs;
-    tally.evaluations.add(rig.state.evaluations);
-    tally.worst_off = std::max(tally.worst_off, j.off_level);
-    tally.worst_tangential = std::max(tally.worst_tangential, j.tangential);
-    tally.bad += rig.state.status != LinkStatus::ok || !(j.off_level <= kOffAnalytic) || !(j.tangential <= kTangential);
+    count(probe, rig.tick(probe));
   }
   EXPECT_EQ(tally.bad, 0) << tally.text();
   EXPECT_LE(tally.evaluations.at_quantile(0.99), 32) << tally.text();
-  RecordProperty("figures", tally.text());
 }
 
 TEST_P(AnalyticIsosurface, AHandsMotionNeedsFewEvaluations) {
-  const auto f = analytic_field(GetParam().name);
-  Rig rig(isosurface(f, GetParam().level));
-  Random random(9);
-  Vec3 probe(0.9, 0.3, 0.4), velocity = random.unit() * 2e-3;
-  Tally tally;
-  for (int i = 0; i < 4000; ++i) {
-    velocity = direction(velocity + random.unit() * 2e-4) * 2e-3;
-    if (norm(probe + velocity) > 1.7) velocity = velocity * -1.0;
-    probe = probe + velocity;
-    rig.tick(probe);
-    if (i == 0) continue;
-    const SurfaceCheck j = check_on_surface(*f, GetParam().level, probe, rig.state.proxy);
-    ++tally.runs;
-    tally.evaluations.add(rig.state.evaluations);
-    tally.worst_off = std::max(tally.worst_off, j.off_level);
-    tally.worst_tangential = std::max(tally.worst_tangential, j.tangential);
-    tally.bad += rig.state.status != LinkStatus::ok || !(j.off_level <= kOffAnalytic) || !(j.tangential <= kTangential);
+  Rig rig(constraint);
+  Wanderer hand{Random(9), 2e-3, 2e-4, 1.7, Vec3(0.9, 0.3, 0.4)};
+  rig.tick(hand.step());
+  for (int i = 1; i < 4000; ++i) {
+    rig.tick(hand.step());
+    count(hand.probe, rig.state);
   }
   EXPECT_EQ(tally.bad, 0) << tally.text();
   EXPECT_LE(tally.evaluations.at_quantile(0.5), 3) << tally.text();
-  RecordProperty("figures", tally.text());
 }
 
 INSTANTIATE_TEST_SUITE_P(Formulas, AnalyticIsosurface,
@@ -133,32 +97,19 @@ TEST(Isosurface, PlainNewtonFailsOnASteepProfile) {
   EXPECT_EQ(failed, 100);
 }
 
-TEST(Isosurface, StartsOnPlateausReachTheSurface) {
-  const auto f = analytic_field("tanh");
-  for (const double z : {0.1, -0.5, 1.0, -1.9, 1.99}) {
-    Rig rig(isosurface(f, 0.3));
-    rig.tick({0.3, 0.2, z});
-    EXPECT_EQ(rig.state.status, LinkStatus::ok) << z << " after " << rig.state.evaluations;
-    EXPECT_LE(check_on_surface(*f, 0.3, {0.3, 0.2, z}, rig.state.proxy).off_level, kOffAnalytic) << z;
-  }
-}
-
-// ---- grids ----
-
 /// Maximum feasible descent of |probe - p| at p over the adjoining cells, as a fraction of L. For grids with axis-aligned voxels.
 double descent_left(const field::ScalarGrid& grid, const Vec3& proxy, const Vec3& probe) {
   const field::Mapping& m = grid.mapping();
   const Vec3 index = m.index_from_world(proxy);
   field::Cursor cursor;
-  std::array<std::vector<int>, 3> bases;
-  std::array<bool, 3> face{};
+  std::vector<int> bases[3];
+  bool face[3];
   for (int a = 0; a < 3; ++a) {
     const double nearest = std::floor(index[a] + 0.5);
-    face[static_cast<std::size_t>(a)] = std::fabs(index[a] - nearest) < 1e-9;
-    const int low = static_cast<int>(face[static_cast<std::size_t>(a)] ? nearest - 1 : std::floor(index[a]));
+    face[a] = std::fabs(index[a] - nearest) < 1e-9;
+    const int low = static_cast<int>(face[a] ? nearest - 1 : std::floor(index[a]));
     for (const int b : {low, low + 1})
-      if ((b == low || face[static_cast<std::size_t>(a)]) && b >= grid.index_box().lo[a] && b <= grid.index_box().hi[a] - 1)
-        bases[static_cast<std::size_t>(a)].push_back(b);
+      if ((b == low || face[a]) && b >= grid.index_box().lo[a] && b <= grid.index_box().hi[a] - 1) bases[a].push_back(b);
   }
   double maximum = 0;
   for (const int bx : bases[0])
@@ -173,7 +124,7 @@ double descent_left(const field::ScalarGrid& grid, const Vec3& proxy, const Vec3
           bool legal = true;
           for (int a = 0; a < 3; ++a) {
             if (!(held >> a & 1)) continue;
-            legal = legal && face[static_cast<std::size_t>(a)];
+            legal = legal && face[a];
             n[a] = e[a] = 0;
           }
           n = direction(n);
@@ -181,7 +132,7 @@ double descent_left(const field::ScalarGrid& grid, const Vec3& proxy, const Vec3
           Vec3 t = e - n * dot(n, e);
           if (held == 3 || held == 5 || held == 6 || held == 7) t = Vec3(0.0);
           for (int a = 0; a < 3; ++a)
-            if (face[static_cast<std::size_t>(a)] && !(held >> a & 1) && (f[a] < 0.5 ? t[a] < 0 : t[a] > 0)) legal = false;
+            if (face[a] && !(held >> a & 1) && (f[a] < 0.5 ? t[a] < 0 : t[a] > 0)) legal = false;
           if (legal) maximum = std::max(maximum, norm(t));
         }
       }
@@ -198,9 +149,7 @@ void PrintTo(const Grid& g, std::ostream* out) { *out << g.name << " " << g.reso
 
 class SampledIsosurface : public testing::TestWithParam<Grid> {
  protected:
-  std::shared_ptr<const field::ScalarGrid> make() const {
-    const Grid& p = GetParam();
-    const auto exact = analytic_field(p.name);
+  static std::shared_ptr<const field::ScalarGrid> make(const Grid& p) {
     const double h = 4.0 / (p.resolution - 1);
     const Vec3 edge = p.anisotropic ? Vec3(h, 0.7 * h, 2.1 * h) : Vec3(h);
     const field::Index3 size = p.anisotropic ? field::Index3{p.resolution, static_cast<int>(4 / (0.7 * h)), static_cast<int>(4 / (2.1 * h))}
@@ -209,76 +158,55 @@ class SampledIsosurface : public testing::TestWithParam<Grid> {
     for (int a = 0; a < 3; ++a) j[a][a] = edge[a];
     field::Cursor cursor;
     return sample_scalar_grid(field::Mapping::from_linear(j, Vec3(-2.0)), size,
-                              [&](const Vec3& x) { return exact->sample(x, cursor).value; });
+                              [exact = analytic_field(p.name), &cursor](const Vec3& x) { return exact->sample(x, cursor).value; });
   }
-  /// Holds the probe still until the proxy has arrived. True if that took more than one tick.
-  static bool arrive(Rig& rig, const Vec3& probe) {
-    if (rig.tick(probe).status != LinkStatus::budget) return false;
-    for (int k = 0; k < 3 && rig.state.status == LinkStatus::budget; ++k) rig.tick(probe);
-    return true;
+  void count(const Vec3& probe, const LinkState& state) {
+    const double left = descent_left(*grid, state.proxy, probe);
+    const SurfaceCheck j = check_on_surface(*grid, GetParam().level, probe, state.proxy);
+    const bool holds = state.status == LinkStatus::ok || state.status == LinkStatus::boundary;
+    tally.add(state, !holds || !(left <= kTangential) || !(j.off_level <= kOffSampled), j.off_level,
+              state.status == LinkStatus::ok ? left : 0);
   }
-  void count(Tally& tally, const field::ScalarGrid& grid, const Vec3& probe, const LinkState& state) const {
-    ++tally.runs;
-    tally.evaluations.add(state.evaluations);
-    const double left = descent_left(grid, state.proxy, probe);
-    const SurfaceCheck j = check_on_surface(grid, GetParam().level, probe, state.proxy);
-    tally.worst_off = std::max(tally.worst_off, j.off_level);
-    if (state.status == LinkStatus::ok) tally.worst_tangential = std::max(tally.worst_tangential, left);
-    tally.bad +=
-        (state.status != LinkStatus::ok && state.status != LinkStatus::boundary) || !(left <= kTangential) || !(j.off_level <= kOffSampled);
-    EXPECT_LE(state.evaluations, kMaxEvaluations);
-  }
+  const std::shared_ptr<const field::ScalarGrid> grid = make(GetParam());
+  const ConstraintPtr constraint = isosurface(grid, GetParam().level);
+  SurfaceTally tally;
 };
 
 TEST_P(SampledIsosurface, ReachesTheClosestPointFromAnyStart) {
-  const auto grid = make();
-  const auto constraint = isosurface(grid, GetParam().level);
   Random random(11);
-  Tally tally;
   for (int i = 0; i < 3000; ++i) {
     const Vec3 probe = random.box(1.6);
     Rig rig(constraint);
-    arrive(rig, probe);
-    count(tally, *grid, probe, rig.state);
+    rig.arrive(probe);
+    count(probe, rig.state);
   }
   EXPECT_LE(tally.bad, tally.runs / 1000) << tally.text();
-  RecordProperty("figures", tally.text());
 }
 
 TEST_P(SampledIsosurface, FollowsAWalkingHand) {
-  const auto grid = make();
-  Rig rig(isosurface(grid, GetParam().level));
-  Random random(12);
+  Rig rig(constraint);
   const double speed = 0.3 * grid->mapping().min_voxel_edge();
-  Vec3 probe(0.9, 0.3, 0.4), velocity = random.unit() * speed;
-  rig.tick(probe);
-  Tally tally;
+  Wanderer hand{Random(12), speed, 0.1 * speed, 1.6, Vec3(0.9, 0.3, 0.4)};
+  rig.tick(hand.probe);
   for (int i = 0; i < 5000; ++i) {
-    velocity = direction(velocity + random.unit() * (0.1 * speed)) * speed;
-    if (norm(probe + velocity) > 1.6) velocity = velocity * -1.0;
-    probe = probe + velocity;
-    rig.tick(probe);
-    count(tally, *grid, probe, rig.state);
+    rig.tick(hand.step());
+    count(hand.probe, rig.state);
   }
   EXPECT_LE(tally.bad, tally.runs / 1000) << tally.text();
-  RecordProperty("figures", tally.text());
 }
 
 TEST_P(SampledIsosurface, FollowsJumps) {
-  const auto grid = make();
-  Rig rig(isosurface(grid, GetParam().level));
+  Rig rig(constraint);
   Random random(13);
   rig.tick({0.9, 0.3, 0.4});
-  Tally tally;
   int later = 0;
   for (int i = 0; i < 3000; ++i) {
     const Vec3 probe = random.box(1.4);
-    later += arrive(rig, probe);
-    count(tally, *grid, probe, rig.state);
+    later += rig.arrive(probe);
+    count(probe, rig.state);
   }
   EXPECT_LE(later, tally.runs / 30);
   EXPECT_LE(tally.bad, tally.runs / 1000 + 1) << tally.text();
-  RecordProperty("figures", tally.text());
 }
 
 INSTANTIATE_TEST_SUITE_P(Grids, SampledIsosurface,
@@ -289,5 +217,4 @@ INSTANTIATE_TEST_SUITE_P(Grids, SampledIsosurface,
                                   (test.param.anisotropic ? "boxes" : "");
                          });
 
-}  // namespace isosurface_test
-}  // namespace catena::haptics::tests
+}  // namespace catena::haptics::tests::isosurface_test

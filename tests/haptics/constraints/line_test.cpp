@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/haptics/constraints/constraint_fixture.h"
 
-namespace catena::haptics::tests {
-namespace line_test {
+namespace catena::haptics::tests::line_test {
 
 TEST(Line, ProjectsOrthogonally) {
   Rig rig(build(R"({"name": "a", "type": "line", "point": [1, 2, 3], "direction": [2, 4, -4]})"));
@@ -10,8 +9,7 @@ TEST(Line, ProjectsOrthogonally) {
   const Vec3 d = Vec3(1, 2, -2) / 3.0, point(1, 2, 3);
   for (int i = 0; i < 2000; ++i) {
     const Vec3 probe = random.box(10);
-    rig.tick(probe);
-    EXPECT_LE(std::fabs(dot(d, probe - rig.state.proxy)), 1e-14);
+    EXPECT_LE(std::fabs(dot(d, probe - rig.tick(probe).proxy)), 1e-14);
     EXPECT_LE(norm(cross(d, rig.state.proxy - point)), 1e-14);
     EXPECT_LE(rig.state.residual, 1e-14);
     EXPECT_EQ(rig.state.status, LinkStatus::ok);
@@ -44,11 +42,7 @@ TEST(Line, ReleasesAndReArmsWithinATenth) {
   Rig rig(build(R"({"name": "a", "type": "line", "point": [0, 0, 0], "direction": [1, 0, 0], "release": 0.5})"));
   EXPECT_EQ(rig.tick({3, 0.49, 0}).status, LinkStatus::ok);
   EXPECT_EQ(rig.state.limit, 0.5);
-  EXPECT_EQ(rig.tick({3, 0, 0.5}).status, LinkStatus::released);
-  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(3, 0, 0.5)));
-  EXPECT_EQ(rig.tick({9, 0, 0.0501}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({9, 0, 0.0499}).status, LinkStatus::ok);
-  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(9, 0, 0)));
+  expect_steps(rig, {{{3, 0, 0.5}, kReleased, {3, 0, 0.5}}, {{9, 0, 0.0501}, kReleased}, {{9, 0, 0.0499}, kOk, {9, 0, 0}}});
 }
 
 TEST(Line, ForwardAndBackwardSweepsAreBitIdentical) {
@@ -62,24 +56,18 @@ TEST(Line, ThePrimitiveIsTheLine) {
   Rig rig(build(R"({"name": "a", "type": "line", "point": [0, 0, 1], "direction": [0, 3, 0], "release": 0.5})"));
   ASSERT_TRUE(rig.constraint->has_primitive());
   rig.tick({0.1, 2, 1});
-  Primitive primitive;
-  ASSERT_TRUE(rig.constraint->primitive({0.3, 4, 1}, rig.state, rig.scratch, primitive));
-  EXPECT_EQ(primitive.kind, Primitive::Kind::line);
-  EXPECT_TRUE(bitwise_equal(primitive.origin, Vec3(0, 4, 1)));
-  EXPECT_TRUE(bitwise_equal(primitive.axis, Vec3(0, 1, 0)));
+  expect_primitive(rig, {0.3, 4, 1}, Primitive::Kind::line, {0, 4, 1}, {0, 1, 0});
   rig.tick({0.6, 2, 1});
+  Primitive primitive;
   EXPECT_FALSE(rig.constraint->primitive({0.3, 4, 1}, rig.state, rig.scratch, primitive));  // released
 }
 
 TEST(Line, RefusesBadKeys) {
-  const auto zero = try_build("{\"name\": \"a\", \"type\": \"line\", \"point\": [0, 0, 0],\n \"direction\": [0, 0, 0]}");
-  ASSERT_FALSE(zero);
-  EXPECT_EQ(zero.error().message.rfind("scene.json:2:", 0), 0u) << zero.error().message;
-  EXPECT_FALSE(try_build(R"({"name": "a", "type": "line", "point": [0, 0, 0]})"));
+  const std::string head = R"({"name": "a", "type": "line", "point": [0, 0, 0])";
+  expect_refused(head + ",\n \"direction\": [0, 0, 0]}", 2, {});
   EXPECT_FALSE(try_build(R"({"name": "a", "type": "line", "direction": [0, 0, 1]})"));
-  EXPECT_FALSE(try_build(R"({"name": "a", "type": "line", "point": [0, 0, 0], "direction": [0, 0, 1], "free": "above"})"));
-  EXPECT_FALSE(try_build(R"({"name": "a", "type": "line", "point": [0, 0, 0], "direction": [0, 0, 1], "release": 0})"));
+  for (const char* bad : {"", R"(, "direction": [0, 0, 1], "free": "above")", R"(, "direction": [0, 0, 1], "release": 0)"})
+    EXPECT_FALSE(try_build(head + bad + "}")) << bad;
 }
 
-}  // namespace line_test
-}  // namespace catena::haptics::tests
+}  // namespace catena::haptics::tests::line_test

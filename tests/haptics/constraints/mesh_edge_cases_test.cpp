@@ -2,8 +2,7 @@
 /// Difficult meshes for the god-object method: seams, intersecting parts, rough and stepped bodies.
 #include "tests/haptics/constraints/mesh_fixture.h"
 
-namespace catena::haptics::tests {
-namespace mesh_edge_cases_test {
+namespace catena::haptics::tests::mesh_edge_cases_test {
 
 /// Two halves of a sheet with a seam of width 1e-8 and without shared vertices.
 TEST(Mesh, NarrowSeamsAreCrossed) {
@@ -17,8 +16,7 @@ TEST(Mesh, NarrowSeamsAreCrossed) {
     rig.tick({-0.5, 0.2, 0.1});
     for (int i = 0; i < 1000; ++i) {
       const Vec3 probe(-0.5 + 1e-3 * i, 0.2, -0.05);
-      rig.tick(probe);
-      ASSERT_EQ(rig.state.status, LinkStatus::ok) << side << i;
+      ASSERT_EQ(rig.tick(probe).status, LinkStatus::ok) << side << i;
       ASSERT_LE(norm(rig.state.proxy - Vec3(probe.x, 0.2, 0)), 1.1e-8) << side << i;
     }
   }
@@ -29,8 +27,7 @@ TEST(Mesh, TwoSidedStaysOnItsSideOfAThinPlate) {
   rig.tick({0, 0, 0.5});
   for (int i = 0; i < 40; ++i) {
     const Vec3 probe(0.3, 0.2, 0.5 - 0.04 * i);
-    rig.tick(probe);
-    ASSERT_LE(norm(rig.state.proxy - Vec3(0.3, 0.2, 5e-4)), 1e-12);
+    ASSERT_LE(norm(rig.tick(probe).proxy - Vec3(0.3, 0.2, 5e-4)), 1e-12);
   }
 }
 
@@ -45,8 +42,7 @@ TEST(Mesh, HoldsOnIntersectingParts) {
   Random random(10);
   for (int i = 0; i < 500; ++i) {
     const Vec3 probe(random.uniform(0.31, 0.5), random.uniform(-0.4, 0.4), random.uniform(-0.3, -0.01));
-    rig.tick(probe);
-    ASSERT_EQ(rig.state.status, LinkStatus::ok);
+    ASSERT_EQ(rig.tick(probe).status, LinkStatus::ok);
     ASSERT_LE(norm(rig.state.proxy - Vec3(0.3, probe.y, 0)), 2e-12) << i;
   }
 }
@@ -67,8 +63,7 @@ TEST(Mesh, StaysOutsideARoughBody) {
   for (int i = 0; i < 30000; ++i) {
     way = direction(way + 0.3 * random.unit() - 0.02 * probe);
     probe += 0.02 * way;
-    rig.tick(probe);
-    ASSERT_NE(rig.state.status, LinkStatus::budget) << i;
+    ASSERT_NE(rig.tick(probe).status, LinkStatus::budget) << i;
     if (rig.state.status != LinkStatus::ok) {
       ASSERT_FALSE(is_inside(*body, probe)) << i;
       continue;
@@ -115,8 +110,7 @@ TEST(Mesh, NoProbePassesThroughSeams) {
     Rig rig(mesh_link(stairs));
     Vec3 probe(0.5, 1.5, 1.5);
     for (int i = 0; i < 60; ++i) {
-      rig.tick(probe);
-      ASSERT_NE(rig.state.status, LinkStatus::budget) << run << " " << i;
+      ASSERT_NE(rig.tick(probe).status, LinkStatus::budget) << run << " " << i;
       if (rig.state.status == LinkStatus::ok) {
         ++held;
         ASSERT_LE(off(*stairs, rig.state.proxy), 1e-12) << run << " " << i;
@@ -136,5 +130,4 @@ TEST(Mesh, NoProbePassesThroughSeams) {
   EXPECT_GT(held, 3000);
 }
 
-}  // namespace mesh_edge_cases_test
-}  // namespace catena::haptics::tests
+}  // namespace catena::haptics::tests::mesh_edge_cases_test

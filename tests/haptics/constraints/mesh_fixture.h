@@ -35,13 +35,9 @@ inline Vec3 closest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, con
 
 inline Vec3 closest_on_mesh(const mesh::TriangleMesh& mesh, const Vec3& x) {
   Vec3 best(1e300);
-  double minimum = 1e300;
   for (const mesh::Triangle& t : mesh.triangles()) {
     const Vec3 p = closest_on_triangle(mesh.vertices()[t[0]], mesh.vertices()[t[1]], mesh.vertices()[t[2]], x);
-    if (norm(p - x) < minimum) {
-      minimum = norm(p - x);
-      best = p;
-    }
+    if (norm(p - x) < norm(best - x)) best = p;
   }
   return best;
 }

@@ -3,8 +3,7 @@
 
 #include "tests/haptics/constraints/constraint_fixture.h"
 
-namespace catena::haptics::tests {
-namespace mode_presets_test {
+namespace catena::haptics::tests::mode_presets_test {
 
 json::Node node_of(const std::string& text) {
   auto node = json::parse(text, "scene.json");
@@ -63,9 +62,7 @@ TEST(ModePresets, TheTableMatchesTheRegistry) {
         ASSERT_NE(type, nullptr) << part.type;
         for (const ModePreset::KeyMapping& hand : part.keys) {
           handed += hand.from == key.name;
-          bool known = false;
-          for (const schema::Key& own : type->keys) known = known || own.name == hand.to;
-          EXPECT_TRUE(known) << part.type << " " << hand.to;
+          EXPECT_EQ(std::ranges::count(type->keys, hand.to, &schema::Key::name), 1) << part.type << " " << hand.to;
         }
       }
       EXPECT_GT(handed, 0) << key.name;
@@ -77,7 +74,7 @@ TEST(ModePresets, ErrorsNameTheLine) {
   const auto refused = [](const std::string& text, int line, const std::string& what) {
     const auto made = expand_link(node_of(text));
     ASSERT_FALSE(made) << text;
-    EXPECT_EQ(made.error().message.rfind("scene.json:" + std::to_string(line) + ": ", 0), 0u) << made.error().message;
+    EXPECT_TRUE(made.error().message.starts_with(fmt::format("scene.json:{}: ", line))) << made.error().message;
     EXPECT_NE(made.error().message.find(what), std::string::npos) << made.error().message;
   };
   refused("{\"name\": \"skin\",\n\"type\": \"anisotropic_friction\", \"level\": 1, \"field\": \"v\"}", 1, "\"surface\"");
@@ -85,5 +82,4 @@ TEST(ModePresets, ErrorsNameTheLine) {
   refused(kSkin + ",\n\"treshold\": 1}", 5, "did you mean \"threshold\"");
 }
 
-}  // namespace mode_presets_test
-}  // namespace catena::haptics::tests
+}  // namespace catena::haptics::tests::mode_presets_test

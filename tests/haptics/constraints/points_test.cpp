@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/haptics/constraints/examples.h"
 
-namespace catena::haptics::tests {
-namespace points_test {
+namespace catena::haptics::tests::points_test {
 
 curves::PointSetPtr cloud(int count, unsigned seed) {
   Random random(seed);
@@ -29,9 +28,7 @@ TEST(PointsLink, HoldsTheClosestPoint) {
     for (int i = 0; i < 20; ++i) {
       Rig rig(made);
       const Vec3 probe = random.box(1.5);
-      int ticks = 0;
-      do rig.tick(probe);
-      while (rig.state.status == LinkStatus::budget && ++ticks < 20);
+      rig.arrive(probe, 19);
       ASSERT_EQ(norm(probe - rig.state.proxy), distance_to(*fields.points["cloud"], probe)) << count;
       ASSERT_LE(rig.state.work(), kMaxWork);
     }
@@ -46,17 +43,12 @@ TEST(PointsLink, HoldsItsPointUntilReleaseAndSnapsToTheNext) {
   set->version = 999;
   fields.points["two"] = set;
   Rig rig(build(R"({"name": "a", "type": "points", "points": "two", "snap": 0.2, "release": 0.75})", fields));
-  rig.tick({0.3, 0, 0});
-  EXPECT_TRUE(rig.state.released);
-  for (const double x : {0.15, 0.6, 0.74}) {
-    rig.tick({x, 0, 0});
-    EXPECT_EQ(rig.state.proxy, Vec3(0.0)) << x;
-  }
-  rig.tick({0.77, 0, 0});
-  EXPECT_TRUE(rig.state.released);
-  rig.tick({0.85, 0, 0});
-  EXPECT_FALSE(rig.state.released);
-  EXPECT_EQ(rig.state.proxy, Vec3(1, 0, 0));
+  expect_steps(rig, {{{0.3, 0, 0}, kReleased},
+                     {{0.15, 0, 0}, kOk, {0, 0, 0}},
+                     {{0.6, 0, 0}, kOk, {0, 0, 0}},
+                     {{0.74, 0, 0}, kOk, {0, 0, 0}},
+                     {{0.77, 0, 0}, kReleased},
+                     {{0.85, 0, 0}, kOk, {1, 0, 0}}});
 }
 
 TEST(PointsLink, AMillionPointsFitTheWorkLimitOfATick) {
@@ -77,5 +69,4 @@ TEST(PointsLink, AMillionPointsFitTheWorkLimitOfATick) {
   EXPECT_GT(held, 3500);
 }
 
-}  // namespace points_test
-}  // namespace catena::haptics::tests
+}  // namespace catena::haptics::tests::points_test

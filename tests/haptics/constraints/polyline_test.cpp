@@ -1,40 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include "tests/haptics/constraints/constraint_fixture.h"
 
-namespace catena::haptics::tests {
-namespace polyline_test {
+namespace catena::haptics::tests::polyline_test {
 
 std::string polyline(const std::vector<Vec3>& points, const std::string& more = "") {
   std::string text = R"({"name": "a", "type": "polyline", "points": [)";
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    char one[96];
-    std::snprintf(one, sizeof one, "%s[%.17g, %.17g, %.17g]", i ? ", " : "", points[i].x, points[i].y, points[i].z);
-    text += one;
-  }
+  for (const Vec3& p : points) text += (&p == &points.front() ? "" : ", ") + to_json(p);
   return text + "]" + more + "}";
 }
 
 const std::string kClosed = R"(, "closed": true)";
 
-/// The closest point of all segments, in extended precision.
+/// Distance from the closest point of all segments.
 double brute_distance(const std::vector<Vec3>& points, bool closed, const Vec3& x) {
-  long double minimum = 1e300L;
-  for (std::size_t k = 0; k + (closed ? 0 : 1) < points.size(); ++k) {
-    const Vec3 &a = points[k], &b = points[(k + 1) % points.size()];
-    long double up = 0, down = 0, sum = 0;
-    for (int i = 0; i < 3; ++i) {
-      const long double d = static_cast<long double>(b[i]) - a[i];
-      up += (static_cast<long double>(x[i]) - a[i]) * d;
-      down += d * d;
-    }
-    const long double t = std::clamp(up / down, 0.0L, 1.0L);
-    for (int i = 0; i < 3; ++i) {
-      const long double e = x[i] - (a[i] + t * (static_cast<long double>(b[i]) - a[i]));
-      sum += e * e;
-    }
-    minimum = std::min(minimum, sum);
-  }
-  return static_cast<double>(std::sqrt(minimum));
+  double minimum = 1e300;
+  for (std::size_t k = 0; k + (closed ? 0 : 1) < points.size(); ++k)
+    minimum = std::min(minimum, norm(x - closest_on_segment(points[k], points[(k + 1) % points.size()], x)));
+  return minimum;
 }
 
 std::vector<Vec3> walk(Random& random, int count, double step) {
@@ -53,8 +35,7 @@ TEST(Polyline, StartsAtTheClosestPoint) {
       for (int i = 0; i < 100; ++i) {
         Rig rig(made);
         const Vec3 probe = random.box(2);
-        rig.tick(probe);
-        ASSERT_NEAR(norm(probe - rig.state.proxy), brute_distance(points, closed, probe), 2e-15);
+        ASSERT_NEAR(norm(probe - rig.tick(probe).proxy), brute_distance(points, closed, probe), 2e-15);
         ASSERT_LE(rig.state.residual, 1e-15);
         ASSERT_EQ(rig.state.status, LinkStatus::ok);
       }
@@ -72,21 +53,21 @@ TEST(Polyline, DoesNotJumpToANearerPart) {
     ASSERT_TRUE(bitwise_equal(rig.tick(probe).proxy, Vec3(probe.x, 0, 0)));
   }
   // beyond the bend the local minimum vanishes
-  EXPECT_TRUE(bitwise_equal(rig.tick({5.1, 0.1, 0}).proxy, Vec3(5, 0.1, 0)));
-  EXPECT_TRUE(bitwise_equal(rig.tick({5.1, 0.3, 0}).proxy, Vec3(5, 0.2, 0)));
-  EXPECT_TRUE(bitwise_equal(rig.tick({4, 0.01, 0}).proxy, Vec3(4, 0.2, 0)));  // now on the other part
+  expect_steps(
+      rig, {
+               {{5.1, 0.1, 0}, {}, {5, 0.1, 0}}, {{5.1, 0.3, 0}, {}, {5, 0.2, 0}}, {{4, 0.01, 0}, {}, {4, 0.2, 0}}  // now on the other part
+           });
 }
 
 TEST(Polyline, HoldsAtCornersBitForBit) {
   Rig rig(build(polyline({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}})));
   EXPECT_TRUE(bitwise_equal(rig.tick({1.2, -0.3, 0.1}).proxy, Vec3(1, 0, 0)));
   EXPECT_EQ(rig.state.residual, 0);
-  EXPECT_TRUE(bitwise_equal(rig.tick({1.4, -1e-9, 0.1}).proxy, Vec3(1, 0, 0)));
-  EXPECT_TRUE(bitwise_equal(rig.tick({1.4, 0.25, 0.1}).proxy, Vec3(1, 0.25, 0)));
-  EXPECT_TRUE(bitwise_equal(rig.tick({0.25, -0.5, 0}).proxy, Vec3(0.25, 0, 0)));
-  EXPECT_TRUE(bitwise_equal(rig.tick({-3, 0, 0}).proxy, Vec3(0, 0, 0)));  // the open end
-  EXPECT_EQ(rig.state.status, LinkStatus::ok);
-  EXPECT_TRUE(bitwise_equal(rig.tick({1, 7, 0}).proxy, Vec3(1, 1, 0)));
+  expect_steps(rig, {{{1.4, -1e-9, 0.1}, {}, {1, 0, 0}},
+                     {{1.4, 0.25, 0.1}, {}, {1, 0.25, 0}},
+                     {{0.25, -0.5, 0}, {}, {0.25, 0, 0}},
+                     {{-3, 0, 0}, kOk, {0, 0, 0}},  // the open end
+                     {{1, 7, 0}, {}, {1, 1, 0}}});
 }
 
 TEST(Polyline, LeavesACornerOnTheSteeperSide) {
@@ -123,15 +104,9 @@ TEST(Polyline, AClosedPolylineWrapsAndIsRepeatable) {
 }
 
 TEST(Polyline, OutsideAConvexPolylineTheProxyNeverMovesFurtherThanTheProbe) {
-  const std::vector<Vec3> square{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-  Rig rig(build(polyline(square, kClosed)));
-  Vec3 last_probe(2, 0, 0), last = rig.tick(last_probe).proxy;
-  for (int i = 1; i < 8000; ++i) {
-    const Vec3 probe(2 * std::cos(i * 2e-3), 2 * std::sin(i * 2e-3), 0.3 * std::sin(i * 1e-2)), proxy = rig.tick(probe).proxy;
-    ASSERT_LE(norm(proxy - last), norm(probe - last_probe) * (1 + 1e-12));
-    last = proxy;
-    last_probe = probe;
-  }
+  Rig rig(build(polyline({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, kClosed)));
+  const auto path = [](int i) { return Vec3(2 * std::cos(i * 2e-3), 2 * std::sin(i * 2e-3), 0.3 * std::sin(i * 1e-2)); };
+  expect_no_jumps(rig, 7999, path, 1 + 1e-12);
 }
 
 TEST(Polyline, RepeatedPointsAreMerged) {
@@ -154,15 +129,11 @@ TEST(Polyline, ALongWalkTakesSeveralTicksAndArrives) {
   Rig rig(build(polyline(points)));
   rig.tick({0, 0, 1});
   int ticks = 0;
-  do {
-    rig.tick({9.99995, 0, 1});
-    ++ticks;
-  } while (rig.state.status == LinkStatus::budget && ticks < 100);
+  while (++ticks < 100 && rig.tick({9.99995, 0, 1}).status == LinkStatus::budget) continue;
   EXPECT_EQ(rig.state.status, LinkStatus::ok);
   EXPECT_NEAR(ticks, 100000.0 / 4096, 2);
   EXPECT_NEAR(rig.state.proxy.x, 9.99995, 1e-4);
-  rig.tick({0.3, 0, 1});
-  EXPECT_EQ(rig.state.status, LinkStatus::budget);
+  EXPECT_EQ(rig.tick({0.3, 0, 1}).status, LinkStatus::budget);
 }
 
 TEST(Polyline, SeekFindsTheClosestPointAnywhere) {
@@ -173,16 +144,11 @@ TEST(Polyline, SeekFindsTheClosestPointAnywhere) {
   rig.tick(random.box(1));
   for (int i = 0; i < 60; ++i) {
     const Vec3 probe = random.box(1);
-    int ticks = 0;
-    do {
-      made->seek(probe, rig.state, rig.scratch);
-      ++ticks;
-    } while ((rig.state.status == LinkStatus::budget || ticks < 2) && ticks < 200);
+    for (int k = 0; k < 2 || (rig.state.status == LinkStatus::budget && k < 200); ++k) made->seek(probe, rig.state, rig.scratch);
     ASSERT_NEAR(norm(probe - rig.state.proxy), brute_distance(points, false, probe), 1e-15);
     // the point found is then followed
     const Vec3 found = rig.state.proxy;
-    rig.tick(probe);
-    ASSERT_TRUE(bitwise_equal(rig.state.proxy, found));
+    ASSERT_TRUE(bitwise_equal(rig.tick(probe).proxy, found));
   }
 }
 
@@ -205,12 +171,11 @@ TEST(Polyline, ASeekInterruptedByTheHandEnds) {
 TEST(Polyline, ReleasesAndReArmsOnAnyPart) {
   const std::vector<Vec3> hairpin{{0, 0, 0}, {5, 0, 0}, {5, 3, 0}, {0, 3, 0}};
   Rig rig(build(polyline(hairpin, R"(, "release": 0.5)")));
-  EXPECT_EQ(rig.tick({1, 0.49, 0}).status, LinkStatus::ok);
-  EXPECT_EQ(rig.tick({1, 0.5, 0}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({1, 0.051, 0}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({1, 2.949, 0}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({1, 2.951, 0}).status, LinkStatus::ok);
-  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(1, 3, 0)));
+  expect_steps(rig, {{{1, 0.49, 0}, kOk},
+                     {{1, 0.5, 0}, kReleased},
+                     {{1, 0.051, 0}, kReleased},
+                     {{1, 2.949, 0}, kReleased},
+                     {{1, 2.951, 0}, kOk, {1, 3, 0}}});
 }
 
 TEST(Polyline, APointFoundByAnUnfinishedSearchIsFollowed) {
@@ -242,29 +207,18 @@ TEST(Polyline, FarProbesGiveTheExtremePoint) {
 TEST(Polyline, ThePrimitiveIsALineAndAtACornerAPoint) {
   Rig rig(build(polyline({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}})));
   rig.tick({0.5, -0.1, 0});
-  Primitive primitive;
-  ASSERT_TRUE(rig.constraint->primitive({0.25, -0.1, 0}, rig.state, rig.scratch, primitive));
-  EXPECT_EQ(primitive.kind, Primitive::Kind::line);
-  EXPECT_TRUE(bitwise_equal(primitive.origin, Vec3(0.25, 0, 0)));
-  EXPECT_TRUE(bitwise_equal(primitive.axis, Vec3(1, 0, 0)));
-  ASSERT_TRUE(rig.constraint->primitive({1.1, -0.1, 0}, rig.state, rig.scratch, primitive));
-  EXPECT_EQ(primitive.kind, Primitive::Kind::point);
-  EXPECT_TRUE(bitwise_equal(primitive.origin, Vec3(1, 0, 0)));
+  expect_primitive(rig, {0.25, -0.1, 0}, Primitive::Kind::line, {0.25, 0, 0}, {1, 0, 0});
+  expect_primitive(rig, {1.1, -0.1, 0}, Primitive::Kind::point, {1, 0, 0});
   EXPECT_TRUE(bitwise_equal(rig.tick({0.5, -0.1, 0}).proxy, Vec3(0.5, 0, 0)));  // primitive() has not moved the proxy
 }
 
 TEST(Polyline, RefusesBadKeys) {
-  const auto one = try_build("{\"name\": \"a\", \"type\": \"polyline\",\n \"points\": [[0, 0, 0], [0, 0, 0]]}");
-  ASSERT_FALSE(one);
-  EXPECT_EQ(one.error().message.rfind("scene.json:2:", 0), 0u) << one.error().message;
-  EXPECT_FALSE(try_build(R"({"name": "a", "type": "polyline"})"));
-  EXPECT_FALSE(try_build(polyline({})));
-  EXPECT_FALSE(try_build(polyline({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}, kClosed)));
-  EXPECT_FALSE(try_build(polyline({{0, 0, 0}, {1e-305, 0, 0}})));
-  EXPECT_FALSE(try_build(polyline({{-1e308, 0, 0}, {1e308, 0, 0}})));
-  EXPECT_FALSE(try_build(polyline({{0, 0, 0}, {1, 0, 0}}, R"(, "closed": 1)")));
-  EXPECT_FALSE(try_build(R"({"name": "a", "type": "polyline", "points": [[0, 0], [1, 1]]})"));
+  expect_refused("{\"name\": \"a\", \"type\": \"polyline\",\n \"points\": [[0, 0, 0], [0, 0, 0]]}", 2, {});
+  const std::string head = R"({"name": "a", "type": "polyline")";
+  for (const std::string& bad : {head + "}", polyline({}), polyline({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}, kClosed),
+                                 polyline({{0, 0, 0}, {1e-305, 0, 0}}), polyline({{-1e308, 0, 0}, {1e308, 0, 0}}),
+                                 polyline({{0, 0, 0}, {1, 0, 0}}, R"(, "closed": 1)"), head + R"(, "points": [[0, 0], [1, 1]]})"})
+    EXPECT_FALSE(try_build(bad)) << bad;
 }
 
-}  // namespace polyline_test
-}  // namespace catena::haptics::tests
+}  // namespace catena::haptics::tests::polyline_test

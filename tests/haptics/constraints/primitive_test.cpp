@@ -2,8 +2,7 @@
 /// The linear primitives that approximate curves and surfaces at a position, for the baselines.
 #include "tests/haptics/constraints/constraint_fixture.h"
 
-namespace catena::haptics::tests {
-namespace primitive_test {
+namespace catena::haptics::tests::primitive_test {
 
 Fields with_vector(const std::string& name) {
   Fields fields;
@@ -88,5 +87,4 @@ TEST(Primitive, OfAnIsosurfaceIsTheTangentPlaneByOneSample) {
   EXPECT_EQ(flat.state.status, LinkStatus::critical);
 }
 
-}  // namespace primitive_test
-}  // namespace catena::haptics::tests
+}  // namespace catena::haptics::tests::primitive_test

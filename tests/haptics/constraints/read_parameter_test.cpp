@@ -3,13 +3,11 @@
 
 #include "tests/haptics/constraints/constraint_fixture.h"
 
-namespace catena::haptics::tests {
-namespace read_parameter_test {
+namespace catena::haptics::tests::read_parameter_test {
 
 Fields fields() {
-  Fields made;
+  Fields made = scalars({{"ball", sampled_field("sphere", 33)}});
   for (const char* name : {"plane", "constant", "gaussian"}) made.named[name].scalar = analytic_field(name);
-  made.named["ball"].scalar = sampled_field("sphere", 33);
   made.named["circle"].vector = field::make_analytic("circle")->vector;
   made.named["swirl"].vector = field::sample_on_grid(*made.named["circle"].vector, 9, -2, 2);
   return made;
@@ -105,5 +103,4 @@ TEST(ReadParameter, AReleaseFollowsAField) {
   EXPECT_EQ(higher.tick({0.29, 0, 1}).status, LinkStatus::ok);
 }
 
-}  // namespace read_parameter_test
-}  // namespace catena::haptics::tests
+}  // namespace catena::haptics::tests::read_parameter_test

@@ -5,8 +5,7 @@
 #include "haptics/constraints/presets/mode_presets.h"
 #include "tests/haptics/constraints/constraint_fixture.h"
 
-namespace catena::haptics::tests {
-namespace registry_test {
+namespace catena::haptics::tests::registry_test {
 
 TEST(Registry, TypesAreUniqueAndFound) {
   std::set<std::string> seen;
@@ -21,24 +20,10 @@ TEST(Registry, TypesAreUniqueAndFound) {
   EXPECT_EQ(find_constraint_type("spline"), nullptr);
 }
 
-TEST(Registry, UnknownTypeNamesTheKnownOnes) {
-  const auto made = try_build("{\n\"name\": \"a\",\n\"type\": \"spline\"}");
-  ASSERT_FALSE(made);
-  EXPECT_EQ(made.error().message.rfind("scene.json:3:", 0), 0u) << made.error().message;
-  EXPECT_NE(made.error().message.find("isosurface"), std::string::npos) << made.error().message;
-  EXPECT_NE(made.error().message.find("spline"), std::string::npos) << made.error().message;
-  EXPECT_EQ(made.error().message.find('\n'), std::string::npos);
-}
+TEST(Registry, UnknownTypeNamesTheKnownOnes) { expect_refused("{\n\"name\": \"a\",\n\"type\": \"spline\"}", 3, {"isosurface", "spline"}); }
 
 TEST(Registry, UnknownKeyNamesItsLine) {
-  const auto made = try_build("{\"name\": \"a\", \"type\": \"point\", \"position\": [0, 0, 0],\n\n\"positon\": 1}");
-  ASSERT_FALSE(made);
-  EXPECT_EQ(made.error().message.rfind("scene.json:3:", 0), 0u) << made.error().message;
-  EXPECT_NE(made.error().message.find("positon"), std::string::npos);
-}
-
-TEST(Registry, CommonKeysAreAccepted) {
-  EXPECT_TRUE(try_build(R"({"name": "a", "type": "point", "position": [0, 0, 0], "stiffness": 3, "active_when": {"button": 1}})"));
+  expect_refused("{\"name\": \"a\", \"type\": \"point\", \"position\": [0, 0, 0],\n\n\"positon\": 1}", 3, {"positon"});
 }
 
 TEST(Registry, SchemaIsJsonWithEveryTypeAndKey) {
@@ -60,5 +45,4 @@ TEST(Registry, SchemaIsJsonWithEveryTypeAndKey) {
   }
 }
 
-}  // namespace registry_test
-}  // namespace catena::haptics::tests
+}  // namespace catena::haptics::tests::registry_test

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "tests/haptics/constraints/constraint_fixture.h"
 
-namespace catena::haptics::tests {
-namespace sphere_test {
+namespace catena::haptics::tests::sphere_test {
 
 std::string sphere(double radius, const std::string& more = "") {
-  char text[120];
-  std::snprintf(text, sizeof text, R"({"name": "a", "type": "sphere", "center": [0, 0, 0], "radius": %.17g)", radius);
-  return text + more + "}";
+  return R"({"name": "a", "type": "sphere", "center": [0, 0, 0], "radius": )" + to_json(radius) + more + "}";
 }
 
 TEST(Sphere, IsTheClosestPoint) {
@@ -16,8 +13,7 @@ TEST(Sphere, IsTheClosestPoint) {
   Random random(2);
   for (int i = 0; i < 3000; ++i) {
     const Vec3 probe = c + random.unit() * random.uniform(1e-6, 3);
-    rig.tick(probe);
-    EXPECT_LE(norm(rig.state.proxy - (c + (probe - c) * (0.75 / norm(probe - c)))), 1e-15);
+    EXPECT_LE(norm(rig.tick(probe).proxy - (c + (probe - c) * (0.75 / norm(probe - c)))), 1e-15);
     EXPECT_LE(rig.state.residual, 1e-15);
     EXPECT_EQ(rig.state.status, LinkStatus::ok);
   }
@@ -35,66 +31,41 @@ TEST(Sphere, FarAndTinyProbesAndRadii) {
 }
 
 TEST(Sphere, TheCentreKeepsTheLastNormal) {
-  Rig rig(build(sphere(1)));
-  EXPECT_TRUE(bitwise_equal(rig.tick({0, 0, 0}).proxy, Vec3(1, 0, 0)));
-  rig.tick({0, 0, -0.3});
-  EXPECT_TRUE(bitwise_equal(rig.tick({0, 0, 0}).proxy, Vec3(0, 0, -1)));
-  EXPECT_TRUE(bitwise_equal(rig.tick({-0.0, 0, -0.0}).proxy, Vec3(0, 0, -1)));
-  EXPECT_EQ(rig.state.status, LinkStatus::ok);
+  expect_steps(sphere(1), {{{0, 0, 0}, {}, {1, 0, 0}}, {{0, 0, -0.3}}, {{0, 0, 0}, {}, {0, 0, -1}}, {{-0.0, 0, -0.0}, kOk, {0, 0, -1}}});
 }
 
 TEST(Sphere, FreeAboveIsOutsideAndFreeBelowIsInside) {
-  Rig ball(build(sphere(1, R"(, "free": "above")")));
-  EXPECT_EQ(ball.tick({1.5, 0, 0}).status, LinkStatus::free);
-  EXPECT_TRUE(bitwise_equal(ball.state.proxy, Vec3(1.5, 0, 0)));
-  EXPECT_EQ(ball.tick({0.5, 0, 0}).status, LinkStatus::ok);
-  EXPECT_TRUE(bitwise_equal(ball.state.proxy, Vec3(1, 0, 0)));
-  Rig room(build(sphere(1, R"(, "free": "below")")));
-  EXPECT_EQ(room.tick({0.5, 0, 0}).status, LinkStatus::free);
-  EXPECT_EQ(room.tick({0, 1.5, 0}).status, LinkStatus::ok);
-  EXPECT_TRUE(bitwise_equal(room.state.proxy, Vec3(0, 1, 0)));
-  EXPECT_EQ(room.tick({0, 1, 0}).status, LinkStatus::free);
+  expect_steps(sphere(1, R"(, "free": "above")"), {{{1.5, 0, 0}, kFree, {1.5, 0, 0}}, {{0.5, 0, 0}, kOk, {1, 0, 0}}});
+  expect_steps(sphere(1, R"(, "free": "below")"), {{{0.5, 0, 0}, kFree}, {{0, 1.5, 0}, kOk, {0, 1, 0}}, {{0, 1, 0}, kFree}});
 }
 
 TEST(Sphere, OneSidedReleaseAndReArm) {
-  Rig rig(build(sphere(1, R"(, "free": "above", "release": 0.25)")));
-  EXPECT_EQ(rig.tick({1.2, 0, 0}).status, LinkStatus::free);
-  EXPECT_EQ(rig.tick({0.76, 0, 0}).status, LinkStatus::ok);
-  EXPECT_EQ(rig.tick({0.75, 0, 0}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({0.99, 0, 0}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({1.01, 0, 0}).status, LinkStatus::free);
-  EXPECT_EQ(rig.tick({0.99, 0, 0}).status, LinkStatus::ok);
+  const Step steps[] = {{{1.2, 0, 0}, kFree},      {{0.76, 0, 0}, kOk},   {{0.75, 0, 0}, kReleased},
+                        {{0.99, 0, 0}, kReleased}, {{1.01, 0, 0}, kFree}, {{0.99, 0, 0}, kOk}};
+  expect_steps(sphere(1, R"(, "free": "above", "release": 0.25)"), steps);
   Rig deep(build(sphere(1, R"(, "free": "above", "release": 0.25)")));
   EXPECT_EQ(deep.tick({0.7, 0, 0}).status, LinkStatus::released);
 }
 
 TEST(Sphere, TwoSidedReleaseAndReArm) {
-  Rig rig(build(sphere(1, R"(, "release": 0.25)")));
-  EXPECT_EQ(rig.tick({0.8, 0, 0}).status, LinkStatus::ok);
-  EXPECT_EQ(rig.tick({1.3, 0, 0}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({1.026, 0, 0}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({1.024, 0, 0}).status, LinkStatus::ok);
-  EXPECT_EQ(rig.tick({1.3, 0, 0}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({0.9, 0, 0}).status, LinkStatus::ok);  // crossed the surface
-  EXPECT_EQ(rig.tick({0.7, 0, 0}).status, LinkStatus::released);
+  expect_steps(sphere(1, R"(, "release": 0.25)"), {{{0.8, 0, 0}, kOk},
+                                                   {{1.3, 0, 0}, kReleased},
+                                                   {{1.026, 0, 0}, kReleased},
+                                                   {{1.024, 0, 0}, kOk},
+                                                   {{1.3, 0, 0}, kReleased},
+                                                   {{0.9, 0, 0}, kOk},  // crossed the surface
+                                                   {{0.7, 0, 0}, kReleased}});
   // in and out within one tick, then held at the closest point
   Rig passed(build(sphere(0.1, R"(, "release": 0.25)")));
-  passed.tick({0.2, 0, 0});
-  EXPECT_EQ(passed.tick({0.5, 0.05, 0}).status, LinkStatus::released);
-  EXPECT_EQ(passed.tick({-0.3, 0.05, 0}).status, LinkStatus::ok);
+  expect_steps(passed, {{{0.2, 0, 0}}, {{0.5, 0.05, 0}, kReleased}, {{-0.3, 0.05, 0}, kOk}});
   EXPECT_LE(norm(passed.state.proxy - direction(Vec3(-0.3, 0.05, 0)) * 0.1), 1e-16);
 }
 
 TEST(Sphere, TheForceIsContinuousFromOutsideAndInside) {
   for (const double distance : {0.6, 1.7}) {
     Rig rig(build(sphere(1)));
-    Vec3 last = rig.tick({distance, 0, 0}).proxy;
-    for (int i = 1; i < 4000; ++i) {
-      const Vec3 probe = direction(Vec3(std::cos(i * 0.003), std::sin(i * 0.003), std::sin(i * 0.001))) * distance;
-      const Vec3 proxy = rig.tick(probe).proxy;
-      ASSERT_LE(norm(proxy - last), 0.0045) << i;
-      last = proxy;
-    }
+    const auto path = [&](int i) { return direction(Vec3(std::cos(i * 0.003), std::sin(i * 0.003), std::sin(i * 0.001))) * distance; };
+    expect_no_jumps(rig, 3999, path, 0, 0.0045);
   }
 }
 
@@ -131,21 +102,14 @@ TEST(Sphere, CuttingACapOrPassingBesideIsFree) {
 
 TEST(Sphere, ThePrimitiveIsTheTangentPlane) {
   Rig rig(build(sphere(2, R"(, "free": "above")")));
-  Primitive primitive;
   rig.tick({0, 1.9, 0});
-  ASSERT_TRUE(rig.constraint->primitive({0, 0, 1}, rig.state, rig.scratch, primitive));
-  EXPECT_EQ(primitive.kind, Primitive::Kind::plane);
-  EXPECT_TRUE(bitwise_equal(primitive.origin, Vec3(0, 0, 2)));
-  EXPECT_TRUE(bitwise_equal(primitive.axis, Vec3(0, 0, 1)));
+  expect_primitive(rig, {0, 0, 1}, Primitive::Kind::plane, {0, 0, 2}, {0, 0, 1});
 }
 
 TEST(Sphere, RefusesBadKeys) {
-  EXPECT_FALSE(try_build(sphere(0)));
-  EXPECT_FALSE(try_build(sphere(-1)));
-  EXPECT_FALSE(try_build(sphere(1, R"(, "free": "left")")));
-  EXPECT_FALSE(try_build(sphere(1, R"(, "colour": 1)")));
-  EXPECT_FALSE(try_build(R"({"name": "a", "type": "sphere", "radius": 1})"));
+  for (const std::string& bad : {sphere(0), sphere(-1), sphere(1, R"(, "free": "left")"), sphere(1, R"(, "colour": 1)"),
+                                 std::string(R"({"name": "a", "type": "sphere", "radius": 1})")})
+    EXPECT_FALSE(try_build(bad)) << bad;
 }
 
-}  // namespace sphere_test
-}  // namespace catena::haptics::tests
+}  // namespace catena::haptics::tests::sphere_test

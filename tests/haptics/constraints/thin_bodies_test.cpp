@@ -3,8 +3,7 @@
 // the hand and any rate.
 #include "tests/haptics/constraints/constraint_fixture.h"
 
-namespace catena::haptics::tests {
-namespace thin_bodies_test {
+namespace catena::haptics::tests::thin_bodies_test {
 
 constexpr double kReleaseAt = 0.3;
 
@@ -60,9 +59,8 @@ void push(const ConstraintPtr& link, const Shell& shell, const Vec3& way, double
     ASSERT_TRUE(rig.state.status == LinkStatus::ok || rig.state.status == LinkStatus::budget)
         << what << ": " << to_string(rig.state.status) << " at a depth of " << 0.5 * shell.thickness - shell.height(x);
     ASSERT_LT(norm(rig.state.proxy - x), kReleaseAt) << what;
-    if (rig.state.status == LinkStatus::ok) {
-      ASSERT_GT(dot(rig.state.proxy - x, shell.up(rig.state.proxy)), -1e-9) << what << ": held by the far side";
-    }
+    const bool on_far_side = dot(rig.state.proxy - x, shell.up(rig.state.proxy)) <= -1e-9;
+    ASSERT_FALSE(rig.state.status == LinkStatus::ok && on_far_side) << what;
   }
   FAIL() << what << ": it never let go";
 }
@@ -79,16 +77,13 @@ TEST_P(ThinBodies, HoldOnTheirFrontSheet) {
     const double step = speed / rate, fast = std::max(step, 0.01);
     const Vec3 way = direction(direction(cross(shell.outward, random.unit())) * random.uniform(0, 0.6) - shell.outward);
     const double slow = std::max(step, shell.thickness / 500);
-    Fields fields;
     const double voxel = shell.thickness * random.uniform(0.6, 3);
     const std::string what = fmt::format("{}: thickness {:.4f}, radius {:.2f}, voxel {:.4f}, {:.3f} m/s at {} Hz", i, shell.thickness,
                                          shell.radius, voxel, speed, rate);
-    fields.named["f"].scalar = std::make_shared<ShellFormula>(shell);
     const auto in_shell = [&](const Vec3& x) { return shell.value(x) > 1e-6; };
-    const std::string rules = fmt::format(R"(, "release": {})", kReleaseAt);
+    const std::string rules = fmt::format(R"(, "release": {})", kReleaseAt), below = R"(, "free": "below")" + rules;
     if (GetParam() == 0) {
-      push(build(R"({"name": "a", "type": "isosurface", "field": "f", "level": 0, "free": "below")" + rules + "}", fields), shell, way,
-           slow, fast, 1 / rate, in_shell, "formula " + what);
+      push(isosurface(std::make_shared<ShellFormula>(shell), 0, below), shell, way, slow, fast, 1 / rate, in_shell, "formula " + what);
     } else if (GetParam() == 1) {
       // a grid along its own axes, fine enough across the body to contain it
       if (voxel < 0.012) continue;
@@ -96,23 +91,20 @@ TEST_P(ThinBodies, HoldOnTheirFrontSheet) {
       const double edge = std::max(voxel, 0.7 / 40);
       if (shell.thickness < 1.2 * edge) shell.thickness = 1.2 * edge;
       const auto mapping = field::Mapping::from_linear(Mat3(edge), Vec3(-edge * half));
-      fields.named["g"].scalar =
+      const auto grid =
           sample_scalar_grid(mapping, {2 * half + 1, 2 * half + 1, 2 * half + 1}, [&](const Vec3& x) { return shell.value(x); });
-      push(
-          build(R"({"name": "a", "type": "isosurface", "field": "g", "level": 0, "free": "below")" + rules + "}", fields), shell, way, slow,
-          fast, 1 / rate,
-          [&](const Vec3& x) {
-            field::Cursor cursor;
-            return fields.named["g"].scalar->sample(x, cursor).value > 1e-6;
-          },
-          "grid " + what);
+      const auto in_grid = [&](const Vec3& x) {
+        field::Cursor cursor;
+        return grid->sample(x, cursor).value > 1e-6;
+      };
+      push(isosurface(grid, 0, below), shell, way, slow, fast, 1 / rate, in_grid, "grid " + what);
     } else {
       shell.radius = std::numeric_limits<double>::infinity();
-      Vec3 a = direction(cross(shell.outward, random.unit()));
-      const Vec3 b = cross(shell.outward, a);
+      const Vec3 a = direction(cross(shell.outward, random.unit()));
+      const Mat3 rows = glm::transpose(Mat3(a, cross(shell.outward, a), shell.outward));
       const std::string box = fmt::format(
-          R"({{"name": "a", "type": "box", "center": [0, 0, 0], "size": [3, 3, {}], "rotation": [{}, {}, {}, {}, {}, {}, {}, {}, {}], "free": "above"{}}})",
-          shell.thickness, a.x, b.x, shell.outward.x, a.y, b.y, shell.outward.y, a.z, b.z, shell.outward.z, rules);
+          R"({{"name": "a", "type": "box", "center": [0, 0, 0], "size": [3, 3, {}], "rotation": [{}, {}, {}], "free": "above"{}}})",
+          shell.thickness, to_json(rows[0]), to_json(rows[1]), to_json(rows[2]), rules);
       push(build(box), shell, way, slow, fast, 1 / rate, in_shell, "box " + what);
     }
     if (HasFatalFailure()) return;
@@ -125,11 +117,10 @@ INSTANTIATE_TEST_SUITE_P(Of, ThinBodies, testing::Values(0, 1, 2));
 TEST(ThinBodies, AFastHandIsHeldByAnyThickness) {
   Random random(7);
   for (int i = 0; i < 300; ++i) {
-    Fields fields;
     const double peak = std::pow(10, random.uniform(-4, -0.5));  // the body's thickness is 2 peak voxels
     const auto mapping = field::Mapping::from_linear(Mat3(0.1), Vec3(-1.0));
-    fields.named["f"].scalar = sample_scalar_grid(mapping, {21, 21, 21}, [&](const Vec3& x) { return peak - std::fabs(x.z) / 0.1; });
-    Rig rig(build(R"({"name": "a", "type": "isosurface", "field": "f", "level": 0, "free": "below"})", fields));
+    const auto body = sample_scalar_grid(mapping, {21, 21, 21}, [&](const Vec3& x) { return peak - std::fabs(x.z) / 0.1; });
+    Rig rig(isosurface(body, 0, R"(, "free": "below")"));
     rig.state.max_probe_step = 0.2;
     const double before = random.uniform(0.001, 0.03), after = random.uniform(0.001, 0.03);
     const Vec3 place(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), 0),
@@ -147,11 +138,10 @@ TEST(ThinBodies, AFastHandIsHeldBeforeMaskedCellsAndNonFiniteValues) {
   for (const bool masked : {true, false}) {
     std::vector<std::uint8_t> valid;
     for (int i = 0; i < 21 * 21 * 21; ++i) valid.push_back(i / (21 * 21) >= 9);
-    Fields fields;
-    fields.named["f"].scalar = sample_scalar_grid(
+    const auto grid = sample_scalar_grid(
         mapping, {21, 21, 21}, [&](const Vec3& x) { return !masked && x.z < -0.15 ? std::nan("") : x.z; },
         masked ? valid : std::vector<std::uint8_t>{});
-    Rig rig(build(R"({"name": "a", "type": "isosurface", "field": "f", "level": 0, "free": "above"})", fields));
+    Rig rig(isosurface(grid, 0, R"(, "free": "above")"));
     rig.state.max_probe_step = 0.5;
     rig.tick({0.1, 0.2, 0.14});
     ASSERT_EQ(rig.tick({0.12, 0.2, -0.3}).status, LinkStatus::ok) << masked;
@@ -169,9 +159,7 @@ TEST(ThinBodies, AHandsStepNeverJumpsToAnotherBody) {
       const double radius = 0.35, centre = radius + random.uniform(0.15, 0.4) / 2;
       const auto balls = [&](const Vec3& x) { return std::min(norm(x - Vec3(-centre, 0, 0)), norm(x - Vec3(centre, 0, 0))) - radius; };
       const auto grid = sample_scalar_grid(field::Mapping::from_linear(Mat3(0.13), Vec3(-1.5)), {24, 24, 24}, balls);
-      Fields fields;
-      fields.named["f"].scalar = i % 800 ? *grid->as_cubic() : grid;
-      link = build(R"({"name": "a", "type": "isosurface", "field": "f", "level": 0})", fields);
+      link = isosurface(i % 800 ? *grid->as_cubic() : grid, 0);
     }
     Rig rig(link);
     rig.state.max_probe_step = 1;
@@ -179,13 +167,11 @@ TEST(ThinBodies, AHandsStepNeverJumpsToAnotherBody) {
     if (rig.tick(x); !(rig.state.proxy.x < 0)) continue;
     const Vec3 way = direction(Vec3(1, random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4))) * random.uniform(0.1, 0.5);
     for (int k = 0; k < 10; ++k) {
-      rig.tick(x += k < 5 ? way : -way);
-      ASSERT_LT(rig.state.proxy.x, 0) << i << " " << k;
+      ASSERT_LT(rig.tick(x += k < 5 ? way : -way).proxy.x, 0) << i << " " << k;
     }
     ++stayed;
   }
   EXPECT_GT(stayed, 3000);
 }
 
-}  // namespace thin_bodies_test
-}  // namespace catena::haptics::tests
+}  // namespace catena::haptics::tests::thin_bodies_test

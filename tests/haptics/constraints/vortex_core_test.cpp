@@ -4,8 +4,7 @@
 #include "tests/haptics/constraints/constraint_fixture.h"
 #include "tests/support/support.h"
 
-namespace catena::haptics::tests {
-namespace vortex_core_test {
+namespace catena::haptics::tests::vortex_core_test {
 
 ConstraintPtr core_of(field::VectorFieldPtr field, const std::string& more = "") {
   Fields fields;
@@ -22,8 +21,7 @@ TEST(VortexCore, OfStraightVorticesIsTheZAxis) {
       Rig rig(core_of(formula(name, scale), R"(, "search_radius": 0.6)"));
       for (int i = 0; i < 100; ++i) {
         const Vec3 x(random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(-1.5, 1.5));
-        rig.tick(x);
-        ASSERT_EQ(rig.state.status, LinkStatus::ok) << name << " " << scale << " " << i;
+        ASSERT_EQ(rig.tick(x).status, LinkStatus::ok) << name << " " << scale << " " << i;
         ASSERT_LE(norm(rig.state.proxy - Vec3(0, 0, x.z)), 4e-12 * 4) << name << " " << scale;
         ASSERT_LE(rig.state.residual, 4e-12);
         ASSERT_EQ(rig.state.limit, 0.6);
@@ -33,22 +31,17 @@ TEST(VortexCore, OfStraightVorticesIsTheZAxis) {
 
 TEST(VortexCore, TheTubeIsFreeInsideAndHoldsOutside) {
   Rig rig(core_of(formula("helix"), R"(, "radius": 0.2)"));
-  rig.tick({0.1, -0.1, 0.3});
-  EXPECT_EQ(rig.state.status, LinkStatus::free);
-  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.1, -0.1, 0.3)));
+  expect_steps(rig, {{{0.1, -0.1, 0.3}, kFree, {0.1, -0.1, 0.3}}});
   EXPECT_TRUE(rig.state.active());
   for (int i = 0; i < 100; ++i) {
     const double a = 0.0628 * i;
     const Vec3 out(std::cos(a), std::sin(a), 0);
     const Vec3 x = out * 0.35 + Vec3(0, 0, 0.01 * i);
-    rig.tick(x);
-    ASSERT_EQ(rig.state.status, LinkStatus::ok);
+    ASSERT_EQ(rig.tick(x).status, LinkStatus::ok);
     ASSERT_LE(norm(rig.state.proxy - (out * 0.2 + Vec3(0, 0, 0.01 * i))), 1e-11);
   }
   // too far from the core (0.1 L = 0.4)
-  rig.tick({0.41, 0, 0});
-  EXPECT_EQ(rig.state.status, LinkStatus::no_surface);
-  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.41, 0, 0)));
+  expect_steps(rig, {{{0.41, 0, 0}, LinkStatus::no_surface, {0.41, 0, 0}}});
 }
 
 TEST(VortexCore, OfHillsVortexIsARing) {
@@ -58,8 +51,7 @@ TEST(VortexCore, OfHillsVortexIsARing) {
   for (int i = 0; i < 2000; ++i) {
     const double a = 0.02 * i, r = 0.7 + random.uniform(-0.15, 0.15), z = random.uniform(-0.15, 0.15);
     const Vec3 x(r * std::cos(a), r * std::sin(a), z);
-    rig.tick(x);
-    ASSERT_EQ(rig.state.status, LinkStatus::ok) << i;
+    ASSERT_EQ(rig.tick(x).status, LinkStatus::ok) << i;
     const Vec3 ring = Vec3(std::cos(a), std::sin(a), 0) * std::sqrt(0.5);
     ASSERT_LE(norm(rig.state.proxy - ring), 1e-9) << i;
   }
@@ -76,8 +68,7 @@ TEST(VortexCore, OfASampledTiltedVortexIsItsAxis) {
   for (int i = 0; i < 300; ++i) {
     const double s = random.uniform(-0.5, 0.5);
     const Vec3 off = cross(w, random.unit()) * 0.3, x = c + w * s + off;
-    rig.tick(x);
-    ASSERT_EQ(rig.state.status, LinkStatus::ok) << i;
+    ASSERT_EQ(rig.tick(x).status, LinkStatus::ok) << i;
     ASSERT_LE(norm(rig.state.proxy - (c + w * s)), 2e-6) << i;
   }
 }
@@ -95,8 +86,7 @@ TEST(VortexCore, HoldsOnAGridInEveryTick) {
             const double t = 0.2 * i, a = 0.1 * static_cast<double>(5 * k) + 0.1 * i;
             const Vec3 x = known.points[k] * (1 - t) + known.points[k + 1] * t + Vec3(std::cos(a), std::sin(a), std::sin(2 * a)) * 0.05;
             const Vec3 before = rig.state.proxy;
-            rig.tick(x);
-            ASSERT_EQ(rig.state.status, LinkStatus::ok) << known.name << " " << cubic << " " << noise << " " << k;
+            ASSERT_EQ(rig.tick(x).status, LinkStatus::ok) << known.name << " " << cubic << " " << noise << " " << k;
             ASSERT_LE(norm(rig.state.proxy - known.nearest_point(rig.state.proxy)), 2.4 / 32) << "within a voxel";
             if (k > 10) longest = std::max(longest, norm(rig.state.proxy - before));
           }
@@ -133,8 +123,7 @@ TEST(VortexCore, GivesNoForceWhereEveryPointIsACore) {
   Rig rig(core_of(formula("abc"), R"(, "criterion": "vorticity", "search_radius": 2)"));
   for (int i = 0; i < 20; ++i) {
     const Vec3 x(0.1 * i - 1, 0.3, 0.2);
-    rig.tick(x);
-    EXPECT_EQ(rig.state.status, LinkStatus::critical);
+    EXPECT_EQ(rig.tick(x).status, LinkStatus::critical);
     EXPECT_EQ(rig.state.reason, SampleStatus::parallel);
     EXPECT_TRUE(bitwise_equal(rig.state.proxy, x));
   }
@@ -150,8 +139,7 @@ TEST(VortexCore, WithoutSwirlTheProbePassesThrough) {
         Rig rig(core_of(sampled ? field::sample_on_grid(*field, 17, -2, 2) : field));
         for (int i = 0; i < 50; ++i) {
           const Vec3 x = random.box(1.9);
-          rig.tick(x);
-          ASSERT_EQ(rig.state.status, LinkStatus::no_surface) << name << " " << scale << " " << sampled;
+          ASSERT_EQ(rig.tick(x).status, LinkStatus::no_surface) << name << " " << scale << " " << sampled;
           ASSERT_TRUE(bitwise_equal(rig.state.proxy, x));
         }
       }
@@ -163,18 +151,15 @@ TEST(VortexCore, EndsAtTheDomainBoundary) {
   EXPECT_EQ(rig.state.status, LinkStatus::boundary);
   EXPECT_LE(norm(rig.state.proxy - Vec3(0, 0, 2)), 0.02);
   EXPECT_LE(rig.state.proxy.z, 2);
-  rig.tick({0.1, 0.05, 1.9});
-  EXPECT_EQ(rig.state.status, LinkStatus::ok);
+  EXPECT_EQ(rig.tick({0.1, 0.05, 1.9}).status, LinkStatus::ok);
   EXPECT_LE(norm(rig.state.proxy - Vec3(0, 0, 1.9)), 1e-6);
 }
 
 TEST(VortexCore, SnapsAndReleases) {
   Rig rig(core_of(formula("helix"), R"(, "search_radius": 1, "snap": 0.1, "release": 0.3)"));
-  EXPECT_EQ(rig.tick({0.2, 0, 0}).status, LinkStatus::released);
-  EXPECT_EQ(rig.tick({0.09, 0, 0.2}).status, LinkStatus::ok);
+  expect_steps(rig, {{{0.2, 0, 0}, kReleased}, {{0.09, 0, 0.2}, kOk}});
   EXPECT_LE(norm(rig.state.proxy - Vec3(0, 0, 0.2)), 1e-11);
-  EXPECT_EQ(rig.tick({0.29, 0, 0.2}).status, LinkStatus::ok);
-  EXPECT_EQ(rig.tick({0.31, 0, 0.2}).status, LinkStatus::released);
+  expect_steps(rig, {{{0.29, 0, 0.2}, kOk}, {{0.31, 0, 0.2}, kReleased}});
 }
 
 TEST(VortexCore, AnotherCoreHoldsAfterOneReleasedTick) {
@@ -217,26 +202,22 @@ TEST(VortexCore, OnRealDataIsBoundedAndRests) {
   Rig rig(core_of(velocity, R"(, "search_radius": 1)"));
   Random random(5);
   const field::Box& box = velocity->index_box();
-  Quantiles work;
+  int max_work = 0;
   int held = 0, ticks = 0;
   for (int walk = 0; walk < 200; ++walk) {
     Vec3 x = velocity->mapping().world_from_index(
         {random.uniform(box.lo.x, box.hi.x), random.uniform(box.lo.y, box.hi.y), random.uniform(box.lo.z, box.hi.z)});
     const Vec3 way = random.unit() * 0.01;
     for (int i = 0; i < 100; ++i, x += way, ++ticks) {
-      rig.tick(x);
-      ASSERT_TRUE(is_finite(rig.state.proxy));
-      work.add(rig.state.work());
+      ASSERT_TRUE(is_finite(rig.tick(x).proxy));
+      max_work = std::max(max_work, rig.state.work());
       held += rig.state.status != LinkStatus::no_surface;
       if (i % 10 > 0 || rig.state.status == LinkStatus::released) continue;
       const Vec3 rest = rig.state.proxy;
-      rig.tick(x);
-      ASSERT_TRUE(bitwise_equal(rig.state.proxy, rest));
+      ASSERT_TRUE(bitwise_equal(rig.tick(x).proxy, rest));
     }
   }
-  std::printf("combustor: held %.1f %%, work p50 %d p99 %d max %d\n", 100.0 * held / ticks, work.at_quantile(0.5), work.at_quantile(0.99),
-              work.at_quantile(1));
-  EXPECT_LE(work.at_quantile(1), kMaxWork);
+  EXPECT_LE(max_work, kMaxWork);
   EXPECT_GT(held, ticks / 100);
 }
 
@@ -252,22 +233,16 @@ TEST(VortexCore, ThePrimitiveInTheBaselinesIsALine) {
 }
 
 TEST(VortexCore, RefusesBadKeys) {
-  Fields fields;
+  Fields fields = scalars({{"s", analytic_field("sphere")}});
   fields.named["v"].vector = formula("helix");
-  fields.named["s"].scalar = analytic_field("sphere");
-  const auto fails = [&](const std::string& keys, const char* part) {
-    const auto made = try_build("{\"name\": \"a\", \"type\": \"vortex_core\",\n" + keys + "}", fields);
-    ASSERT_FALSE(made) << keys;
-    EXPECT_EQ(made.error().message.rfind("scene.json:2:", 0), 0u) << made.error().message;
-    EXPECT_NE(made.error().message.find(part), std::string::npos) << made.error().message;
-  };
-  fails(R"("field": "s")", "vector field");
-  fails(R"("field": "v", "radius": -1)", "radius");
-  fails(R"("field": "v", "search_radius": 0)", "search");
-  fails(R"("field": "v", "criterion": "q")", "sujudi-haimes");
-  fails(R"("field": "v", "least_swirl": 2)", "least_swirl");
-  fails(R"("field": "v", "radius": 0.3, "search_radius": 0.3)", "> \"radius\"");
+  const std::pair<const char*, const char*> bad[] = {{R"("field": "s")", "vector field"},
+                                                     {R"("field": "v", "radius": -1)", "radius"},
+                                                     {R"("field": "v", "search_radius": 0)", "search"},
+                                                     {R"("field": "v", "criterion": "q")", "sujudi-haimes"},
+                                                     {R"("field": "v", "least_swirl": 2)", "least_swirl"},
+                                                     {R"("field": "v", "radius": 0.3, "search_radius": 0.3)", "> \"radius\""}};
+  for (const auto& [keys, what] : bad)
+    expect_refused("{\"name\": \"a\", \"type\": \"vortex_core\",\n" + std::string(keys) + "}", 2, {what}, fields);
 }
 
-}  // namespace vortex_core_test
-}  // namespace catena::haptics::tests
+}  // namespace catena::haptics::tests::vortex_core_test

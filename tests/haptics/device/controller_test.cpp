@@ -6,16 +6,12 @@
 
 #include <cmath>
 #include <random>
-#include <thread>
 
 #include "haptics/servo/device_limits.h"
 #include "haptics/servo/servo_tick.h"
 #include "tests/support/simple_links.h"
 
-namespace controller_test {
-
-using namespace catena;
-using namespace catena::haptics;
+namespace catena::haptics::controller_test {
 
 std::int64_t clock_ns = 0;
 constexpr std::int64_t kTick_ns = 1'000'000;
@@ -156,21 +152,4 @@ TEST(Controller, AfterAReturnTheForceRampsInWithoutAVibration) {
       << "the slope of the ramp, no contact of 5 N";
 }
 
-TEST(Controller, PosesAreNeverTornBetweenThreads) {
-  TrackedController controller({.clock = [] { return std::int64_t{1} << 40; }});
-  constexpr int kPoses = 20000;
-  std::thread tracker([&] {
-    for (int i = 1; i <= kPoses; ++i)
-      controller.push_pose({(std::int64_t{1} << 40) + i, Vec3(static_cast<double>(i)), kIdentityRotation, static_cast<std::uint32_t>(i)});
-  });
-  std::uint32_t last = 0;
-  while (last < kPoses) {
-    const DeviceInput input = controller.read();
-    ASSERT_EQ(input.position_m.x, input.position_m.z);
-    ASSERT_GE(input.buttons, last);
-    last = input.buttons;
-  }
-  tracker.join();
-}
-
-}  // namespace controller_test
+}  // namespace catena::haptics::controller_test

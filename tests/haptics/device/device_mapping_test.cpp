@@ -10,30 +10,35 @@
 #include "haptics/device/registry.h"
 #include "tests/haptics/device/scripted_device.h"
 
-namespace device_mapping_test {
-
-using namespace catena;
-using namespace catena::haptics;
+namespace catena::haptics::device_mapping_test {
 
 // hand x = device z, hand y = -device x, hand z = -device y
-Mat3 axes() {
-  Mat3 m(0.0);
-  m[2][0] = 1;
-  m[0][1] = -1;
-  m[1][2] = -1;
-  return m;
-}
+const Mat3 kAxes(Vec3(0, -1, 0), Vec3(0, 0, -1), Vec3(1, 0, 0));
+
+/// The settings of a mapping.
+struct Mapping {
+  Mat3 workspace_from_device{1.0};
+  double scale = 1;
+  int clutch_button = 0, force_button = 0;
+  Vec3 gravity_n{0.0};
+  DeviceSettings settings() const {
+    DeviceSettings s;
+    std::tie(s.workspace_from_device, s.scale, s.clutch_button, s.force_button, s.gravity_n) =
+        std::tie(workspace_from_device, scale, clutch_button, force_button, gravity_n);
+    return s;
+  }
+};
 
 struct Mapped {
   test::ScriptedDevice* device;
   std::unique_ptr<MappedDevice> map;
-  explicit Mapped(const DeviceSettings& settings, bool oriented = true) {
+  explicit Mapped(const Mapping& mapping, bool oriented = true) {
     auto made = std::make_unique<test::ScriptedDevice>();
     device = made.get();
     device->caps.has_orientation = oriented;
     device->caps.mechanics = {0.2, 0.4, 0.1, 5e-5, 1e-3, 0};
     device->caps.workspace_center_m = {0.01, 0.02, 0.03};
-    map = std::make_unique<MappedDevice>(std::move(made), settings);
+    map = std::make_unique<MappedDevice>(std::move(made), mapping.settings());
   }
   DeviceInput at(const Vec3& p, std::uint32_t buttons = 0, const Quat& q = kIdentityRotation) {
     device->input.position_m = p;
@@ -56,18 +61,14 @@ TEST(MappedDevice, DefaultSettingsNeedNoMapping) {
   EXPECT_TRUE(is_identity_mapping(made->caps, DeviceSettings{}));
   const Device* plain = made.get();
   EXPECT_EQ(with_device_mapping(std::move(made), DeviceSettings{}).get(), plain);
-  DeviceSettings s;
-  s.scale = 2;
-  EXPECT_FALSE(is_identity_mapping(DeviceCapabilities{}, s));
+  EXPECT_FALSE(is_identity_mapping(DeviceCapabilities{}, Mapping{.scale = 2}.settings()));
   DeviceCapabilities encoded;
   encoded.mechanics.encoder_step_m = 1e-5;
   EXPECT_FALSE(is_identity_mapping(encoded, DeviceSettings{}));
 }
 
 TEST(MappedDevice, UnmappedValuesPassUnchangedBitForBit) {
-  DeviceSettings s;
-  s.clutch_button = 1;
-  Mapped run(s);
+  Mapped run({.clutch_button = 1});
   const double tiny = std::numeric_limits<double>::denorm_min();
   const Vec3 p(-0.0, tiny, 1e300), f(-0.0, -tiny, 7.1), torque(0.1, -0.0, 3);
   const Quat q(0.3, -0.0, 0.7, 0.1);  // not a unit quaternion
@@ -80,29 +81,12 @@ TEST(MappedDevice, UnmappedValuesPassUnchangedBitForBit) {
   EXPECT_EQ(std::memcmp(&run.device->output.torque_nm, &torque, sizeof torque), 0);
 }
 
-TEST(MappedDevice, AForceButtonHeldWhenTheDeviceReturnsIsNotAPress) {
-  DeviceSettings settings;
-  settings.force_button = 1;
-  Mapped run(settings);
-  run.at(Vec3(0.0));
-  EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);
-  run.at(Vec3(0.0));
-  run.device->input.status = DeviceStatus::lost;
-  EXPECT_FALSE(run.at(Vec3(0.0)).forces_on);
-  run.device->input.status = DeviceStatus::ready;
-  EXPECT_FALSE(run.at(Vec3(0.0), 1).forces_on) << "pressed while nobody looked";
-  run.at(Vec3(0.0));
-  EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);
-}
-
 TEST(MappedDevice, AxesRotateThePoseAndInverselyTheForce) {
-  DeviceSettings s;
-  s.workspace_from_device = axes();
-  Mapped run(s);
+  Mapped run({.workspace_from_device = kAxes});
   const Quat tool = rotation_from_vector({0.3, -0.2, 0.5});
   const DeviceInput in = run.at({1, 2, 3}, 0, tool);
   expect_near(in.position_m, {3, -1, -2});
-  for (const Vec3& v : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) expect_near(rotate(in.orientation, v), axes() * rotate(tool, v));
+  for (const Vec3& v : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) expect_near(rotate(in.orientation, v), kAxes * rotate(tool, v));
   run.map->write({{1, 2, 3}, {4, 5, 6}});
   expect_near(run.device->output.force_n, {-2, -3, 1});
   expect_near(run.device->output.torque_nm, {-5, -6, 4});
@@ -112,29 +96,21 @@ TEST(MappedDevice, AxesRotateThePoseAndInverselyTheForce) {
 }
 
 TEST(MappedDevice, ADeviceWithoutOrientationStaysWithoutOne) {
-  DeviceSettings s;
-  s.workspace_from_device = axes();
-  s.clutch_button = 1;
-  Mapped run(s, false);
+  Mapped run({.workspace_from_device = kAxes, .clutch_button = 1}, false);
   EXPECT_EQ(run.at({1, 2, 3}).orientation, kIdentityRotation);
   run.at({1, 2, 4}, 1);
   EXPECT_EQ(run.at({1, 2, 5}).orientation, kIdentityRotation);
 }
 
 TEST(MappedDevice, ScaleKeepsTheForceAndScalesTheWorkspace) {
-  DeviceSettings s;
-  s.scale = 4;
-  Mapped run(s);
+  Mapped run({.scale = 4});
   expect_near(run.at({0.01, 0, 0}).position_m, {0.04, 0, 0});
   expect_near(run.force({1, 0, 0}), {1, 0, 0});
   EXPECT_EQ(run.map->capabilities().workspace_m, 4 * run.device->caps.workspace_m);
 }
 
 TEST(MappedDevice, TheClutchHoldsTheProbeAndKeepsTheOffset) {
-  DeviceSettings s;
-  s.clutch_button = 2;
-  s.scale = 2;
-  Mapped run(s);
+  Mapped run({.scale = 2, .clutch_button = 2});
   const Quat a = rotation_from_vector({0, 0, 0.5}), b = rotation_from_vector({0.3, 0, 0.2});
   run.at({0.1, 0, 0}, 0, a);
   for (const double x : {0.1, 0.05, -0.2}) {
@@ -161,43 +137,40 @@ TEST(MappedDevice, TheClutchHoldsTheProbeAndKeepsTheOffset) {
 }
 
 TEST(MappedDevice, AClutchHeldAtTheStartHoldsTheFirstPosition) {
-  DeviceSettings s;
-  s.clutch_button = 1;
-  Mapped run(s);
+  Mapped run({.clutch_button = 1});
   expect_near(run.at({0.3, 0, 0}, 1).position_m, {0.3, 0, 0});
   expect_near(run.at({0.1, 0, 0}, 1).position_m, {0.3, 0, 0});
   expect_near(run.at({0.1, 0, 0}, 0).position_m, {0.3, 0, 0});
 }
 
 TEST(MappedDevice, TheForceSwitchIsOffAtTheStartAndAfterALoss) {
-  DeviceSettings s;
-  s.force_button = 1;
-  Mapped run(s);
-  EXPECT_FALSE(run.at(Vec3(0.0), 1).forces_on);  // a button held from the start is not a press
-  EXPECT_FALSE(run.at(Vec3(0.0), 0).forces_on);
-  EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);
-  EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);  // toggled by the edge, not the level
-  EXPECT_TRUE(run.at(Vec3(0.0), 0).forces_on);
-  EXPECT_EQ(run.at(Vec3(0.0), 2).buttons, 2u);
-  EXPECT_FALSE(run.at(Vec3(0.0), 3).forces_on);
-  EXPECT_EQ(run.at(Vec3(0.0), 3).buttons, 2u);
-  run.at(Vec3(0.0), 0);
-  EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);
-  run.device->input.status = DeviceStatus::lost;
-  EXPECT_EQ(run.at(Vec3(0.0), 0).status, DeviceStatus::lost);
-  run.device->input.status = DeviceStatus::ready;
-  EXPECT_FALSE(run.at(Vec3(0.0), 0).forces_on);
-  EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);
+  struct Step {
+    std::uint32_t pressed;
+    bool forces_on;
+    const char* why = "";
+    DeviceStatus status = DeviceStatus::ready;
+  };
+  constexpr DeviceStatus lost = DeviceStatus::lost;
+  Mapped run({.force_button = 1});
+  for (const Step& step :
+       {Step{1, false, "a button held from the start is not a press"}, Step{0, false}, Step{1, true},
+        Step{1, true, "toggled by the edge, not the level"}, Step{0, true}, Step{2, true}, Step{3, false}, Step{3, false}, Step{0, false},
+        Step{1, true}, Step{0, false, "a loss", lost}, Step{0, false}, Step{1, true}, Step{0, true}, Step{0, false, "a loss", lost},
+        Step{1, false, "pressed while nobody looked"}, Step{0, false}, Step{1, true}}) {
+    SCOPED_TRACE(step.why);
+    run.device->input.status = step.status;
+    const DeviceInput input = run.at(Vec3(0.0), step.pressed);
+    EXPECT_EQ(input.forces_on, step.forces_on);
+    EXPECT_EQ(input.buttons, step.pressed & 2u);
+    EXPECT_EQ(input.status, step.status);
+  }
   run.device->input.forces_on = false;  // the device's own switch also turns the forces off
   EXPECT_FALSE(run.at(Vec3(0.0), 0).forces_on);
 }
 
 TEST(MappedDevice, GravityCompensationRampsInAndStopsWithTheForces) {
-  DeviceSettings s;
-  s.gravity_n = {0, 0.5, 0};
-  s.workspace_from_device = axes();  // the gravity force is in device axes
-  s.clutch_button = 1;
-  Mapped run(s);
+  // the gravity force is in device axes
+  Mapped run({.workspace_from_device = kAxes, .clutch_button = 1, .gravity_n = {0, 0.5, 0}});
   double last = 0;
   for (int k = 1; k <= 100; ++k) {
     run.at(Vec3(0.0));
@@ -234,29 +207,19 @@ TEST(MappedDevice, GravityCompensationRampsInAndStopsWithTheForces) {
 }
 
 TEST(MappedDevice, ARecordedPathIsNotMapped) {
-  DeviceSettings s;
-  s.scale = 3;
-  s.workspace_from_device = axes();
-  Mapped run(s);
+  Mapped run({.workspace_from_device = kAxes, .scale = 3});
   run.device->input.is_recorded = true;
   EXPECT_EQ(run.at({1, 2, 3}).position_m, Vec3(1, 2, 3));
 }
 
 TEST(MappedDevice, StopReachesTheDevice) {
-  DeviceSettings s;
-  s.scale = 3;
-  Mapped run(s);
+  Mapped run({.scale = 3});
   run.map->stop();
   EXPECT_TRUE(run.device->stopped);
 }
 
 TEST(MappedDevice, AllocatesNothing) {
-  DeviceSettings s;
-  s.scale = 3;
-  s.workspace_from_device = axes();
-  s.clutch_button = 1;
-  s.gravity_n = Vec3(0.1);
-  Mapped run(s);
+  Mapped run({.workspace_from_device = kAxes, .scale = 3, .clutch_button = 1, .gravity_n = Vec3(0.1)});
   const AllocationCounter guard;
   for (int k = 0; k < 100; ++k) {
     run.at(Vec3(0.001 * k), static_cast<std::uint32_t>(k / 10) & 1u);
@@ -266,9 +229,7 @@ TEST(MappedDevice, AllocatesNothing) {
 }
 
 TEST(Registry, OpensADeviceWithTheMappingOfItsSettings) {
-  DeviceSettings s;
-  s.scale = 2;
-  const auto mapped = open_device("null", s);
+  const auto mapped = open_device("null", Mapping{.scale = 2}.settings());
   ASSERT_TRUE(mapped);
   EXPECT_EQ((*mapped)->capabilities().workspace_m, 0.4);
 }
@@ -292,4 +253,4 @@ TEST(Registry, ListsTheDeviceTypes) {
   EXPECT_NE(open_device("controller", {}).error().message.find("catena view SCENE --xr"), std::string::npos);
 }
 
-}  // namespace device_mapping_test
+}  // namespace catena::haptics::device_mapping_test

@@ -5,9 +5,7 @@
 
 #include <random>
 
-namespace dither_filter_test {
-
-using namespace catena;
+namespace catena::dither_filter_test {
 using haptics::DitherFilter;
 
 constexpr double kStep = 5.5e-5;
@@ -56,4 +54,4 @@ TEST(DitherFilter, WithoutAnEncoderStepThePositionIsUnchanged) {
   for (int i = 0; i < 100; ++i) EXPECT_EQ(pose.filter(Vec3(1e-9 * i)), Vec3(1e-9 * i));
 }
 
-}  // namespace dither_filter_test
+}  // namespace catena::dither_filter_test

@@ -13,24 +13,14 @@
 
 #include "haptics/device/usb/falcon_codec.h"
 #include "haptics/device/usb/ftdi.h"
+#include "tests/haptics/device/emulator/boot_image.h"
 
 namespace catena::haptics::usb::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
 /// A boot stream with one block of `words` words.
-inline Bytes make_boot_image(int words = 200) {
-  Bytes image{0xAA, 0x08};
-  const auto put = [&](unsigned word) {
-    image.push_back(static_cast<std::uint8_t>(word & 0xFF));
-    image.push_back(static_cast<std::uint8_t>(word >> 8));
-  };
-  for (int i = 0; i < 8; ++i) put(0);
-  for (const unsigned word : {0x3Fu, 0x8000u, static_cast<unsigned>(words), 0x3Fu, 0x8000u}) put(word);
-  for (int i = 0; i < words; ++i) put(static_cast<unsigned>(i * 2654435761u >> 8) & 0xFFFF);
-  put(0);
-  return image;
-}
+inline Bytes make_boot_image(int words = 200) { return tests::boot_image({words}); }
 
 struct FakeFalcon {
   std::recursive_mutex mutex;
@@ -74,9 +64,9 @@ struct FakeFalcon {
     const std::lock_guard lock(mutex);
     return f(*this);
   }
-
+  void reply(std::span<const std::uint8_t> bytes) { output_queue.insert(output_queue.end(), bytes.begin(), bytes.end()); }
   void receive(std::span<const std::uint8_t> bytes) {
-    if (echoes_all) output_queue.insert(output_queue.end(), bytes.begin(), bytes.end());
+    if (echoes_all) reply(bytes);
     if (firmware_is_running) {
       pending.insert(pending.end(), bytes.begin(), bytes.end());
       FalconCommand command;
@@ -86,9 +76,8 @@ struct FakeFalcon {
         if (!is) continue;
         commands.push_back(command);
         if (ignores_commands) continue;
-        output_queue.insert(output_queue.end(), garbage_before_frame.begin(), garbage_before_frame.end());
-        const FalconPacket packet = encode_frame(frame);
-        output_queue.insert(output_queue.end(), packet.begin(), packet.end());
+        reply(garbage_before_frame);
+        reply(encode_frame(frame));
       }
       return;
     }
@@ -96,7 +85,7 @@ struct FakeFalcon {
     if (baud == 0x4138 && Bytes(bytes.begin(), bytes.end()) == Bytes{0x0A, 0x43, 0x0D}) {
       is_receiving_image = false;
       received.clear();
-      if (++handshake_count > ignored_handshakes) output_queue.insert(output_queue.end(), handshake_reply.begin(), handshake_reply.end());
+      if (++handshake_count > ignored_handshakes) reply(handshake_reply);
       return;
     }
     if (baud != 0x15) return;
@@ -126,7 +115,6 @@ class FakeTransport final : public Transport {
 
   UsbError control(std::uint8_t request, std::uint16_t value) noexcept override {
     const std::lock_guard lock(falcon_->mutex);
-    if (!falcon_->is_plugged) return UsbError::disconnected;
     if (const UsbError fault = take(falcon_->control_faults); fault != UsbError::none) return fault;
     falcon_->controls.emplace_back(request, value);
     if (request == 3) falcon_->baud = value;
@@ -135,7 +123,6 @@ class FakeTransport final : public Transport {
   }
   UsbTransferResult write(std::span<const std::uint8_t> bytes, int) noexcept override {
     const std::lock_guard lock(falcon_->mutex);
-    if (!falcon_->is_plugged) return {UsbError::disconnected, 0};
     if (const UsbError fault = take(falcon_->write_faults); fault != UsbError::none) return {fault, 0};
     falcon_->receive(bytes);
     return {UsbError::none, bytes.size()};
@@ -148,7 +135,6 @@ class FakeTransport final : public Transport {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     const std::lock_guard lock(falcon_->mutex);
-    if (!falcon_->is_plugged) return {UsbError::disconnected, 0};
     if (const UsbError fault = take(falcon_->read_faults); fault != UsbError::none) return {fault, 0};
     packet[0] = 0x01;
     packet[1] = 0x60;
@@ -167,8 +153,8 @@ class FakeTransport final : public Transport {
   }
 
  private:
-  static UsbError take(std::deque<UsbError>& faults) {
-    if (faults.empty()) return UsbError::none;
+  UsbError take(std::deque<UsbError>& faults) {
+    if (!falcon_->is_plugged || faults.empty()) return falcon_->is_plugged ? UsbError::none : UsbError::disconnected;
     const UsbError first = faults.front();
     faults.pop_front();
     return first;

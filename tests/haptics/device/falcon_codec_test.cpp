@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace catena::haptics::usb {
-namespace falcon_codec_test {
+namespace catena::haptics::usb::falcon_codec_test {
 
 FalconPacket packet(const std::string& text) {
   FalconPacket out{};
@@ -31,6 +30,12 @@ bool same(const FalconFrame& a, const FalconFrame& b) {
 void append(std::vector<std::uint8_t>& to, const FalconFrame& f) {
   const FalconPacket bytes = encode_frame(f);
   to.insert(to.end(), bytes.begin(), bytes.end());
+}
+
+std::vector<std::uint8_t> stream_of(const std::vector<FalconFrame>& frames) {
+  std::vector<std::uint8_t> stream;
+  for (const FalconFrame& f : frames) append(stream, f);
+  return stream;
 }
 
 std::vector<FalconFrame> all_of(FalconFramer& framer, std::span<const std::uint8_t> bytes) {
@@ -88,9 +93,8 @@ TEST(FalconCodec, AnInvalidByteInvalidatesTheFrame) {
 }
 
 TEST(FalconFramer, EverySplitOfAStreamGivesTheSameFrames) {
-  std::vector<std::uint8_t> stream;
   const std::vector<FalconFrame> sent = {frame(1, 2, 3), frame(-1447, 0, 5, 15, 7, '<'), frame(7, -8, 9, 4, 0, '>')};
-  for (const FalconFrame& f : sent) append(stream, f);
+  const std::vector<std::uint8_t> stream = stream_of(sent);
   for (std::size_t a = 0; a <= stream.size(); ++a)
     for (std::size_t b = a; b <= stream.size(); ++b) {
       FalconFramer framer;
@@ -105,18 +109,15 @@ TEST(FalconFramer, EverySplitOfAStreamGivesTheSameFrames) {
 }
 
 TEST(FalconFramer, OfJoinedFramesTheNewestIsReturned) {
-  std::vector<std::uint8_t> stream;
-  for (int i = 0; i < 3; ++i) append(stream, frame(i, 0, 0));
   FalconFramer framer;
   FalconFrame newest;
-  EXPECT_EQ(framer.push(stream, newest), 3);
+  EXPECT_EQ(framer.push(stream_of({frame(0, 0, 0), frame(1, 0, 0), frame(2, 0, 0)}), newest), 3);
   EXPECT_EQ(newest.encoders[0], 2);
 }
 
 TEST(FalconFramer, ATruncatedFrameLosesOnlyItself) {
   for (std::size_t prefix = 0; prefix < kFalconPacketBytes; ++prefix) {
-    std::vector<std::uint8_t> stream;
-    append(stream, frame(1, 1, 1));
+    std::vector<std::uint8_t> stream = stream_of({frame(1, 1, 1)});
     stream.resize(prefix);
     append(stream, frame(2, 2, 2));
     FalconFramer framer;
@@ -129,15 +130,9 @@ TEST(FalconFramer, ATruncatedFrameLosesOnlyItself) {
 }
 
 TEST(FalconFramer, GarbageBetweenFramesIsDropped) {
-  const std::vector<std::vector<std::uint8_t>> garbage = {{0},
-                                                          {'>'},
-                                                          {'<'},
-                                                          {'<', '<'},
-                                                          {'<', 'A', '<', '>'},
-                                                          {0xFF, 0xC0, 0x41},
-                                                          {'<', 'A', 'A', 'A', 'A', 'A', 'A', 'A', 'A', 'A', 'A', 'A', 'A', 'A', '<', 'B'}};
+  const std::string garbage[] = {std::string(1, 0), ">", "<", "<<", "<A<>", "\xFF\xC0\x41", "<AAAAAAAAAAAAA<B"};
   for (const auto& noise : garbage) {
-    std::vector<std::uint8_t> stream = noise;
+    std::vector<std::uint8_t> stream(noise.begin(), noise.end());
     append(stream, frame(3, 3, 3));
     stream.insert(stream.end(), noise.begin(), noise.end());
     append(stream, frame(4, 4, 4));
@@ -152,8 +147,7 @@ TEST(FalconFramer, GarbageBetweenFramesIsDropped) {
 
 TEST(FalconFramer, AFrameStartInByte14IsFound) {
   // fourteen bytes of a frame followed by another frame, whose '<' is in the place of the unknown byte
-  std::vector<std::uint8_t> stream;
-  append(stream, frame(1, 1, 1));
+  std::vector<std::uint8_t> stream = stream_of({frame(1, 1, 1)});
   stream.resize(14);
   append(stream, frame(2, 2, 2));
   append(stream, frame(3, 3, 3));
@@ -164,8 +158,7 @@ TEST(FalconFramer, AFrameStartInByte14IsFound) {
 }
 
 TEST(FalconFramer, ResetDiscardsThePartialFrame) {
-  std::vector<std::uint8_t> stream;
-  append(stream, frame(1, 1, 1));
+  const std::vector<std::uint8_t> stream = stream_of({frame(1, 1, 1)});
   FalconFramer framer;
   FalconFrame f;
   EXPECT_EQ(framer.push(std::span<const std::uint8_t>(stream).first(8), f), 0);
@@ -174,5 +167,4 @@ TEST(FalconFramer, ResetDiscardsThePartialFrame) {
   EXPECT_EQ(framer.push(stream, f), 1);
 }
 
-}  // namespace falcon_codec_test
-}  // namespace catena::haptics::usb
+}  // namespace catena::haptics::usb::falcon_codec_test

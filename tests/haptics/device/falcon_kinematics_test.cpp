@@ -7,8 +7,7 @@
 #include <limits>
 #include <numbers>
 
-namespace catena::haptics::usb {
-namespace falcon_kinematics_test {
+namespace catena::haptics::usb::falcon_kinematics_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -16,6 +15,18 @@ Vec3 forward_mm(const FalconCounts& counts) {
   Vec3 p(0.0);
   EXPECT_TRUE(falcon_forward_kinematics(falcon_angles(counts), p));
   return p * 1e3;
+}
+
+struct Legs {
+  Vec3 angles{0.0};
+  Mat3 jacobian{0.0};
+};
+
+Legs legs_at(const Vec3& p) {
+  Legs at;
+  EXPECT_TRUE(falcon_inverse_kinematics(p, at.angles)) << p.x << " " << p.y << " " << p.z;
+  EXPECT_TRUE(falcon_jacobian(p, at.angles, at.jacobian)) << p.x << " " << p.y << " " << p.z;
+  return at;
 }
 
 // calls f on a grid over the workspace: radius 83 mm up to z = 110 mm, 28 mm at 170 mm
@@ -33,7 +44,6 @@ TEST(FalconKinematics, ForwardGivesTheGoldenPositions) {
   constexpr double kRead = 1e-5;  // mm, the precision of the reference values
   EXPECT_LT(max_abs(forward_mm({0, 0, 0}) - Vec3(0, 0, 134.60243)), kRead);
   EXPECT_LT(max_abs(forward_mm({-500, -500, -500}) - Vec3(0, 0, 110.75447)), kRead);
-  EXPECT_NEAR(forward_mm({-500, -500, -500}).z, 110.7545, 1e-4);
   EXPECT_LT(max_abs(forward_mm({-100, -200, -300}) - Vec3(-1.49499, -6.69457, 124.77869)), 2 * kRead);
 }
 
@@ -45,10 +55,7 @@ TEST(FalconKinematics, InverseGivesTheGoldenCounts) {
 
 TEST(FalconKinematics, GoldenCountAndTorqueAt110Millimetres) {
   const Vec3 p{0, 0, 0.110};
-  Vec3 angles;
-  Mat3 j;
-  ASSERT_TRUE(falcon_inverse_kinematics(p, angles));
-  ASSERT_TRUE(falcon_jacobian(p, angles, j));
+  const Mat3 j = legs_at(p).jacobian;
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(norm(j[axis]) * 0.0364347 * kPi / 180, 37.7e-6, 0.05e-6);
   EXPECT_LT(max_abs(falcon_torque(j, {0, 0, 1}) - Vec3(24.18e-3)), 0.005e-3);
 }
@@ -67,10 +74,7 @@ TEST(FalconKinematics, RoundTripsOverTheWholeWorkspace) {
 
 TEST(FalconKinematics, TheJacobianMatchesFiniteDifferences) {
   everywhere([](const Vec3& p) {
-    Vec3 angles;
-    Mat3 j;
-    ASSERT_TRUE(falcon_inverse_kinematics(p, angles));
-    ASSERT_TRUE(falcon_jacobian(p, angles, j));
+    const auto [angles, j] = legs_at(p);
     constexpr double h = 1e-5;
     for (int axis = 0; axis < 3; ++axis) {
       Vec3 up = angles, down = angles, p_up, p_down;
@@ -85,10 +89,8 @@ TEST(FalconKinematics, TheJacobianMatchesFiniteDifferences) {
 
 TEST(FalconKinematics, TorqueAndForceDoTheSameWork) {
   const Vec3 p{0.015, -0.02, 0.12}, force{1.5, -2, 3};
-  Vec3 angles, moved;
-  Mat3 j;
-  ASSERT_TRUE(falcon_inverse_kinematics(p, angles));
-  ASSERT_TRUE(falcon_jacobian(p, angles, j));
+  const auto [angles, j] = legs_at(p);
+  Vec3 moved;
   const Vec3 turn{1e-6, -2e-6, 3e-6};
   ASSERT_TRUE(falcon_forward_kinematics(angles + turn, moved));
   EXPECT_NEAR(dot(falcon_torque(j, force), turn), dot(force, moved - p), 1e-11);
@@ -144,9 +146,7 @@ TEST(FalconKinematics, ExcessiveTorqueIsScaledInItsDirection) {
 
 // maximum force in the weakest direction: full torque / max_i |row i of (dp/dtheta)^T|
 double weakest_force_n(const Vec3& p) {
-  Vec3 angles;
-  Mat3 j;
-  EXPECT_TRUE(falcon_inverse_kinematics(p, angles) && falcon_jacobian(p, angles, j));
+  const Mat3 j = legs_at(p).jacobian;
   return kFalconFullTorque / kFalconForceGain / std::max({norm(j[0]), norm(j[1]), norm(j[2])});
 }
 
@@ -163,5 +163,4 @@ TEST(FalconKinematics, ANonFiniteTorqueGivesZero) {
     EXPECT_EQ(falcon_motor_counts(torque, 1e4), (FalconCounts{}));
 }
 
-}  // namespace falcon_kinematics_test
-}  // namespace catena::haptics::usb
+}  // namespace catena::haptics::usb::falcon_kinematics_test

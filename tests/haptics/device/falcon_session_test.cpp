@@ -5,8 +5,7 @@
 
 #include "tests/haptics/device/fake_falcon.h"
 
-namespace catena::haptics::usb {
-namespace falcon_session_test {
+namespace catena::haptics::usb::falcon_session_test {
 
 using Cycle = FalconSession::Cycle;
 constexpr FalconCounts kAt110{-516, -516, -516}, kAt175{1168, 1168, 1168};  // approximate height on the axis in mm
@@ -35,14 +34,15 @@ struct FalconSessionTest : testing::Test {
     for (int i = 0; i < cycles; ++i) last = session.cycle(force_n, forces);
     return last;
   }
+  Cycle run_at(const FalconCounts& encoders, int homed, int cycles = 1, const Vec3& force_n = Vec3(0.0)) {
+    set_frame(encoders, homed);
+    return run_cycles(cycles, force_n);
+  }
   void arm() {
-    set_frame(kAt175, 7);
-    run_cycles(4);
+    run_at(kAt175, 7, 4);
     ASSERT_EQ(session.pose().state, FalconState::ready);
-    set_frame({400, 400, 400}, 7);
-    run_cycles();
-    set_frame(kAt110, 7);
-    run_cycles();
+    run_at({400, 400, 400}, 7);
+    run_at(kAt110, 7);
   }
 };
 
@@ -59,8 +59,7 @@ TEST_F(FalconSessionTest, HomingSetsItsBitInEveryPacketAndSendsNoForce) {
 }
 
 TEST_F(FalconSessionTest, HomedIsAcceptedAfterThreeFrames) {
-  set_frame(kAt110, 7);
-  run_cycles(2);
+  run_at(kAt110, 7, 2);
   EXPECT_EQ(session.pose().state, FalconState::homing);
   run_cycles();
   EXPECT_EQ(session.pose().state, FalconState::arming);
@@ -71,17 +70,14 @@ TEST_F(FalconSessionTest, HomedIsAcceptedAfterThreeFrames) {
 }
 
 TEST_F(FalconSessionTest, ForcesStartOnlyAfterTheGripWasPulledOut) {
-  set_frame(kAt110, 7);
-  run_cycles(10, {0, 0, 5});
+  run_at(kAt110, 7, 10, {0, 0, 5});
   EXPECT_EQ(session.pose().state, FalconState::arming);
   for (const FalconCommand& c : fake->commands) EXPECT_EQ(c.motors, FalconCounts{});
   // 169 mm is not enough
-  set_frame({800, 800, 800}, 7);
-  run_cycles(2, {0, 0, 5});
+  run_at({800, 800, 800}, 7, 2, {0, 0, 5});
   EXPECT_EQ(session.pose().state, FalconState::arming);
   EXPECT_EQ(fake->last().motors, FalconCounts{});
-  set_frame(kAt175, 7);
-  run_cycles(2, {0, 0, 5});
+  run_at(kAt175, 7, 2, {0, 0, 5});
   EXPECT_EQ(session.pose().state, FalconState::ready);
   EXPECT_EQ(fake->last().control, kFalconGreen);
   EXPECT_LT(fake->last().motors[0], 0);
@@ -108,11 +104,9 @@ TEST_F(FalconSessionTest, AForceBeyondTheMotorsIsClampedAndCounted) {
 
 TEST_F(FalconSessionTest, OneUnhomedFrameStopsTheForceForACycle) {
   arm();
-  set_frame(kAt110, 5);
-  run_cycles(1, {0, 0, 1});
+  run_at(kAt110, 5, 1, {0, 0, 1});
   EXPECT_EQ(session.pose().state, FalconState::homing);
-  set_frame(kAt110, 7);
-  run_cycles(1, {0, 0, 1});
+  run_at(kAt110, 7, 1, {0, 0, 1});
   EXPECT_EQ(fake->last().motors, FalconCounts{});
   EXPECT_EQ(session.pose().state, FalconState::ready);
   run_cycles(1, {0, 0, 1});
@@ -121,10 +115,8 @@ TEST_F(FalconSessionTest, OneUnhomedFrameStopsTheForceForACycle) {
 
 TEST_F(FalconSessionTest, HomingLostForThreeFramesMustBeArmedAgain) {
   arm();
-  set_frame(kAt110, 5);
-  run_cycles(3);
-  set_frame(kAt110, 7);
-  run_cycles(10, {0, 0, 1});
+  run_at(kAt110, 5, 3);
+  run_at(kAt110, 7, 10, {0, 0, 1});
   EXPECT_EQ(session.pose().state, FalconState::arming);
   EXPECT_EQ(fake->last().motors, FalconCounts{});
 }
@@ -132,13 +124,11 @@ TEST_F(FalconSessionTest, HomingLostForThreeFramesMustBeArmedAgain) {
 TEST_F(FalconSessionTest, AJumpIsAcceptedOnlyIfTheNextFrameConfirmsIt) {
   arm();
   const Vec3 before = session.pose().position_m;
-  set_frame({900, 900, 900}, 7);
-  run_cycles(1, {0, 0, 1});
+  run_at({900, 900, 900}, 7, 1, {0, 0, 1});
   EXPECT_FALSE(session.pose().valid);
   EXPECT_EQ(session.pose().position_m, before);
   EXPECT_EQ(counters.jumps, 1u);
-  set_frame(kAt110, 7);
-  run_cycles(1, {0, 0, 1});
+  run_at(kAt110, 7, 1, {0, 0, 1});
   EXPECT_EQ(fake->last().motors, FalconCounts{});  // no force at a position that is not accepted
   run_cycles();
   EXPECT_TRUE(session.pose().valid);
@@ -150,11 +140,9 @@ TEST_F(FalconSessionTest, OutOfReachHoldsThePositionAndStopsTheForce) {
   const Vec3 before = session.pose().position_m;
   for (const int step : {-1500, -2400, -3300, -4200}) {
     const auto e = static_cast<std::int16_t>(step);
-    set_frame({e, e, e}, 7);
-    run_cycles(1, {0, 0, 1});
+    run_at({e, e, e}, 7, 1, {0, 0, 1});
   }
-  set_frame({-4200, -4200, -4200}, 7);
-  run_cycles(2, {0, 0, 1});
+  run_at({-4200, -4200, -4200}, 7, 2, {0, 0, 1});
   EXPECT_FALSE(session.pose().valid);
   EXPECT_GT(counters.out_of_reach, 0u);
   EXPECT_EQ(fake->last().motors, FalconCounts{});
@@ -208,13 +196,4 @@ TEST_F(FalconSessionTest, AnUnplugIsReportedAsGone) {
   EXPECT_EQ(run_cycles(), Cycle::disconnected);
 }
 
-TEST_F(FalconSessionTest, ShutdownSendsZeroWithTheLightsOff) {
-  arm();
-  run_cycles(1, {0, 0, 5});
-  session.send_shutdown();
-  EXPECT_EQ(fake->last().motors, FalconCounts{});
-  EXPECT_EQ(fake->last().control, 0);
-}
-
-}  // namespace falcon_session_test
-}  // namespace catena::haptics::usb
+}  // namespace catena::haptics::usb::falcon_session_test

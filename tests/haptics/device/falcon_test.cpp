@@ -8,10 +8,12 @@
 #include "engine/base/memory_limit.h"
 #include "haptics/device/registry.h"
 #include "tests/haptics/device/fake_falcon.h"
+#include "tests/haptics/device/wait_until.h"
+#include "tests/support/results.h"
 
-namespace catena::haptics::usb {
-namespace falcon_test {
+namespace catena::haptics::usb::falcon_test {
 
+using catena::test::wait_until;
 using namespace std::chrono_literals;
 constexpr FalconCounts kAt110{-516, -516, -516}, kAt175{1168, 1168, 1168};
 
@@ -39,21 +41,24 @@ struct FalconDevice : testing::Test {
   void set_frame(const FalconCounts& encoders, int homed) {
     fake->with_lock([&](test::FakeFalcon& f) { f.frame = {encoders, 0, static_cast<std::uint8_t>(homed), 'A'}; });
   }
-  // waits until `holds` returns true; false after a minute
-  template <class F>
-  bool eventually(F holds) {
-    for (int i = 0; i < 60000; ++i) {
-      if (holds()) return true;
-      std::this_thread::sleep_for(1ms);
-    }
-    return false;
+  void plug(bool plugged) {
+    fake->with_lock([&](test::FakeFalcon& f) { f.is_plugged = plugged; });
   }
   bool wait_for_cycles(std::uint64_t n) {
     const std::uint64_t from = falcon->stats().cycles;
-    return eventually([&] { return falcon->stats().cycles >= from + n; });
+    return wait_until([&] { return falcon->stats().cycles >= from + n; });
+  }
+  /// Waits for the force of a new command of 1 N.
+  bool pushes() {
+    falcon->write({{0, 0, 1}, Vec3(0.0)});
+    return wait_until([&] { return fake->last().motors[0] < 0; });
+  }
+  void expect_zero_force() {
+    ASSERT_TRUE(wait_for_cycles(3));
+    EXPECT_EQ(fake->last().motors, FalconCounts{});
   }
   bool wait_for_state(FalconState state) {
-    return eventually([&] { return falcon->state() == state; });
+    return wait_until([&] { return falcon->state() == state; });
   }
   void arm() {
     ASSERT_EQ(open(), "");
@@ -92,7 +97,7 @@ TEST_F(FalconDevice, HomesArmsAndInstructsTheUser) {
 TEST_F(FalconDevice, ForceReachesTheMotorsAndStopsWithoutNewCommands) {
   arm();
   falcon->write({{0, 0, 1}, Vec3(0.0)});
-  ASSERT_TRUE(eventually([&] { return fake->last().motors[0] == -242 || fake->last().motors[0] == -241; }));
+  ASSERT_TRUE(wait_until([&] { return fake->last().motors[0] == -242 || fake->last().motors[0] == -241; }));
   EXPECT_EQ(fake->last().control, kFalconGreen);
   EXPECT_EQ(falcon->stats().stale_commands, 0u);
   // the servo's clock advances by less, then by more than the timeout of 20 ms
@@ -100,8 +105,7 @@ TEST_F(FalconDevice, ForceReachesTheMotorsAndStopsWithoutNewCommands) {
   ASSERT_TRUE(wait_for_cycles(3));
   EXPECT_NE(fake->last().motors, FalconCounts{});
   fake_now_ns += 2000000;
-  ASSERT_TRUE(wait_for_cycles(3));
-  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  expect_zero_force();
   EXPECT_EQ(fake->last().control, kFalconBlue);
   EXPECT_EQ(falcon->stats().stale_commands, 1u);
 }
@@ -114,8 +118,7 @@ TEST_F(FalconDevice, AnExpiredCommandIsReportedAsLostSoThatTheForceRampsIn) {
   EXPECT_EQ(falcon->read().status, DeviceStatus::ready) << "the motors still have it";
   falcon->write({{0, 0, 1}, Vec3(0.0)});
   fake_now_ns += 25000000;
-  ASSERT_TRUE(wait_for_cycles(3));
-  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  expect_zero_force();
   EXPECT_EQ(falcon->read().status, DeviceStatus::lost) << "zero meanwhile: a force that comes back at once would be a kick";
   falcon->write({Vec3(0.0), Vec3(0.0)});
   ASSERT_TRUE(wait_for_cycles(3));
@@ -125,25 +128,23 @@ TEST_F(FalconDevice, AnExpiredCommandIsReportedAsLostSoThatTheForceRampsIn) {
 TEST_F(FalconDevice, ASilentDeviceGetsZeroBeforeItsLineIsReset) {
   options.lost_after_cycles = 1000000;
   arm();
-  falcon->write({{0, 0, 1}, Vec3(0.0)});
-  ASSERT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
+  ASSERT_TRUE(pushes());
   const auto requests = fake->with_lock([](test::FakeFalcon& f) { return f.controls.size(); });
   fake->with_lock([](test::FakeFalcon& f) { f.ignores_commands = true; });
-  ASSERT_TRUE(eventually([&] { return fake->with_lock([&](test::FakeFalcon& f) { return f.controls.size() > requests; }); }));
+  ASSERT_TRUE(wait_until([&] { return fake->with_lock([&](test::FakeFalcon& f) { return f.controls.size() > requests; }); }));
   EXPECT_EQ(fake->last().motors, FalconCounts{});
   EXPECT_EQ(falcon->read().status, DeviceStatus::lost) << "so that the force ramps in";
   ASSERT_TRUE(wait_for_cycles(5));
   EXPECT_EQ(fake->last().motors, FalconCounts{}) << "no frame, no force";
   fake->with_lock([](test::FakeFalcon& f) { f.ignores_commands = false; });
-  falcon->write({{0, 0, 1}, Vec3(0.0)});
-  EXPECT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
+  EXPECT_TRUE(pushes());
   EXPECT_EQ(falcon->read().status, DeviceStatus::ready);
 }
 
 TEST_F(FalconDevice, TheDestructorDoesNotWaitForADeviceThatDoesNotBoot) {
   options.firmware = fake->image;
   arm();
-  fake->with_lock([](test::FakeFalcon& f) { f.is_plugged = false; });
+  plug(false);
   ASSERT_TRUE(wait_for_state(FalconState::absent));
   fake->with_lock([](test::FakeFalcon& f) {
     f.firmware_is_running = false;
@@ -151,7 +152,7 @@ TEST_F(FalconDevice, TheDestructorDoesNotWaitForADeviceThatDoesNotBoot) {
     f.read_delay = 2ms;
     f.is_plugged = true;
   });
-  ASSERT_TRUE(eventually([&] { return fake->with_lock([](test::FakeFalcon& f) { return f.handshake_count > 0; }); }));
+  ASSERT_TRUE(wait_until([&] { return fake->with_lock([](test::FakeFalcon& f) { return f.handshake_count > 0; }); }));
   const int before = fake->with_lock([](test::FakeFalcon& f) { return f.handshake_count; });
   falcon.reset();
   EXPECT_LE(fake->handshake_count, before + 10) << "of a hundred";
@@ -159,14 +160,11 @@ TEST_F(FalconDevice, TheDestructorDoesNotWaitForADeviceThatDoesNotBoot) {
 
 TEST_F(FalconDevice, StopGivesZeroUntilANewCommandAfterResume) {
   arm();
-  falcon->write({{0, 0, 1}, Vec3(0.0)});
-  ASSERT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
+  ASSERT_TRUE(pushes());
   std::thread([&] { falcon->stop(); }).join();
-  ASSERT_TRUE(wait_for_cycles(3));
-  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  expect_zero_force();
   falcon->write({{0, 0, 2}, Vec3(0.0)});
-  ASSERT_TRUE(wait_for_cycles(3));
-  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  expect_zero_force();
   EXPECT_NE(falcon->status_text().find("stopped"), std::string::npos);
   const std::size_t before = fake->with_lock([](test::FakeFalcon& f) { return f.commands.size(); });
   falcon->resume();
@@ -174,8 +172,7 @@ TEST_F(FalconDevice, StopGivesZeroUntilANewCommandAfterResume) {
   fake->with_lock([&](test::FakeFalcon& f) {
     for (std::size_t i = before; i < f.commands.size(); ++i) EXPECT_EQ(f.commands[i].motors, FalconCounts{});
   });
-  falcon->write({{0, 0, 1}, Vec3(0.0)});
-  EXPECT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
+  EXPECT_TRUE(pushes());
 }
 
 TEST(FalconTimeout, TheCommandTimeoutGrowsForASlowServo) {
@@ -187,14 +184,12 @@ TEST(FalconTimeout, TheCommandTimeoutGrowsForASlowServo) {
 TEST_F(FalconDevice, ANonFiniteForceGivesZero) {
   arm();
   falcon->write({Vec3(std::numeric_limits<double>::quiet_NaN()), Vec3(0.0)});
-  ASSERT_TRUE(wait_for_cycles(3));
-  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  expect_zero_force();
 }
 
 TEST_F(FalconDevice, TheDestructorSendsZeroWithTheLightsOff) {
   arm();
-  falcon->write({{0, 0, 1}, Vec3(0.0)});
-  ASSERT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
+  ASSERT_TRUE(pushes());
   falcon.reset();
   EXPECT_EQ(fake->last().motors, FalconCounts{});
   EXPECT_EQ(fake->last().control, 0);
@@ -203,13 +198,13 @@ TEST_F(FalconDevice, TheDestructorSendsZeroWithTheLightsOff) {
 TEST_F(FalconDevice, AnUnpluggedDeviceIsLostAndReturnsAfterBootHomingAndArming) {
   options.firmware = fake->image;
   arm();
-  fake->with_lock([](test::FakeFalcon& f) { f.is_plugged = false; });
+  plug(false);
   ASSERT_TRUE(wait_for_state(FalconState::absent));
   const DeviceInput held = falcon->read();
   EXPECT_EQ(held.status, DeviceStatus::lost);
   EXPECT_FALSE(held.forces_on);
   EXPECT_NEAR(held.position_m.z, 0.110, 1e-4);
-  EXPECT_TRUE(eventually([&] { return falcon->status_text().find("not on the USB bus") != std::string::npos; }));
+  EXPECT_TRUE(wait_until([&] { return falcon->status_text().find("not on the USB bus") != std::string::npos; }));
   // the power was off, so that the firmware is lost
   fake->with_lock([](test::FakeFalcon& f) {
     f.firmware_is_running = false;
@@ -225,18 +220,16 @@ TEST_F(FalconDevice, AnUnpluggedDeviceIsLostAndReturnsAfterBootHomingAndArming) 
   set_frame(kAt110, 7);
   ASSERT_TRUE(wait_for_state(FalconState::arming));
   falcon->write({{0, 0, 1}, Vec3(0.0)});
-  ASSERT_TRUE(wait_for_cycles(3));
-  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  expect_zero_force();
   set_frame(kAt175, 7);
   ASSERT_TRUE(wait_for_state(FalconState::ready));
-  falcon->write({{0, 0, 1}, Vec3(0.0)});
-  EXPECT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
+  EXPECT_TRUE(pushes());
 }
 
 TEST_F(FalconDevice, ASilentDeviceIsLostAndReopened) {
   arm();
   fake->with_lock([](test::FakeFalcon& f) { f.ignores_commands = true; });
-  ASSERT_TRUE(eventually([&] { return falcon->stats().disconnects == 1; }));
+  ASSERT_TRUE(wait_until([&] { return falcon->stats().disconnects == 1; }));
   EXPECT_GE(falcon->stats().bad_cycles, 10u);
   fake->with_lock([](test::FakeFalcon& f) { f.ignores_commands = false; });
   ASSERT_TRUE(wait_for_state(FalconState::arming));
@@ -247,7 +240,7 @@ TEST_F(FalconDevice, AnOldPoseIsReportedAsLost) {
   arm();
   EXPECT_EQ(falcon->read().status, DeviceStatus::ready);
   fake->block_reads = true;
-  ASSERT_TRUE(eventually([&] { return fake->is_blocked.load(); }));
+  ASSERT_TRUE(wait_until([&] { return fake->is_blocked.load(); }));
   fake_now_ns += 90000000;
   EXPECT_NEAR(falcon->read().age_s, 0.09, 1e-9);
   EXPECT_EQ(falcon->read().status, DeviceStatus::ready);
@@ -292,10 +285,10 @@ TEST_F(FalconDevice, ConcurrentReadsAndWritesDuringUnplugsAndReturns) {
     }
   });
   for (int round = 0; round < 5; ++round) {
-    fake->with_lock([](test::FakeFalcon& f) { f.is_plugged = false; });
+    plug(false);
     EXPECT_TRUE(wait_for_state(FalconState::absent));
     falcon->stop();
-    fake->with_lock([](test::FakeFalcon& f) { f.is_plugged = true; });
+    plug(true);
     EXPECT_TRUE(wait_for_state(FalconState::arming));
     falcon->status_text();
   }
@@ -311,23 +304,15 @@ TEST(FalconRegistry, IsListedAndRefusedWithAReason) {
   EXPECT_GT(c.max_force_n, 0);
   EXPECT_DOUBLE_EQ(c.workspace_center_m.z, 0.125);
   int listed = 0;
-  for (const DeviceInfo& info : list_devices())
-    if (info.name.starts_with("falcon")) {
-      ++listed;
-      EXPECT_FALSE(info.detail.empty());
-    }
-  EXPECT_GE(listed, 1);
-  DeviceSettings settings;
-  for (const char* name : {"falcon:x", "falcon:-1", "falcon:99"}) {
-    const auto refused = open_device(name, settings);
-    ASSERT_FALSE(refused) << name;
-    EXPECT_NE(refused.error().message.find("expected"), std::string::npos) << refused.error().message;
+  for (const DeviceInfo& info : list_devices()) {
+    listed += info.name.starts_with("falcon");
+    EXPECT_TRUE(!info.name.starts_with("falcon") || !info.detail.empty());
   }
-  settings.firmware = "/nowhere/falcon.bin";
-  const auto missing = open_device("falcon", settings);
-  ASSERT_FALSE(missing);
-  EXPECT_NE(missing.error().message.find("/nowhere/falcon.bin"), std::string::npos) << missing.error().message;
+  EXPECT_GE(listed, 1);
+  for (const char* name : {"falcon:x", "falcon:-1", "falcon:99"}) EXPECT_TRUE(catena::test::fails(open_device(name, {}), "expected"));
+  DeviceSettings missing;
+  missing.firmware = "/nowhere/falcon.bin";
+  EXPECT_TRUE(catena::test::fails(open_device("falcon", missing), "/nowhere/falcon.bin"));
 }
 
-}  // namespace falcon_test
-}  // namespace catena::haptics::usb
+}  // namespace catena::haptics::usb::falcon_test

@@ -4,19 +4,16 @@
 #include <gtest/gtest.h>
 
 #include "haptics/device/registry.h"
+#include "tests/support/results.h"
 #include "tests/support/support.h"
 
-namespace recorded_path_test {
-
-using namespace catena;
-using namespace catena::haptics;
+namespace catena::haptics::recorded_path_test {
 
 TEST(RecordedPath, PlaysItsFileAndHoldsTheLastPose) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "p.csv", "t,x,y,z,buttons,qw,qx,qy,qz\n0,1,2,3,0,1,0,0,0\n0.5,4,5,6,3,0,0,0,1\n");
-  auto opened = open_device("recorded:" + (folder / "p.csv"), {});
-  ASSERT_TRUE(opened) << opened.error().message;
-  Device& device = **opened;
+  const auto opened = test::value_of(open_device("recorded:" + (folder / "p.csv"), {}));
+  Device& device = *opened;
   EXPECT_TRUE(device.capabilities().has_orientation);
   const DeviceInput first = device.read();
   EXPECT_TRUE(first.is_recorded);
@@ -40,4 +37,4 @@ TEST(RecordedPath, ReportsErrorsOfItsFile) {
   EXPECT_NE(open_device("recorded", {}).error().message.find("recorded:PATH.csv"), std::string::npos);
 }
 
-}  // namespace recorded_path_test
+}  // namespace catena::haptics::recorded_path_test

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// A device whose input is set by the test and whose last output is recorded.
+/// A device whose input is set by the test and whose last output is recorded; base of the devices of single tests.
 #pragma once
 #include "haptics/device/device.h"
 
 namespace catena::test {
 
-class ScriptedDevice final : public haptics::Device {
+class ScriptedDevice : public haptics::Device {
  public:
   const haptics::DeviceCapabilities& capabilities() const override { return caps; }
   haptics::DeviceInput read() noexcept override { return input; }

@@ -7,18 +7,12 @@
 
 #include "haptics/device/mass_model.h"
 #include "haptics/device/registry.h"
+#include "tests/support/results.h"
 #include "tests/support/support.h"
 
-namespace simulated_device_test {
+namespace catena::haptics::simulated_device_test {
 
-using namespace catena;
-using namespace catena::haptics;
-
-SimulatedDeviceParameters bare() {
-  SimulatedDeviceParameters p;
-  p.grip_stiffness_n_per_m = p.grip_damping_ns_per_m = 0;
-  return p;
-}
+SimulatedDeviceParameters bare() { return {.grip_stiffness_n_per_m = 0, .grip_damping_ns_per_m = 0}; }
 
 TEST(Mechanism, OneStepMatchesTheClosedForm) {
   // mass and damper
@@ -106,10 +100,8 @@ TEST(SimulatedDevice, MotorsSaturateAndEncodersRound) {
 }
 
 TEST(SimulatedDevice, TremorHasTheStatedAmplitudeAndIsRepeatable) {
-  SimulatedDeviceParameters p;
-  p.grip_stiffness_n_per_m = 1e6;  // a stiff grip, so that the pose equals the target
-  p.grip_damping_ns_per_m = 800;
-  p.tremor_m = 3e-4;
+  // a stiff grip, so that the pose equals the target
+  const SimulatedDeviceParameters p{.grip_stiffness_n_per_m = 1e6, .grip_damping_ns_per_m = 800, .tremor_m = 3e-4};
   SimulatedDevice a({{}}, p), b({{}}, p);
   double sum = 0;
   for (int k = 0; k < 20000; ++k) {
@@ -124,11 +116,7 @@ TEST(SimulatedDevice, TremorHasTheStatedAmplitudeAndIsRepeatable) {
 
 TEST(SimulatedDevice, AMassSticksUntilTheForceExceedsTheFriction) {
   // the grip's spring force rises slowly: the mass sticks until k_h x = f_c
-  SimulatedDeviceParameters p;
-  p.grip_stiffness_n_per_m = 200;
-  p.grip_damping_ns_per_m = 0;
-  p.friction_n = 0.5;
-  SimulatedDevice hand({{0, Vec3(0.0)}, {1, {0.01, 0, 0}}}, p);
+  SimulatedDevice hand({{0, Vec3(0.0)}, {1, {0.01, 0, 0}}}, {.grip_stiffness_n_per_m = 200, .grip_damping_ns_per_m = 0, .friction_n = 0.5});
   double left_at = 0;
   for (int k = 0; k < 1000 && left_at == 0; ++k) {
     if (hand.read().position_m.x > 0) left_at = 1e-3 * k;
@@ -159,30 +147,24 @@ TEST(SafeStiffness, IsTheSmallerOfTheTwoBounds) {
 TEST(SimulatedDevice, FollowsAPathByName) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "p.csv", "t,x,y,z,buttons\n0,0.01,0,0,0\n0.1,0.03,0,0,2\n");
-  DeviceSettings settings;
-  auto opened = open_device("simulated:" + (folder / "p.csv"), settings);
-  ASSERT_TRUE(opened) << opened.error().message;
-  DeviceInput input = (*opened)->read();
+  const auto device = test::value_of(open_device("simulated:" + (folder / "p.csv"), {}));
+  DeviceInput input = device->read();
   EXPECT_NEAR(input.position_m.x, 0.01, 4e-5);
   EXPECT_EQ(input.buttons, 0u);
   for (int k = 0; k < 1000; ++k) {
-    input = (*opened)->read();
-    (*opened)->write({});
+    input = device->read();
+    device->write({});
   }
   EXPECT_NEAR(input.position_m.x, 0.03, 4e-4);
   EXPECT_EQ(input.buttons, 2u);
-  EXPECT_EQ((*opened)->capabilities().mechanics.damping_ns_per_m, 0.5);
+  EXPECT_EQ(device->capabilities().mechanics.damping_ns_per_m, 0.5);
 }
 
 TEST(SimulatedDevice, AMissingPathAndATooLongDelayAreErrors) {
   DeviceSettings settings;
-  const auto missing = open_device("simulated:no/such.csv", settings);
-  ASSERT_FALSE(missing);
-  EXPECT_NE(missing.error().message.find("no/such.csv"), std::string::npos);
+  EXPECT_TRUE(test::fails(open_device("simulated:no/such.csv", settings), "no/such.csv"));
   settings.delay_s = 1;
-  const auto slow = open_device("simulated", settings);
-  ASSERT_FALSE(slow);
-  EXPECT_NE(slow.error().message.find("delay"), std::string::npos);
+  EXPECT_TRUE(test::fails(open_device("simulated", settings), "delay"));
 }
 
-}  // namespace simulated_device_test
+}  // namespace catena::haptics::simulated_device_test

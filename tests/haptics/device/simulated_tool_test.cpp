@@ -4,24 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "haptics/device/device.h"
 #include "haptics/device/mass_model.h"
-#include "haptics/servo/servo.h"
+#include "tests/haptics/servo/run_servo.h"
 #include "tests/support/axis_link.h"
 
-namespace simulated_tool_test {
+namespace catena::haptics::simulated_tool_test {
 
-using namespace catena;
-using namespace catena::haptics;
-
-constexpr double kPi = 3.14159265358979323846;
-
-SimulatedToolParameters alone() {
-  SimulatedToolParameters p;
-  p.grip_stiffness_nm_per_rad = p.grip_damping_nms_per_rad = 0;
-  p.max_torque_nm = 100;
-  return p;
-}
+SimulatedToolParameters alone() { return {.grip_stiffness_nm_per_rad = 0, .grip_damping_nms_per_rad = 0, .max_torque_nm = 100}; }
 
 /// The closed loop of device and program without the servo's thread.
 struct Loop {
@@ -37,7 +29,6 @@ struct Loop {
     tick(program, {1e-3 * static_cast<double>(k++), in.position_m, in.buttons, in.orientation}, state, scratch, out);
     tool.write({out.force_n, out.torque_nm});
   }
-  double energy(double inertia) const { return 0.5 * inertia * dot(tool.rate_rad_per_s(), tool.rate_rad_per_s()); }
 };
 
 TEST(SimulatedTool, FollowsItsPathAlongTheShorterArc) {
@@ -47,7 +38,7 @@ TEST(SimulatedTool, FollowsItsPathAlongTheShorterArc) {
   double furthest = 0;
   for (int k = 0; k <= 1500; ++k) {
     const Quat q = tool.read().orientation;
-    furthest = std::max(furthest, norm(rotation_vector(q * glm::conjugate(rotation_from_vector({0, 0, kPi})))));
+    furthest = std::max(furthest, norm(rotation_vector(q * glm::conjugate(rotation_from_vector({0, 0, std::numbers::pi})))));
   }
   EXPECT_LE(furthest, 0.15);
   EXPECT_LE(norm(rotation_vector(tool.orientation() * glm::conjugate(b))), 1e-6);
@@ -110,13 +101,8 @@ TEST(SimulatedTool, TheServoRotatesOrientationAndTorqueWithTheWorkspace) {
     program->links = {test::axis_link("a", rotate(r, {0, 0, 1}), 0.25)};
     program->workspace_rotation = glm::mat3_cast(r);
     SimulatedTool tool(std::make_unique<NullDevice>(), {{0, rotation_from_vector({0.6, 0.1, 0})}}, {});
-    ServoOptions options;
-    options.paced = false;
-    options.max_ticks = 3000;
-    Servo servo(tool, program, options);
-    EXPECT_TRUE(servo.start());
-    while (servo.running()) std::this_thread::yield();
-    servo.stop();
+    Servo servo(tool, program, {.paced = false, .max_ticks = 3000});
+    test::run_to_end(servo);
     return tool.orientation();
   };
   const Quat plain = end(kIdentityRotation), turned = end(rotation_from_vector({0.4, -0.9, 1.3}));
@@ -134,4 +120,4 @@ TEST(SimulatedTool, IsRepeatableBitForBit) {
   EXPECT_EQ(run(), run());
 }
 
-}  // namespace simulated_tool_test
+}  // namespace catena::haptics::simulated_tool_test

@@ -27,7 +27,7 @@ if(NOT CATENA_SANITIZE MATCHES "thread")
     set(CMAKE_CROSSCOMPILING_EMULATOR ${UMOCKDEV_WRAPPER})
   endif()
   # every case runs through the wrapper, by this target property that gtest_discover_tests reads
-  catena_tests(haptics/device/usb MODULES haptics/servo haptics/build THIRD_PARTY catena_test_umockdev catena_test_usbfs PkgConfig::LIBUSB
+  catena_tests(haptics/device/usb MODULES haptics/servo THIRD_PARTY catena_test_umockdev catena_test_usbfs PkgConfig::LIBUSB
     PROGRAM LABELS usb)
   # library preloaded into the programs that these tests start
   add_library(catena_inherited_node MODULE haptics/device/usbfs/inherited_node.cpp)

@@ -3,30 +3,26 @@
 // controller's effect on stiffer springs. Unpaced and deterministic.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
+#include <glm/matrix.hpp>
 #include <limits>
 
 #include "haptics/device/mass_model.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/simple_links.h"
 
-namespace closed_loop_test {
-
-using namespace catena;
-using namespace catena::haptics;
+namespace catena::haptics::closed_loop_test {
 using test::ClosedLoop;
 
 constexpr double kMass = 0.159, kDamping = 0.5, kPeriod = 1e-3;
 
 SimulatedDeviceParameters bare(double delay_s = 0) {
-  SimulatedDeviceParameters p;
-  p.mass_kg = kMass;
-  p.device_damping_ns_per_m = kDamping;
-  p.grip_stiffness_n_per_m = p.grip_damping_ns_per_m = 0;
-  p.delay_s = delay_s;
-  p.max_force_n = 1e9;
-  return p;
+  return {.mass_kg = kMass,
+          .grip_stiffness_n_per_m = 0,
+          .grip_damping_ns_per_m = 0,
+          .device_damping_ns_per_m = kDamping,
+          .delay_s = delay_s,
+          .max_force_n = 1e9};
 }
 
 /// A spring towards z = 0 with virtual damping.
@@ -47,39 +43,23 @@ void control(HapticProgram& p, double delay_s = 0) {
 
 // ---- an independent result: the sampled-data system's characteristic polynomial and its Schur-Cohn test ----
 
-constexpr int kMaxStates = 4;
-using Matrix = std::array<std::array<double, kMaxStates>, kMaxStates>;
-
 /// States: x, v, the previous x and, with a delay of one sample, the pending force. Mass and damper under a held force are exact.
 bool is_stable(double stiffness, double damping, bool delayed) {
   const int n = delayed ? 4 : 3;
   const double rate = kDamping / kMass, e = std::exp(-rate * kPeriod), p = (1 - e) / rate;
   const double to_x = (kPeriod - p) / kDamping, to_v = p / kMass;
-  const std::array<double, kMaxStates> law{-stiffness - damping / kPeriod, 0, damping / kPeriod, 0};
-  const std::array<double, kMaxStates> waiting{0, 0, 0, 1};
-  const auto& acts = delayed ? waiting : law;
-  Matrix a{};
-  for (std::size_t j = 0; j < 4; ++j) {
-    a[0][j] = to_x * acts[j] + (j == 0 ? 1 : 0) + (j == 1 ? p : 0);
-    a[1][j] = to_v * acts[j] + (j == 1 ? e : 0);
-    a[3][j] = delayed ? law[j] : 0;
-  }
-  a[2][0] = 1;
+  const glm::dvec4 law(-stiffness - damping / kPeriod, 0, damping / kPeriod, 0), waiting(0, 0, 0, 1);
+  const glm::dvec4& acts = delayed ? waiting : law;
+  const glm::dmat4 a = glm::transpose(glm::dmat4(to_x * acts + glm::dvec4(1, p, 0, 0), to_v * acts + glm::dvec4(0, e, 0, 0),
+                                                 glm::dvec4(1, 0, 0, 0), delayed ? law : glm::dvec4(0.0)));
 
   // Faddeev-LeVerrier algorithm
   std::vector<double> c{1};
-  Matrix m{};
+  glm::dmat4 m(0.0);
   for (int k = 1; k <= n; ++k) {
-    Matrix next{};
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = 0; j < 4; ++j)
-        for (std::size_t l = 0; l < 4; ++l) next[i][j] += a[i][l] * m[l][j];
-    for (std::size_t i = 0; i < 4; ++i) next[i][i] += c.back();
-    m = next;
-    double trace = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t l = 0; l < 4; ++l) trace += a[i][l] * m[l][i];
-    c.push_back(-trace / k);
+    m = a * m + glm::dmat4(c.back());
+    const glm::dmat4 am = a * m;
+    c.push_back(-(am[0][0] + am[1][1] + am[2][2] + am[3][3]) / k);
   }
   while (c.size() > 1) {
     if (std::fabs(c.back()) >= std::fabs(c.front())) return false;
@@ -122,11 +102,10 @@ double bisect(double lo, double hi, double relative, const F& stable) {
   return 0.5 * (lo + hi);
 }
 
-struct Limit {
-  double damping, without_delay, with_delay;  ///< derived
-};
-
 TEST(ClosedLoopTest, TheLargestStableStiffnessMatchesTheTable) {
+  struct Limit {
+    double damping, without_delay, with_delay;  ///< derived
+  };
   for (const Limit& row : {Limit{0, 994, 332}, Limit{5, 10585, 3535}, Limit{20, 36061, 11660}, Limit{50, 73324, 21522}})
     for (const bool delayed : {false, true}) {
       const double expected = delayed ? row.with_delay : row.without_delay;
@@ -142,16 +121,20 @@ TEST(ClosedLoopTest, TheLargestStableStiffnessMatchesTheTable) {
   EXPECT_FALSE(settles(1, 200, kPeriod));
 }
 
+double max_kinetic_j(ClosedLoop& loop, int ticks) {
+  double max_j = 0;
+  for (int i = 0; i < ticks; ++i) {
+    loop.step();
+    max_j = std::max(max_j, loop.kinetic_j());
+  }
+  return max_j;
+}
+
 /// min(E + int b v^2) / E0 over 4 s of a spring that is released from rest.
 double min_relative_energy(const HapticProgram& p, double stiffness, double delay_s = 0) {
   ClosedLoop loop(p, bare(delay_s), {{0, {0, 0, 0.01}}});
-  double max_kinetic_j = 0;
-  for (int i = 0; i < 4000; ++i) {
-    loop.step();
-    max_kinetic_j = std::max(max_kinetic_j, loop.kinetic_j());
-  }
   // measured on the mass: energy that the spring gave and the damping did not dissipate is kinetic
-  return -max_kinetic_j / (0.5 * stiffness * 1e-4);
+  return -max_kinetic_j(loop, 4000) / (0.5 * stiffness * 1e-4);
 }
 
 TEST(ClosedLoopTest, TheEnergyCriterionSeparates990From1010NewtonsPerMetre) {
@@ -245,12 +228,7 @@ double unrest_j(const HapticProgram& p, SimulatedDeviceParameters hand) {
   hand.tremor_m = 2e-5;
   ClosedLoop loop(p, hand, {{0, {0, 0, 0.01}}, {0.1, {0, 0, -0.01}}});
   loop.run(3500);
-  double max_j = 0;
-  for (int i = 0; i < 500; ++i) {
-    loop.step();
-    max_j = std::max(max_j, loop.kinetic_j());
-  }
-  return max_j;
+  return max_kinetic_j(loop, 500);
 }
 
 TEST(ClosedLoopTest, AWallIsStableWithDelayAndEncoders) {
@@ -278,4 +256,4 @@ TEST(ClosedLoopTest, TheStiffnessCapMakesAStiffWallStable) {
   EXPECT_LT(unrest_j(p, hand), 1e-4);
 }
 
-}  // namespace closed_loop_test
+}  // namespace catena::haptics::closed_loop_test

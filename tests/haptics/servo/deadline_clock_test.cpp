@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace catena::haptics {
-namespace deadline_clock_test {
+namespace catena::haptics::deadline_clock_test {
 
 constexpr std::int64_t kMs = 1'000'000, kFirst = 77 * kMs;
 
@@ -100,5 +99,4 @@ TEST(DeadlineClock, AGapLongerThanTheLimitMarksTheNextTickAsStalled) {
   EXPECT_FALSE(pace.begin_tick(at(1e9)).stalled) << "without a limit";
 }
 
-}  // namespace deadline_clock_test
-}  // namespace catena::haptics
+}  // namespace catena::haptics::deadline_clock_test

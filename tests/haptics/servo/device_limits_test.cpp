@@ -5,10 +5,7 @@
 
 #include "haptics/device/registry.h"
 
-namespace device_limits_test {
-
-using namespace catena;
-using namespace catena::haptics;
+namespace catena::haptics::device_limits_test {
 
 TEST(DeviceLimits, ADeviceWithoutForceOutputHasNoLimits) {
   const DeviceLimits limits = compute_device_limits(nominal_capabilities("null"), {});
@@ -85,4 +82,4 @@ TEST(DeviceLimits, ADeviceWithTorqueGetsASafeRotationalSpring) {
   EXPECT_EQ(compute_device_limits(device, s).max_rotational_stiffness_nm_per_rad, DeviceLimits::kUnlimited);
 }
 
-}  // namespace device_limits_test
+}  // namespace catena::haptics::device_limits_test

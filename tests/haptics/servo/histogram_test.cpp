@@ -9,8 +9,7 @@
 
 #include "engine/base/numbers.h"
 
-namespace catena::haptics {
-namespace histogram_test {
+namespace catena::haptics::histogram_test {
 
 TEST(Histogram, AnEmptyHistogramIsAllZero) {
   const HistogramSummary f = Histogram().summarize();
@@ -91,5 +90,4 @@ TEST(Histogram, CanBeReadWhileItIsFilled) {
   writer.join();
 }
 
-}  // namespace histogram_test
-}  // namespace catena::haptics
+}  // namespace catena::haptics::histogram_test

@@ -2,12 +2,13 @@
 /// Shared helpers of the recording tests: a fully read log, and a device that limits the servo to the log's speed.
 #pragma once
 #include <gtest/gtest.h>
+
 #include <atomic>
 
-#include <thread>
-
-#include "haptics/servo/servo.h"
+#include "tests/haptics/device/scripted_device.h"
+#include "tests/haptics/servo/run_servo.h"
 #include "tests/support/recording_fixture.h"
+#include "tests/support/results.h"
 
 namespace catena::test {
 
@@ -47,42 +48,46 @@ inline bool rising_from_one(const std::vector<std::uint64_t>& ticks) {
   return true;
 }
 
-// A device that limits the servo to the speed at which the log is written.
-class ThrottledDevice final : public Device {
+/// Plays a path in a loop; its reads block after `allowed` ticks, and while the writer is 3000 ticks behind.
+class PathDevice final : public ScriptedDevice {
  public:
-  ThrottledDevice(const LogWriter& writer, std::vector<ProbeSample> path) : writer_(writer), path_(std::move(path)) {}
-  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+  explicit PathDevice(std::vector<ProbeSample> path, std::uint64_t allowed_ticks = 0, const LogWriter* writer = nullptr)
+      : allowed(allowed_ticks), path_(std::move(path)), writer_(writer) {}
   DeviceInput read() noexcept override {
-    while (reads_ > writer_.status().ticks + 3000 || reads_ >= allowed_.load(std::memory_order_acquire)) std::this_thread::yield();
-    const ProbeSample& p = path_[reads_ % path_.size()];
-    DeviceInput input;
-    input.position_m = p.position;
-    input.orientation = p.orientation;
-    input.buttons = p.buttons;
-    input.forces_on = p.forces_on;
-    input.status = p.condition == TickCondition::no_device ? DeviceStatus::lost : DeviceStatus::ready;
-    ++reads_;
-    return input;
+    while (reads_ >= allowed || (writer_ != nullptr && reads_ > writer_->status().ticks + 3000)) std::this_thread::yield();
+    const ProbeSample& p = path_[reads_++ % path_.size()];
+    DeviceInput now;
+    now.position_m = p.position;
+    now.orientation = p.orientation;
+    now.buttons = p.buttons;
+    now.forces_on = p.forces_on;
+    now.status = p.condition == TickCondition::no_device ? DeviceStatus::lost : DeviceStatus::ready;
+    return now;
   }
-  void write(const DeviceOutput&) noexcept override {}
-  void allow(std::uint64_t ticks) { allowed_.store(ticks, std::memory_order_release); }  ///< counted from the start
+  std::atomic<std::uint64_t> allowed;  ///< counted from the start
 
  private:
-  const LogWriter& writer_;
-  std::atomic<std::uint64_t> allowed_{~std::uint64_t{0}};
   std::vector<ProbeSample> path_;
-  DeviceCapabilities capabilities_;
+  const LogWriter* writer_;
   std::uint64_t reads_ = 0;
 };
+
+/// Replay of a recording; an error of it ends the test case.
+inline LogReplay replay_of(Result<LogReader> reader, const std::vector<ProgramChange>& changes) {
+  return value_of(replay_log(*reader, make_replay_hooks(changes)));
+}
 
 inline std::shared_ptr<const HapticProgram> make_numbered_program(std::uint64_t epoch) {
   return epoch % 3 == 0 ? make_level_program(epoch, {"a"}) : make_level_program(epoch, {"b", "a"});
 }
 
-inline Result<LogReplay> replay_numbered(LogReader& reader) {
+/// Replay of a recording with make_numbered_program(), which must be exact.
+inline LogReplay replay_numbered(LogReader& reader) {
   LogReplayHooks hooks;
   hooks.build = [](const LogProgram& p) -> Result<std::shared_ptr<const HapticProgram>> { return make_numbered_program(p.epoch); };
-  return replay_log(reader, hooks);
+  LogReplay result = value_of(replay_log(reader, hooks));
+  EXPECT_TRUE(result.exact()) << result.first_differing << " " << result.difference << result.stop_reason;
+  return result;
 }
 
 inline LogOptions fast_flush() {

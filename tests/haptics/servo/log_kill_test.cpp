@@ -9,12 +9,7 @@
 #include "tests/haptics/servo/log_fixture.h"
 #include "tests/support/child_test.h"
 
-namespace log_kill_test {
-
-using namespace catena;
-using namespace catena::haptics;
-using namespace catena::haptics::log;
-using namespace catena::test;
+namespace catena::test::log_kill_test {
 
 // Child process of the next test: records until it is killed. Skipped without a path in CATENA_LOG_OF_THE_CHILD.
 TEST(LogKill, DISABLED_RecordsUntilItIsKilled) {
@@ -22,12 +17,11 @@ TEST(LogKill, DISABLED_RecordsUntilItIsKilled) {
   if (path.empty()) GTEST_SKIP() << "the child of LogKill.EveryKilledRecordingOpensAndReplaysExactly";
   auto writer = LogWriter::open(path, {}, {}, fast_flush());
   ASSERT_TRUE(writer);
-  ThrottledDevice device(**writer, test::adversarial_path(1000));
   // one program per 200 ticks, independent of thread scheduling
   constexpr std::uint64_t kTicks = 200;
+  PathDevice device(test::adversarial_path(1000), kTicks, writer->get());
   const auto first = make_numbered_program(1);
   (*writer)->add_program(*first);
-  device.allow(kTicks);
   Servo servo(device, first, {.rate_hz = 1000, .paced = false, .sink = writer->get()});
   EXPECT_TRUE(servo.start());
   HapticState seen;
@@ -39,13 +33,13 @@ TEST(LogKill, DISABLED_RecordsUntilItIsKilled) {
     const auto program = make_numbered_program(epoch);
     (*writer)->add_program(*program);
     servo.set_program(program);
-    device.allow(kTicks * epoch);
+    device.allowed = kTicks * epoch;
   }
 }
 
 TEST(LogKill, EveryKilledRecordingOpensAndReplaysExactly) {
   const test::TemporaryFolder folder;
-  std::uint64_t all = 0, programs = 0;
+  std::uint64_t programs = 0;
   for (int moment = 0; moment < 24; ++moment) {
     const std::string path = folder / ("k" + std::to_string(moment) + ".catlog");
     const pid_t child = test::start_case("LogKill.DISABLED_*", {.environment = {"CATENA_LOG_OF_THE_CHILD=" + path}});
@@ -63,21 +57,18 @@ TEST(LogKill, EveryKilledRecordingOpensAndReplaysExactly) {
 
     auto reader = LogReader::open(path);
     ASSERT_TRUE(reader) << reader.error().message;
-    const auto result = replay_numbered(*reader);
-    ASSERT_TRUE(result) << result.error().message;
-    EXPECT_TRUE(result->exact()) << moment << ": tick " << result->first_differing << " " << result->difference << result->stop_reason;
+    SCOPED_TRACE(moment);
+    const LogReplay result = replay_numbered(*reader);
     EXPECT_FALSE(reader->end().has_value());
     EXPECT_FALSE(reader->damaged()) << reader->end_summary();
-    EXPECT_EQ(result->stats.ticks, reader->last_tick());
+    EXPECT_EQ(result.stats.ticks, reader->last_tick());
     // the first block of 200 ticks may be truncated
     if (moment > 4) {
-      EXPECT_GE(result->stats.ticks, 1u) << moment;
+      EXPECT_GE(result.stats.ticks, 1u) << moment;
     }
-    all += result->stats.ticks;
     programs = std::max(programs, reader->program().epoch);
   }
   EXPECT_GE(programs, 3u) << "some were killed after a change of the program";
-  RecordProperty("ticks", static_cast<int>(all));
 }
 
-}  // namespace log_kill_test
+}  // namespace catena::test::log_kill_test

@@ -3,12 +3,7 @@
 #include "haptics/servo/log/poses.h"
 #include "tests/haptics/servo/log_fixture.h"
 
-namespace log_poses_test {
-
-using namespace catena;
-using namespace catena::haptics;
-using namespace catena::haptics::log;
-using namespace catena::test;
+namespace catena::test::log_poses_test {
 
 LogPoses some(int k) {
   LogPoses out;
@@ -70,10 +65,9 @@ TEST(LogPoses, AreRecordedBesideTicksWithoutChangingThem) {
   while (without->next() != LogEvent::done) {
   }
   EXPECT_EQ(without->end()->state_hash, reader->end()->state_hash);
-  auto again = LogReader::open(folder / "with");
-  const auto replayed = replay_log(*again, test::make_replay_hooks(changes));
-  EXPECT_EQ(replayed->stats.ticks, 3000u);
-  EXPECT_EQ(replayed->differing, 0u);
+  const LogReplay replayed = replay_of(LogReader::open(folder / "with"), changes);
+  EXPECT_EQ(replayed.stats.ticks, 3000u);
+  EXPECT_EQ(replayed.differing, 0u);
 }
 
 TEST(LogPoses, AreWrittenAsCsv) {
@@ -85,4 +79,4 @@ TEST(LogPoses, AreWrittenAsCsv) {
   EXPECT_TRUE(poses_csv_header().starts_with("tick,predicted_ns,head_x,head_y,head_z,head_qw"));
 }
 
-}  // namespace log_poses_test
+}  // namespace catena::test::log_poses_test

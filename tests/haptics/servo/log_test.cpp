@@ -7,12 +7,7 @@
 #include "engine/base/hash.h"
 #include "tests/haptics/servo/log_fixture.h"
 
-namespace log_test {
-
-using namespace catena;
-using namespace catena::haptics;
-using namespace catena::haptics::log;
-using namespace catena::test;
+namespace catena::test::log_test {
 
 std::uint64_t fnv(const std::string& bytes, std::size_t at, std::size_t size) {
   Fnv1a hash;
@@ -54,14 +49,23 @@ void seal(std::string& bytes, const Block& block) {
 
 BlockType type_of(const Block& block) { return static_cast<BlockType>(block.head.type); }
 
+/// Expects the given members of both to be equal.
+template <class T, class... Member>
+void expect_equal(const T& a, const T& b, Member T::*... members) {
+  int member = 0;
+  const auto compare = [&](const auto& left, const auto& right) { EXPECT_EQ(left, right) << "member " << member++; };
+  (compare(a.*members, b.*members), ...);
+}
+
 TEST(Log, RecordsEveryTickBitForBit) {
   const test::TemporaryFolder folder;
   const std::vector<ProgramChange> changes{{1, test::make_level_program(7, {"a", "b"}), {}},
                                            {301, test::make_level_program(9, {"b", "c", "a"}), "text"}};
   const auto path = test::adversarial_path(900);
+  const LogHeader header{"s.json", "/w", "scene", {"f=g"}, "falcon", "0.1.0", 2000, 77, "a trial"};
   std::uint64_t hash = 0;
   {
-    auto writer = LogWriter::open(folder / "l.catlog", {"s.json", "/w", "scene", {"f=g"}, "falcon", "0.1.0", 2000, 77, "a trial"});
+    auto writer = LogWriter::open(folder / "l.catlog", header);
     ASSERT_TRUE(writer) << writer.error().message;
     hash = test::record_ticks(**writer, changes, path);
     const Outcome done = (*writer)->finish();
@@ -72,14 +76,8 @@ TEST(Log, RecordsEveryTickBitForBit) {
   }
   auto reader = LogReader::open(folder / "l.catlog");
   ASSERT_TRUE(reader) << reader.error().message;
-  EXPECT_EQ(reader->header().scene_path, "s.json");
-  EXPECT_EQ(reader->header().working_folder, "/w");
-  EXPECT_EQ(reader->header().scene_text, "scene");
-  EXPECT_EQ(reader->header().fields, std::vector<std::string>{"f=g"});
-  EXPECT_EQ(reader->header().device, "falcon");
-  EXPECT_EQ(reader->header().rate_hz, 2000);
-  EXPECT_EQ(reader->header().started_unix_ns, 77);
-  EXPECT_EQ(reader->header().about, "a trial");
+  expect_equal(reader->header(), header, &LogHeader::scene_path, &LogHeader::working_folder, &LogHeader::scene_text, &LogHeader::fields,
+               &LogHeader::device, &LogHeader::rate_hz, &LogHeader::started_unix_ns, &LogHeader::about);
   test::run_ticks(changes, path, [&](const ProbeSample& input, const HapticState& output) {
     LogEvent event = reader->next();
     if (output.tick == 1 || output.tick == 301) {
@@ -99,24 +97,6 @@ TEST(Log, RecordsEveryTickBitForBit) {
     EXPECT_EQ(got.output.program_epoch, output.program_epoch);
     EXPECT_EQ(got.output.link_count, output.link_count);
     EXPECT_EQ(got.output.mode, output.mode);
-    EXPECT_EQ(std::memcmp(&got.output.force_n, &output.force_n, sizeof output.force_n), 0);
-    EXPECT_EQ(std::memcmp(&got.input.position, &input.position, sizeof input.position), 0);
-    EXPECT_EQ(std::memcmp(&got.input.t_s, &input.t_s, sizeof input.t_s), 0);
-    EXPECT_EQ(std::memcmp(&got.input.orientation, &input.orientation, sizeof input.orientation), 0);
-    EXPECT_EQ(got.input.condition, input.condition);
-    EXPECT_EQ(got.input.forces_on, input.forces_on);
-    EXPECT_EQ(got.input.buttons, input.buttons);
-    EXPECT_EQ(got.output.force_state, output.force_state);
-    EXPECT_EQ(got.output.period_us, output.period_us);
-    EXPECT_EQ(got.output.compute_us, output.compute_us);
-    EXPECT_EQ(got.output.device_us, output.device_us);
-    EXPECT_EQ(got.output.missed_deadlines, output.missed_deadlines);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(output.link_count); ++i) {
-      EXPECT_EQ(std::memcmp(&got.output.links[i].proxy, &output.links[i].proxy, sizeof(Vec3)), 0);
-      EXPECT_EQ(got.output.links[i].status, output.links[i].status);
-      EXPECT_EQ(got.output.links[i].evaluations, output.links[i].evaluations);
-      EXPECT_EQ(got.output.links[i].active, output.links[i].active);
-    }
   });
   EXPECT_EQ(reader->next(), LogEvent::done);
   ASSERT_TRUE(reader->end());
@@ -173,53 +153,20 @@ TEST(Log, EveryFieldOfARecordRoundTrips) {
   ASSERT_EQ(pack_tick(tick.input, out, words.data()), kMaxRecordWords);
   LogTick got;
   ASSERT_TRUE(unpack_tick(words, record_layout(out), got));
-  EXPECT_EQ(got.input.t_s, tick.input.t_s);
-  EXPECT_EQ(got.input.position, tick.input.position);
-  EXPECT_EQ(got.input.orientation, tick.input.orientation);
-  EXPECT_EQ(got.input.buttons, tick.input.buttons);
-  EXPECT_EQ(got.input.condition, tick.input.condition);
-  EXPECT_EQ(got.input.forces_on, false);
+  using P = ProbeSample;
+  using H = HapticState;
+  using L = LinkReport;
+  using W = WidgetReport;
+  expect_equal(got.input, tick.input, &P::t_s, &P::position, &P::orientation, &P::buttons, &P::condition, &P::forces_on);
   EXPECT_EQ(got.output.probe, tick.input.position);
   EXPECT_EQ(got.output.orientation, tick.input.orientation);
-  EXPECT_EQ(got.output.force_state, out.force_state);
-  EXPECT_EQ(got.output.mode, 5);
-  EXPECT_EQ(got.output.t_s, out.t_s);
-  EXPECT_EQ(got.output.energy_j, out.energy_j);
-  EXPECT_EQ(got.output.dissipated_j, out.dissipated_j);
-  EXPECT_EQ(got.output.force_n, out.force_n);
-  EXPECT_EQ(got.output.coupling_force_n, out.coupling_force_n);
-  EXPECT_EQ(got.output.torque_nm, out.torque_nm);
-  EXPECT_EQ(got.output.missed_deadlines, out.missed_deadlines);
-  EXPECT_EQ(got.output.period_us, out.period_us);
-  EXPECT_EQ(got.output.compute_us, out.compute_us);
-  EXPECT_EQ(got.output.device_us, out.device_us);
-  for (std::size_t i = 0; i < kMaxLinks; ++i) {
-    const LinkReport &a = got.output.links[i], &b = out.links[i];
-    EXPECT_EQ(a.proxy, b.proxy);
-    EXPECT_EQ(a.force_n, b.force_n);
-    EXPECT_EQ(a.torque_nm, b.torque_nm);
-    EXPECT_EQ(a.orientation, b.orientation);
-    EXPECT_EQ(a.residual, b.residual);
-    EXPECT_EQ(a.weight, b.weight);
-    EXPECT_EQ(a.stiffness_n_per_m, b.stiffness_n_per_m);
-    EXPECT_EQ(a.gap, b.gap);
-    EXPECT_EQ(a.accounted_j, b.accounted_j);
-    EXPECT_EQ(a.release_ratio, b.release_ratio);
-    EXPECT_EQ(a.evaluations, b.evaluations);
-    EXPECT_EQ(a.status, b.status);
-    EXPECT_EQ(a.active, b.active);
-    EXPECT_EQ(a.released, b.released);
-  }
-  EXPECT_EQ(got.output.widget_count, kMaxWidgets);
-  for (std::size_t i = 0; i < kMaxWidgets; ++i) {
-    const WidgetReport &a = got.output.widgets[i], &b = out.widgets[i];
-    EXPECT_EQ(a.pose, b.pose);
-    EXPECT_EQ(a.value, b.value);
-    EXPECT_EQ(a.revision, b.revision);
-    EXPECT_EQ(a.mode, b.mode);
-    EXPECT_EQ(a.handle, b.handle);
-    EXPECT_EQ(a.active_planes, b.active_planes);
-  }
+  expect_equal(got.output, out, &H::force_state, &H::mode, &H::t_s, &H::energy_j, &H::dissipated_j, &H::force_n, &H::coupling_force_n,
+               &H::torque_nm, &H::missed_deadlines, &H::period_us, &H::compute_us, &H::device_us, &H::widget_count);
+  for (std::size_t i = 0; i < kMaxLinks; ++i)
+    expect_equal(got.output.links[i], out.links[i], &L::proxy, &L::force_n, &L::torque_nm, &L::orientation, &L::residual, &L::weight,
+                 &L::stiffness_n_per_m, &L::gap, &L::accounted_j, &L::release_ratio, &L::evaluations, &L::status, &L::active, &L::released);
+  for (std::size_t i = 0; i < kMaxWidgets; ++i)
+    expect_equal(got.output.widgets[i], out.widgets[i], &W::pose, &W::value, &W::revision, &W::mode, &W::handle, &W::active_planes);
 }
 
 TEST(Log, ProgramsRoundTripWithAllTheirNumbers) {
@@ -328,13 +275,10 @@ TEST(Log, ADamagedProgramIsUnknownAndStopsReplay) {
   const LogContents read = read_all(bytes);
   EXPECT_EQ(read.ticks.size(), 60u);
   EXPECT_TRUE(read.damaged);
-  auto reader = LogReader::open(make_memory_source(bytes), "x.catlog");
-  const std::vector<ProgramChange> changes{{1, test::make_level_program(1, {"a"}), {}}};
-  const auto result = replay_log(*reader, test::make_replay_hooks(changes));
-  ASSERT_TRUE(result) << result.error().message;
-  EXPECT_EQ(result->stats.ticks, 10u);
-  EXPECT_EQ(result->differing, 0u);
-  EXPECT_NE(result->stop_reason.find("tick 11"), std::string::npos) << result->stop_reason;
+  const LogReplay result = replay_of(LogReader::open(make_memory_source(bytes), "x.catlog"), {{1, test::make_level_program(1, {"a"}), {}}});
+  EXPECT_EQ(result.stats.ticks, 10u);
+  EXPECT_EQ(result.differing, 0u);
+  EXPECT_NE(result.stop_reason.find("tick 11"), std::string::npos) << result.stop_reason;
 }
 
 TEST(Log, InvalidFilesAreRefusedWithWhatWasExpected) {
@@ -367,13 +311,10 @@ TEST(Log, ReplayIsExactOverEveryTickConditionAndProgramChange) {
   auto writer = LogWriter::open(folder / "l.catlog", {});
   const std::uint64_t hash = test::record_ticks(**writer, changes, test::adversarial_path(3000));
   ASSERT_TRUE((*writer)->finish());
-  auto reader = LogReader::open(folder / "l.catlog");
-  ASSERT_TRUE(reader);
-  const auto result = replay_log(*reader, test::make_replay_hooks(changes));
-  ASSERT_TRUE(result) << result.error().message;
-  EXPECT_EQ(result->stats.ticks, 3000u);
-  EXPECT_TRUE(result->exact()) << result->difference << result->stop_reason;
-  EXPECT_EQ(result->stats.state_hash, hash);
+  const LogReplay result = replay_of(LogReader::open(folder / "l.catlog"), changes);
+  EXPECT_EQ(result.stats.ticks, 3000u);
+  EXPECT_TRUE(result.exact()) << result.difference << result.stop_reason;
+  EXPECT_EQ(result.stats.state_hash, hash);
 }
 
 TEST(Log, AFlippedForceBitIsReportedAtItsTick) {
@@ -383,22 +324,17 @@ TEST(Log, AFlippedForceBitIsReportedAtItsTick) {
   auto writer = LogWriter::open(folder / "l.catlog", {});
   test::run_ticks(changes, test::adversarial_path(500), [&](const ProbeSample& input, const HapticState& output) {
     HapticState state = output;
-    if (state.tick == 123) {
-      auto* bits = reinterpret_cast<unsigned char*>(&state.force_n.z);
-      bits[0] ^= 1;
-    }
+    if (state.tick == 123) *reinterpret_cast<unsigned char*>(&state.force_n.z) ^= 1;
     if (state.tick == 1) (*writer)->add_program(*program);
     (*writer)->put(input, state);
   });
   ASSERT_TRUE((*writer)->finish());
-  auto reader = LogReader::open(folder / "l.catlog");
-  const auto result = replay_log(*reader, test::make_replay_hooks(changes));
-  ASSERT_TRUE(result);
-  EXPECT_FALSE(result->exact());
-  EXPECT_EQ(result->differing, 1u);
-  EXPECT_EQ(result->first_differing, 123u);
-  EXPECT_TRUE(result->difference.starts_with("force_z recorded ")) << result->difference;
-  EXPECT_EQ(result->stats.ticks, 500u);
+  const LogReplay result = replay_of(LogReader::open(folder / "l.catlog"), changes);
+  EXPECT_FALSE(result.exact());
+  EXPECT_EQ(result.differing, 1u);
+  EXPECT_EQ(result.first_differing, 123u);
+  EXPECT_TRUE(result.difference.starts_with("force_z recorded ")) << result.difference;
+  EXPECT_EQ(result.stats.ticks, 500u);
 }
 
 TEST(Log, AnyFlippedBitOfTheLastRecordIsDetected) {
@@ -422,21 +358,19 @@ TEST(Log, AnyFlippedBitOfTheLastRecordIsDetected) {
     turned[word_at] = static_cast<char>(turned[word_at] ^ 1);
     seal(turned, ticks);
     word_at += 8;
-    auto reader = LogReader::open(make_memory_source(turned), "x.catlog");
-    const auto result = replay_log(*reader, test::make_replay_hooks(changes));
-    ASSERT_TRUE(result);
-    ASSERT_EQ(result->stats.ticks, 3u) << k;
+    const LogReplay result = replay_of(LogReader::open(make_memory_source(turned), "x.catlog"), changes);
+    ASSERT_EQ(result.stats.ticks, 3u) << k;
     const bool measured = k >= 21 && k < 24, input = k < 9;
     if (measured) {
-      EXPECT_TRUE(result->exact()) << k;
+      EXPECT_TRUE(result.exact()) << k;
     } else if (!input) {
-      EXPECT_EQ(result->first_differing, 1u) << k;
+      EXPECT_EQ(result.first_differing, 1u) << k;
       ++words;
     }
-    if (!result->exact()) ++found;
+    if (!result.exact()) ++found;
   }
   EXPECT_GE(words, 8);
   EXPECT_GE(found, words);
 }
 
-}  // namespace log_test
+}  // namespace catena::test::log_test

@@ -11,17 +11,14 @@
 
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <thread>
 
-#include "haptics/device/device.h"
-#include "haptics/servo/servo.h"
+#include "tests/haptics/device/scripted_device.h"
+#include "tests/haptics/servo/run_servo.h"
 #include "tests/support/child_test.h"
 
-namespace catena::haptics {
-namespace realtime_test {
+namespace catena::haptics::realtime_test {
 
 /// Drops every privilege of the calling thread only.
 bool drop_privileges() {
@@ -30,14 +27,10 @@ bool drop_privileges() {
   return syscall(SYS_capset, &header, none) == 0;
 }
 
-bool limited(int what) {
-  rlimit limit{};
-  return getrlimit(static_cast<__rlimit_resource>(what), &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
-}
-
 TEST(Realtime, WithoutPrivilegesTheNotesNameWhatIsMissingAndTheRemedy) {
-  rlimit priority{};
-  if (getrlimit(RLIMIT_RTPRIO, &priority) != 0 || priority.rlim_cur > 0 || !limited(RLIMIT_MEMLOCK))
+  rlimit priority{}, memory{};
+  if (getrlimit(RLIMIT_RTPRIO, &priority) != 0 || priority.rlim_cur > 0 || getrlimit(RLIMIT_MEMLOCK, &memory) != 0 ||
+      memory.rlim_cur == RLIM_INFINITY)
     GTEST_SKIP() << "everybody may do it here";
   RealtimeReport report;
   bool dropped = false;
@@ -63,9 +56,7 @@ TEST(Realtime, AMissingCoreIsReportedAndTheServoRuns) {
   NullDevice device;
   Servo servo(device, std::make_shared<HapticProgram>(),
               {.max_ticks = 5, .realtime = {.fifo = false, .lock_memory = false, .cpu = 100000}});
-  EXPECT_TRUE(servo.start());
-  while (servo.running()) std::this_thread::yield();
-  servo.stop();
+  test::run_to_end(servo);
   const ServoStats r = servo.stats();
   EXPECT_EQ(r.ticks, 5u);
   EXPECT_EQ(r.realtime.cpu, -1);
@@ -76,29 +67,27 @@ TEST(Realtime, AMissingCoreIsReportedAndTheServoRuns) {
 TEST(Realtime, EveryRequestIsGrantedOrHasANote) {
   NullDevice device;
   Servo servo(device, std::make_shared<HapticProgram>(), {.max_ticks = 5});
-  EXPECT_TRUE(servo.start());
+  test::run_to_end(servo);
   const RealtimeReport r = servo.stats().realtime;
-  servo.stop();
   const std::size_t refused = (r.fifo ? 0u : 1u) + (r.locked ? 0u : 1u);
   EXPECT_EQ(r.notes.size(), refused);
   for (const std::string& note : r.notes) EXPECT_NE(note.find("join the group catena"), std::string::npos) << note;
   if (!r.fifo) {
     EXPECT_EQ(r.cpu, -1) << "bound to a core only with a fixed priority";
+    return;
   }
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_RTTIME, &limit), 0);
+  EXPECT_LE(limit.rlim_cur, static_cast<rlim_t>(1e6 * kRealtimeSoftLimit_s));
+  EXPECT_LE(limit.rlim_max, static_cast<rlim_t>(1e6 * kRealtimeHardLimit_s));
 }
 
 /// A device whose read takes longer than a period at 10 kHz.
-class Slow final : public Device {
- public:
-  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+struct Slow final : test::ScriptedDevice {
   DeviceInput read() noexcept override {
     std::this_thread::sleep_for(std::chrono::microseconds(150));
     return {};
   }
-  void write(const DeviceOutput&) noexcept override {}
-
- private:
-  DeviceCapabilities capabilities_;
 };
 
 TEST(Realtime, FixedPriorityIsDroppedWhenTicksNeverFitThePeriod) {
@@ -117,22 +106,16 @@ TEST(Realtime, FixedPriorityIsDroppedWhenTicksNeverFitThePeriod) {
 }
 
 /// Hangs in one read until it is stopped; records the number of cores that its watchdog may run on.
-class Stuck final : public Device {
- public:
-  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+struct Stuck final : test::ScriptedDevice {
   DeviceInput read() noexcept override {
     for (int i = 0; i < 10000 && cores == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return {};
   }
-  void write(const DeviceOutput&) noexcept override {}
   void stop() noexcept override {
     cpu_set_t set;
     if (cores == 0 && sched_getaffinity(0, sizeof set, &set) == 0) cores = CPU_COUNT(&set);
   }
   std::atomic<int> cores{0};
-
- private:
-  DeviceCapabilities capabilities_;
 };
 
 TEST(Realtime, TheWatchdogIsNotPinnedToTheServosCore) {
@@ -143,27 +126,23 @@ TEST(Realtime, TheWatchdogIsNotPinnedToTheServosCore) {
   while (!CPU_ISSET(static_cast<unsigned>(core), &allowed)) ++core;
   Stuck device;
   Servo servo(device, std::make_shared<HapticProgram>(), {.max_ticks = 2, .realtime = {.fifo = false, .lock_memory = false, .cpu = core}});
-  EXPECT_TRUE(servo.start());
-  while (servo.running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  servo.stop();
+  test::run_to_end(servo);
   EXPECT_EQ(servo.stats().realtime.cpu, core);
   EXPECT_GE(servo.stats().watchdog_trips, 1u);
   EXPECT_EQ(device.cores, CPU_COUNT(&allowed));
 }
 
 TEST(Realtime, FixedPriorityIsPerThreadAndRestored) {
-  std::vector<std::string> notes;
   const int before = sched_getscheduler(0);
   RealtimeReport report;
-  std::thread other([&] {
+  std::thread([&] {
     {
       const RealtimeThread prepared({.lock_memory = false}, nullptr, 0);
       report = prepared.report();
       EXPECT_EQ((sched_getscheduler(0) & ~SCHED_RESET_ON_FORK) == SCHED_FIFO, report.fifo);
     }
     EXPECT_EQ(sched_getscheduler(0) & ~SCHED_RESET_ON_FORK, SCHED_OTHER);
-  });
-  other.join();
+  }).join();
   EXPECT_EQ(sched_getscheduler(0), before);
   EXPECT_EQ(report.notes.empty(), report.fifo);
 }
@@ -189,18 +168,4 @@ TEST(Realtime, AnEndlessTickIsKilledByTheRealtimeLimit) {
   }
 }
 
-TEST(Realtime, AServoWithFixedPrioritySetsTheRealtimeLimit) {
-  NullDevice device;
-  Servo servo(device, std::make_shared<HapticProgram>(), {.max_ticks = 5});
-  ASSERT_TRUE(servo.start());
-  while (servo.running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  servo.stop();
-  rlimit limit{};
-  ASSERT_EQ(getrlimit(RLIMIT_RTTIME, &limit), 0);
-  if (!servo.stats().realtime.fifo) GTEST_SKIP() << "a fixed priority is not permitted here";
-  EXPECT_LE(limit.rlim_cur, static_cast<rlim_t>(1e6 * kRealtimeSoftLimit_s));
-  EXPECT_LE(limit.rlim_max, static_cast<rlim_t>(1e6 * kRealtimeHardLimit_s));
-}
-
-}  // namespace realtime_test
-}  // namespace catena::haptics
+}  // namespace catena::haptics::realtime_test

@@ -9,14 +9,7 @@
 #include "haptics/device/device.h"
 #include "haptics/servo/servo.h"
 
-namespace catena::haptics {
-namespace servo_stats_test {
-
-json::Node parsed(const std::string& text) {
-  auto node = json::parse(text, "stats");
-  EXPECT_TRUE(node) << text;
-  return node ? *node : json::Node{};
-}
+namespace catena::haptics::servo_stats_test {
 
 TEST(ServoStats, CanBeReadByOtherThreadsWhileTheServoRuns) {
   NullDevice device;
@@ -63,15 +56,12 @@ TEST(ServoStats, JsonHasEveryFigure) {
   r.realtime.notes = {"one \"quoted\"", "two"};
   r.period = {2498, 1000, 1010, 1100, 1234.5};
   r.device = {2499, 1, 2, 3, 4, {{0.5, 2000}, {1, 499}}};
-  const json::Node root = parsed(servo_json(r, "a \"device\"", 0xabcu));
+  const json::Node root = *json::parse(servo_json(r, "a \"device\"", 0xabcu), "stats");
   EXPECT_EQ(root.find("device")->string, "a \"device\"");
-  EXPECT_EQ(root.find("rate_hz")->number, 1000);
-  EXPECT_EQ(root.find("seconds")->number, 2.5);
-  EXPECT_EQ(root.find("ticks")->number, 2499);
-  EXPECT_EQ(root.find("missed_deadlines")->number, 3);
-  EXPECT_EQ(root.find("late_ticks")->number, 2);
-  EXPECT_EQ(root.find("lost_ticks")->number, 4);
-  EXPECT_EQ(root.find("watchdog_trips")->number, 1);
+  using Row = std::pair<const char*, double>;
+  for (const auto& [name, value] : {Row{"rate_hz", 1000}, Row{"seconds", 2.5}, Row{"ticks", 2499}, Row{"missed_deadlines", 3},
+                                    Row{"late_ticks", 2}, Row{"lost_ticks", 4}, Row{"watchdog_trips", 1}})
+    EXPECT_EQ(root.find(name)->number, value) << name;
   const json::Node& realtime = *root.find("realtime");
   EXPECT_TRUE(realtime.find("fifo")->boolean);
   EXPECT_FALSE(realtime.find("locked")->boolean);
@@ -88,5 +78,4 @@ TEST(ServoStats, JsonHasEveryFigure) {
   EXPECT_EQ(root.find("state_hash")->string, "0000000000000abc");
 }
 
-}  // namespace servo_stats_test
-}  // namespace catena::haptics
+}  // namespace catena::haptics::servo_stats_test

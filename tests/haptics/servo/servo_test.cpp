@@ -8,12 +8,10 @@
 #include "haptics/device/recorded_path.h"
 #include "haptics/device/simulated_device.h"
 #include "haptics/servo/replay.h"
+#include "tests/haptics/servo/run_servo.h"
 #include "tests/support/simple_links.h"
 
-namespace servo_test {
-
-using namespace catena;
-using namespace catena::haptics;
+namespace catena::haptics::servo_test {
 
 std::shared_ptr<HapticProgram> program_at(double height, std::uint64_t epoch) {
   auto program = std::make_shared<HapticProgram>();
@@ -74,53 +72,8 @@ TEST(Servo, ASimulatedHandSettlesWhereItsGripBalancesTheForce) {
   program->coupling.damping_ns_per_m = 0;
   SimulatedDevice hand({{0, {0, 0, 0}}}, {.mass_kg = 0.15, .grip_stiffness_n_per_m = 500, .grip_damping_ns_per_m = 5, .period_s = 1e-3});
   Servo servo(hand, program, {.rate_hz = 1000, .paced = false, .max_ticks = 4000});
-  EXPECT_TRUE(servo.start());
-  while (servo.running()) std::this_thread::yield();
-  servo.stop();
+  test::run_to_end(servo);
   EXPECT_NEAR(hand.position_m().z, 0.005, 1e-6);
-}
-
-TEST(Servo, APacedLoopCountsItsTicks) {
-  SimulatedDevice hand({{0, {0, 0, 0}}}, {});
-  Servo servo(hand, program_at(0.5, 1), {.rate_hz = 2000, .paced = true, .max_ticks = 200});
-  EXPECT_TRUE(servo.start());
-  while (servo.running()) std::this_thread::yield();
-  servo.stop();
-  HapticState seen;
-  EXPECT_TRUE(servo.receive(seen));
-  EXPECT_EQ(seen.tick, 200u);
-  EXPECT_GE(seen.t_s, 199 / 2000.0 - 1e-9);
-}
-
-class Unplugged final : public Device {
- public:
-  const DeviceCapabilities& capabilities() const override { return capabilities_; }
-  DeviceInput read() noexcept override {
-    DeviceInput input;
-    input.status = ++reads_ < 10 ? DeviceStatus::ready : DeviceStatus::lost;
-    return input;
-  }
-  void write(const DeviceOutput& output) noexcept override {
-    const Vec3& force = output.force_n;
-    last = force;
-    all_zero_after_loss = all_zero_after_loss && (reads_ < 10 || norm(force) == 0);
-  }
-  Vec3 last{1.0};
-  bool all_zero_after_loss = true;
-
- private:
-  DeviceCapabilities capabilities_;
-  int reads_ = 0;
-};
-
-TEST(Servo, ALostDeviceGetsZeroForceInTheSameTick) {
-  Unplugged device;
-  Servo servo(device, program_at(0.5, 1), {.rate_hz = 1000, .paced = false, .max_ticks = 50});
-  EXPECT_TRUE(servo.start());
-  while (servo.running()) std::this_thread::yield();
-  servo.stop();
-  EXPECT_TRUE(device.all_zero_after_loss);
-  EXPECT_EQ(device.last, Vec3(0.0));
 }
 
 TEST(Replay, CountsTicksAndStopsWhenAsked) {
@@ -132,4 +85,4 @@ TEST(Replay, CountsTicksAndStopsWhenAsked) {
   EXPECT_EQ(stats.evaluations_p50, 1);
 }
 
-}  // namespace servo_test
+}  // namespace catena::haptics::servo_test

@@ -4,12 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "haptics/device/simulated_device.h"
+#include "tests/haptics/servo/run_servo.h"
 #include "tests/support/simple_links.h"
 
-namespace servo_tick_test {
-
-using namespace catena;
-using namespace catena::haptics;
+namespace catena::haptics::servo_tick_test {
 
 std::shared_ptr<HapticProgram> turned_program() {
   auto program = std::make_shared<HapticProgram>();
@@ -28,9 +26,7 @@ TEST(ServoTick, MatchesTheServoBitForBit) {
   for (int k = 0; k < 40; ++k) path.push_back({0.05 * k, {0.01 * (k % 5), 0.002 * k, 0.01 * (k % 3)}, 0});
   SimulatedDevice one(path, desktop_device_parameters()), other(path, desktop_device_parameters());
   Servo servo(one, program, {.rate_hz = 1000, .paced = false, .max_ticks = 2000});
-  ASSERT_TRUE(servo.start());
-  while (servo.running()) std::this_thread::yield();
-  servo.stop();
+  test::run_to_end(servo);
 
   StateHash hash;
   ServoStepper stepper(other, *program, 1000);
@@ -54,4 +50,4 @@ TEST(ServoTick, WorldAndDeviceTransformsRoundTrip) {
       << "the hand's z goes along the world's -y";
 }
 
-}  // namespace servo_tick_test
+}  // namespace catena::haptics::servo_tick_test

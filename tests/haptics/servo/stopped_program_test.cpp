@@ -16,16 +16,15 @@
 #include "haptics/device/emulator/emulated_transport.h"
 #include "haptics/device/usb/falcon.h"
 #include "haptics/servo/servo.h"
+#include "tests/haptics/device/scripted_device.h"
 #include "tests/haptics/device/usbfs/ball_link.h"
 #include "tests/support/child_test.h"
 #include "tests/support/support.h"
 
-namespace catena::haptics {
-namespace stopped_program_test {
+namespace catena::haptics::stopped_program_test {
 
 constexpr int kStops = 16;
 constexpr double kRampS = 0.05;
-constexpr std::int64_t kRampNs = 50000000;
 constexpr std::int64_t kStopMs = 75;  // the watchdog trips after 50 ms
 
 /// Time and force of one packet to the motors.
@@ -39,25 +38,25 @@ void nap_ms(std::int64_t ms) { std::this_thread::sleep_for(std::chrono::millisec
 constexpr std::size_t kMaxPackets = 200000;
 
 /// A device without logic of its own: each write is one packet to the motors. It rests 10 mm deep in the ball.
-class PlainDevice final : public Device {
+class PlainDevice final : public test::ScriptedDevice {
  public:
-  explicit PlainDevice(std::vector<Packet>& packets) : packets_(packets) { capabilities_.max_force_n = 10; }
-  const DeviceCapabilities& capabilities() const override { return capabilities_; }
-  DeviceInput read() noexcept override { return {.position_m = {0, 0, 0.13}}; }
-  void write(const DeviceOutput& output) noexcept override {
-    if (packets_.size() < kMaxPackets) packets_.push_back({now_ns(), stopped_ ? 0 : norm(output.force_n)});
+  explicit PlainDevice(std::vector<Packet>& packets) : packets_(packets) {
+    caps.max_force_n = 10;
+    input.position_m = {0, 0, 0.13};
+  }
+  void write(const DeviceOutput& now) noexcept override {
+    if (packets_.size() < kMaxPackets) packets_.push_back({now_ns(), is_off_ ? 0 : norm(now.force_n)});
     if (stops_left_ > 0 && packets_.size() % 200 == 0 && --stops_left_ >= 0) kill(getpid(), SIGSTOP);
   }
-  void stop() noexcept override { stopped_ = true; }
-  void resume() noexcept override { stopped_ = false; }
+  void stop() noexcept override { is_off_ = true; }
+  void resume() noexcept override { is_off_ = false; }
   /// Makes the next writes stop the program, `times` times, at the end of a write.
   void stop_the_program(int times) { stops_left_ = times; }
 
  private:
   std::vector<Packet>& packets_;
   std::atomic<int> stops_left_{0};
-  DeviceCapabilities capabilities_;
-  std::atomic<bool> stopped_{false};
+  std::atomic<bool> is_off_{false};
 };
 
 std::unique_ptr<Device> emulated_falcon(const std::shared_ptr<SharedEmulatedFalcon>& shared, std::vector<Packet>& packets) {
@@ -140,14 +139,6 @@ void stop_and_continue(const std::string& device, std::vector<Packet>& packets, 
   ASSERT_GT(packets.size(), 1000u);
 }
 
-std::string around(const std::vector<Packet>& packets, std::size_t at) {
-  std::string text;
-  for (std::size_t i = at > 3 ? at - 3 : 0; i < std::min(at + 5, packets.size()); ++i)
-    text +=
-        std::to_string(1e-6 * static_cast<double>(packets[i].ns - packets[at].ns)) + " ms " + std::to_string(packets[i].force_n) + " N; ";
-  return text;
-}
-
 /// `in_flight`: number of packets that may have been in flight at the stop and arrive after it.
 void check(const std::vector<Packet>& packets, const std::vector<Stop>& stops, std::size_t in_flight) {
   double max_sent_n = 0;
@@ -164,37 +155,28 @@ void check(const std::vector<Packet>& packets, const std::vector<Stop>& stops, s
     ASSERT_LT(first, packets.size());
     // a driver with its own thread may skip the zero and send the ramp's first tick
     if (in_flight == 0) {
-      EXPECT_EQ(packets[first].force_n, 0) << around(packets, i);
+      EXPECT_EQ(packets[first].force_n, 0) << "packet " << i;
     }
     // the force stays below the ramp; tolerance: a motor count, and two ticks of latency of a packet
-    for (std::size_t k = first; k < packets.size() && packets[k].ns < stop.to_ns + kRampNs; ++k) {
+    for (std::size_t k = first; k < packets.size() && packets[k].ns < stop.to_ns + static_cast<std::int64_t>(1e9 * kRampS); ++k) {
       const double share = (1e-9 * static_cast<double>(packets[k].ns - stop.to_ns) + 2e-3) / kRampS;
-      ASSERT_LE(packets[k].force_n, max_sent_n * share + 0.02) << around(packets, i);
+      ASSERT_LE(packets[k].force_n, max_sent_n * share + 0.02) << "packet " << i;
     }
   }
   EXPECT_GE(with_force, kStops / 4);
 }
 
-TEST(SuspendedProcess, AStopDuringAWriteIsDetected) {
+void expect_zero_after_stops(const std::string& device, std::size_t in_flight) {
   std::vector<Packet> packets;
   std::vector<Stop> stops;
-  stop_and_continue("stops in write", packets, stops);
-  check(packets, stops, 0);
+  stop_and_continue(device, packets, stops);
+  check(packets, stops, in_flight);
 }
 
-TEST(SuspendedProcess, TheFirstTickAfterAStopIsZeroThenForceRampsIn) {
-  std::vector<Packet> packets;
-  std::vector<Stop> stops;
-  stop_and_continue("plain", packets, stops);
-  check(packets, stops, 0);
-}
+TEST(SuspendedProcess, AStopDuringAWriteIsDetected) { expect_zero_after_stops("stops in write", 0); }
 
-TEST(SuspendedProcess, AFalconsMotorsRampInAfterAStop) {
-  std::vector<Packet> packets;
-  std::vector<Stop> stops;
-  stop_and_continue("falcon", packets, stops);
-  check(packets, stops, 1);
-}
+TEST(SuspendedProcess, TheFirstTickAfterAStopIsZeroThenForceRampsIn) { expect_zero_after_stops("plain", 0); }
 
-}  // namespace stopped_program_test
-}  // namespace catena::haptics
+TEST(SuspendedProcess, AFalconsMotorsRampInAfterAStop) { expect_zero_after_stops("falcon", 1); }
+
+}  // namespace catena::haptics::stopped_program_test

@@ -6,8 +6,8 @@
 
 #include <thread>
 
-#include "haptics/chain/tick.h"
 #include "haptics/servo/servo_tick.h"
+#include "tests/haptics/chain/chain_driver.h"
 #include "tests/haptics/constraints/constraint_fixture.h"
 #include "tests/support/simple_links.h"
 
@@ -17,22 +17,14 @@ using namespace catena;
 using namespace catena::haptics;
 
 /// A hand on a prescribed path, unaffected by forces, in the real tick.
-struct PrescribedHand {
-  explicit PrescribedHand(Link link) {
-    program.links = {std::move(link)};
-    program.meters_per_unit = 0.1;
-  }
+struct PrescribedHand : test::ChainDriver {
+  explicit PrescribedHand(Link link) : ChainDriver({std::move(link)}, 8) { program.meters_per_unit = 0.1; }
   void to(const Vec3& hand_m) {
-    tick(program, {1e-3 * static_cast<double>(ticks++), world_from_device(program, hand_m)}, *state, *scratch, out);
-    const DeviceOutput sent = make_device_output(program, out, *state);
+    step(world_from_device(program, hand_m));
+    const DeviceOutput sent = make_device_output(program, out, state);
     peaks.add({sent.requested_force_n, hand_m, sent.accounted_j, sent.forces_active});
   }
-  HapticProgram program;
-  std::unique_ptr<ChainState> state = std::make_unique<ChainState>();
-  std::unique_ptr<ChainScratch> scratch = std::make_unique<ChainScratch>();
-  HapticState out;
   PeakDetector peaks;
-  int ticks = 0;
 };
 
 Link drag(double threshold) {

@@ -1,25 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "render/extract/auto_camera.h"
 
-#include <gtest/gtest.h>
-
 #include <cstring>
 
-#include "render/extract/extract.h"
 #include "render/passes/overlay/canvas.h"
+#include "tests/render/support/scene_packet.h"
 #include "tests/support/support.h"
 
-namespace catena::render {
-namespace auto_camera_test {
+namespace catena::render::auto_camera_test {
 
 const std::string kBall = R"("fields": {"s": {"analytic": "sphere", "resolution": 64, "box": [-8, 8]}})";
 
 FramePacket packet_of(const std::string& text, std::uint32_t width = 400, std::uint32_t height = 300, const std::string& path = "s.json") {
-  auto scene = scene::parse_scene(text, path);
-  EXPECT_TRUE(scene) << scene.error().message;
-  auto packet = make_frame(*scene, width, height);
-  EXPECT_TRUE(packet) << packet.error().message;
-  return std::move(*packet);
+  return test::packet_from(text, path, width, height);
 }
 
 /// Extent and centre of the projected ball of radius r about `centre`, as fractions of the image's width and height.
@@ -195,5 +188,4 @@ TEST(VisiblePoints, LieOnTheSurface) {
   EXPECT_TRUE(find_visible_points(*grid, 100).empty());
 }
 
-}  // namespace auto_camera_test
-}  // namespace catena::render
+}  // namespace catena::render::auto_camera_test

@@ -2,15 +2,12 @@
 // The edges of a box that carry the axes, for cameras with known results; ticks and numbers never overlap the box.
 #include "render/extract/axis_edges.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
-#include "render/extract/extract.h"
 #include "render/frame/camera.h"
+#include "tests/render/support/scene_packet.h"
 
-namespace catena::render {
-namespace axis_edges_test {
+namespace catena::render::axis_edges_test {
 
 const Bounds kBox{{-1, -2, -3}, {1, 2, 3}};
 
@@ -30,31 +27,23 @@ std::string words(const Vec3& out) {
   return "none";
 }
 
-View from(const Vec3& position, bool orthographic = false) {
-  View view;
-  view.position = position;
-  view.orthographic = orthographic;
-  view.height = 10;
-  return view;
-}
+View from(const Vec3& position, bool orthographic = false) { return {position, Vec3(0.0), {0.0, 0.0, 1.0}, 30, orthographic, 10}; }
 
 TEST(AxisEdges, AreOnTheOutlineOfTheBox) {
   struct Case {
     Vec3 eye;
-    const char *x, *y, *z;
+    const char* edges[3];
   };
   for (const bool orthographic : {false, true})
-    for (const Case& c : {Case{{-10, -16, 8}, "-y -z", "-x -z", "-x +y"},    // from the left, the front and above
-                          Case{{10, -16, 8}, "-y -z", "+x -z", "-x -y"},     // from the right
-                          Case{{10, 16, 8}, "+y -z", "+x -z", "+x -y"},      // from behind
-                          Case{{-10, 16, 8}, "+y -z", "-x -z", "+x +y"},     //
-                          Case{{-10, -16, -8}, "+y -z", "+x -z", "-x +y"}})  // from below: the rear edges are the lowest
+    for (const Case& c : {Case{{-10, -16, 8}, {"-y -z", "-x -z", "-x +y"}},    // from the left, the front and above
+                          Case{{10, -16, 8}, {"-y -z", "+x -z", "-x -y"}},     // from the right
+                          Case{{10, 16, 8}, {"+y -z", "+x -z", "+x -y"}},      // from behind
+                          Case{{-10, 16, 8}, {"+y -z", "-x -z", "+x +y"}},     //
+                          Case{{-10, -16, -8}, {"+y -z", "+x -z", "-x +y"}}})  // from below: the rear edges are the lowest
     {
       const auto edges = find_axis_edges(kBox, from(c.eye, orthographic));
-      EXPECT_EQ(words(edges[0]), c.x) << c.eye.x << " " << c.eye.y << " " << c.eye.z;
-      EXPECT_EQ(words(edges[1]), c.y) << c.eye.x << " " << c.eye.y << " " << c.eye.z;
-      EXPECT_EQ(words(edges[2]), c.z) << c.eye.x << " " << c.eye.y << " " << c.eye.z;
       for (int a = 0; a < 3; ++a) {
+        EXPECT_EQ(words(edges[std::size_t(a)]), c.edges[a]) << c.eye.x << " " << c.eye.y << " " << c.eye.z;
         EXPECT_EQ(edges[std::size_t(a)].from[a], kBox.lo[a]);
         EXPECT_EQ(edges[std::size_t(a)].to[a], kBox.hi[a]);
       }
@@ -119,30 +108,27 @@ TEST(AxisEdges, AreEqualInEveryEyeAndTile) {
 }
 
 TEST(AxisEdges, FollowTheViewOfAPacket) {
-  auto scene = scene::parse_scene(R"({"fields": {"s": {"analytic": "sphere", "resolution": 9}}, "isosurfaces": [{"field": "s", "level": 1}],
+  scene::Scene scene =
+      test::scene_from(R"({"fields": {"s": {"analytic": "sphere", "resolution": 9}}, "isosurfaces": [{"field": "s", "level": 1}],
     "axes": true, "bounding_box": true, "labels": [{"at": [0, 0, 0], "text": "here"}],
-    "camera": {"position": [-10, -16, 8], "target": [0, 0, 0]}})",
-                                  "s.json");
-  ASSERT_TRUE(scene) << scene.error().message;
-  auto packet = make_frame(*scene, 64, 48);
-  ASSERT_TRUE(packet) << packet.error().message;
-  const std::size_t tubes = packet->environment.tubes.size(), labels = packet->overlay.axis_labels.size(), objects = packet->objects.size();
+    "camera": {"position": [-10, -16, 8], "target": [0, 0, 0]}})");
+  FramePacket packet = test::packet_from(scene, 64, 48);
+  const std::size_t tubes = packet.environment.tubes.size(), labels = packet.overlay.axis_labels.size(), objects = packet.objects.size();
   ASSERT_GT(labels, 12u);
   const auto name_of_x = [&] {
-    for (const LabelItem& label : packet->overlay.axis_labels)
+    for (const LabelItem& label : packet.overlay.axis_labels)
       if (label.text == "x") return label.position;
     return Vec3(0.0);
   };
   EXPECT_LT(name_of_x().y, -2 + 1e-9);
-  View behind = packet->view;
+  View behind = packet.view;
   behind.position = {10, 16, 8};
-  set_view(*scene, behind, *packet);
+  set_view(scene, behind, packet);
   EXPECT_GT(name_of_x().y, 2 - 1e-9);
-  EXPECT_EQ(packet->environment.tubes.size(), tubes) << "twelve edges and the ticks";
-  EXPECT_EQ(packet->overlay.axis_labels.size(), labels);
-  EXPECT_EQ(packet->overlay.labels.size(), 1u) << "the scene's own stay";
-  EXPECT_EQ(packet->objects.size(), objects);
+  EXPECT_EQ(packet.environment.tubes.size(), tubes) << "twelve edges and the ticks";
+  EXPECT_EQ(packet.overlay.axis_labels.size(), labels);
+  EXPECT_EQ(packet.overlay.labels.size(), 1u) << "the scene's own stay";
+  EXPECT_EQ(packet.objects.size(), objects);
 }
 
-}  // namespace axis_edges_test
-}  // namespace catena::render
+}  // namespace catena::render::axis_edges_test

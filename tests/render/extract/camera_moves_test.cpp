@@ -5,16 +5,19 @@
 
 #include <cmath>
 
-namespace catena::render {
-namespace camera_moves_test {
+namespace catena::render::camera_moves_test {
 
 void expect_near(const Vec3& a, const Vec3& b) { EXPECT_LE(norm(a - b), 1e-12) << a.x << " " << a.y << " " << a.z; }
 
-Bounds slab() {
-  Bounds b;
-  b.extend(Vec3(-1.0, -2.0, -3.0));
-  b.extend(Vec3(1.0, 2.0, 5.0));
-  return b;
+const Bounds kSlab{{-1.0, -2.0, -3.0}, {1.0, 2.0, 5.0}};
+
+/// Checks that all corners of the slab are in the image.
+void expect_slab_seen(const Camera& camera, double width, double height) {
+  for (int i = 0; i < 8; ++i) {
+    const auto p = project(camera, kSlab.corner(i));
+    ASSERT_TRUE(p);
+    EXPECT_TRUE(p->x > 0 && p->x < width && p->y > 0 && p->y < height);
+  }
 }
 
 View from_south() { return {{0.0, -10.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 30, false, 4}; }
@@ -27,27 +30,22 @@ TEST(CameraMoves, AxisViewsLookAlongTheirAxisAndSeeEverything) {
                {"+y", {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}, {"-y", {0.0, -1.0, 0.0}, {0.0, 0.0, 1.0}},
                {"+z", {0.0, 0.0, 1.0}, {0.0, 1.0, 0.0}}, {"-z", {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}}};
   for (const auto& c : cases) {
-    const auto view = axis_view(slab(), 4.0 / 3, c.words);
-    ASSERT_TRUE(view) << c.words;
-    const Camera camera = make_camera(*view, 400, 300, slab());
+    SCOPED_TRACE(c.words);
+    const auto view = axis_view(kSlab, 4.0 / 3, c.words);
+    ASSERT_TRUE(view);
+    const Camera camera = make_camera(*view, 400, 300, kSlab);
     expect_near(-camera.back, c.look_direction);
     expect_near(camera.up, c.up);
-    expect_near(view->target, slab().center());
-    for (int i = 0; i < 8; ++i) {
-      const auto p = project(camera, slab().corner(i));
-      ASSERT_TRUE(p);
-      EXPECT_TRUE(p->x > 0 && p->x < 400 && p->y > 0 && p->y < 300) << c.words;
-    }
+    expect_near(view->target, kSlab.center());
+    expect_slab_seen(camera, 400, 300);
   }
-  for (const char* words : {"x", "+w", "", "++", "+xy", "top"}) EXPECT_FALSE(axis_view(slab(), 1, words)) << words;
+  for (const char* words : {"x", "+w", "", "++", "+xy", "top"}) EXPECT_FALSE(axis_view(kSlab, 1, words)) << words;
 }
 
 TEST(CameraMoves, IsoSeesThreeSidesAlike) {
   const auto to_camera = axis_direction("iso");
   ASSERT_TRUE(to_camera);
-  EXPECT_NEAR(to_camera->x, 1 / std::sqrt(3.0), 1e-12);
-  EXPECT_NEAR(to_camera->y, -1 / std::sqrt(3.0), 1e-12);
-  EXPECT_NEAR(to_camera->z, 1 / std::sqrt(3.0), 1e-12);
+  expect_near(*to_camera, Vec3(1.0, -1.0, 1.0) / std::sqrt(3.0));
 }
 
 TEST(CameraMoves, AnAzimuthTurnIsCounterClockwiseSeenFromAbove) {
@@ -83,18 +81,13 @@ TEST(CameraMoves, ZoomEnlargesByItsFactor) {
 
 TEST(CameraMoves, FittingKeepsDirectionUpAngleAndProjection) {
   View view{{30.0, -4.0, 1.0}, {29.0, 2.0, 3.0}, {0.2, 0.1, 1.0}, 50, true, 9};
-  const View fit = refit_view(view, slab(), 1.5);
-  const Camera a = make_camera(view, 300, 200, {}), b = make_camera(fit, 300, 200, slab());
+  const View fit = refit_view(view, kSlab, 1.5);
+  const Camera a = make_camera(view, 300, 200, {}), b = make_camera(fit, 300, 200, kSlab);
   expect_near(a.back, b.back);
   expect_near(a.up, b.up);
   EXPECT_EQ(fit.fovy_deg, 50);
   EXPECT_TRUE(fit.orthographic);
-  for (int i = 0; i < 8; ++i) {
-    const auto p = project(b, slab().corner(i));
-    ASSERT_TRUE(p);
-    EXPECT_TRUE(p->x > 0 && p->x < 300 && p->y > 0 && p->y < 200);
-  }
+  expect_slab_seen(b, 300, 200);
 }
 
-}  // namespace camera_moves_test
-}  // namespace catena::render
+}  // namespace catena::render::camera_moves_test

@@ -5,8 +5,7 @@
 
 #include <cmath>
 
-namespace catena::render {
-namespace camera_path_test {
+namespace catena::render::camera_path_test {
 
 void expect_near(const Vec3& a, const Vec3& b) { EXPECT_LE(norm(a - b), 1e-12) << a.x << " " << a.y << " " << a.z; }
 
@@ -79,5 +78,4 @@ TEST(CameraPath, BadRowsNameTheirLine) {
   EXPECT_FALSE(read_camera_path("/nowhere/c.csv"));
 }
 
-}  // namespace camera_path_test
-}  // namespace catena::render
+}  // namespace catena::render::camera_path_test

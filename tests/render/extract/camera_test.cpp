@@ -7,25 +7,17 @@
 #include <glm/vec4.hpp>
 #include <random>
 
-namespace catena::render {
-namespace camera_test {
+namespace catena::render::camera_test {
 
-Bounds box(const Vec3& lo, const Vec3& hi) {
-  Bounds b;
-  b.extend(lo);
-  b.extend(hi);
-  return b;
-}
+const Bounds kBox{Vec3(-1.0), Vec3(1.0)};
 
-View looking_along_y() { return {{0.0, -10.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 30, false, 4}; }
+View looking_along_y(bool orthographic = false) { return {{0.0, -10.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 30, orthographic, 4}; }
 
 void expect_near(const Vec3& a, const Vec3& b, double tolerance) { EXPECT_LE(norm(a - b), tolerance) << a.x << " " << a.y << " " << a.z; }
 
 TEST(Camera, AnAxisPointProjectsToTheCentre) {
   for (const bool orthographic : {false, true}) {
-    View view = looking_along_y();
-    view.orthographic = orthographic;
-    const Camera c = make_camera(view, 640, 480, box(Vec3(-1.0), Vec3(1.0)));
+    const Camera c = make_camera(looking_along_y(orthographic), 640, 480, kBox);
     const auto p = project(c, {0.0, 3.0, 0.0});
     ASSERT_TRUE(p);
     expect_near(*p, {320.0, 240.0, 13.0}, 1e-9);
@@ -33,7 +25,7 @@ TEST(Camera, AnAxisPointProjectsToTheCentre) {
 }
 
 TEST(Camera, UpIsUpAndRightIsRight) {
-  const Camera c = make_camera(looking_along_y(), 640, 480, box(Vec3(-1.0), Vec3(1.0)));
+  const Camera c = make_camera(looking_along_y(), 640, 480, kBox);
   expect_near(c.right, {1.0, 0.0, 0.0}, 1e-15);
   expect_near(c.up, {0.0, 0.0, 1.0}, 1e-15);
   EXPECT_LT(project(c, {0.0, 0.0, 1.0})->y, 240);  // row 0 is the top
@@ -43,22 +35,20 @@ TEST(Camera, UpIsUpAndRightIsRight) {
 TEST(Camera, FieldOfViewIsVertical) {
   // at distance 10 the image's upper edge is 10 tan(15 degrees) above the axis
   const double top = 10 * std::tan(15 * std::acos(-1.0) / 180);
-  const Camera c = make_camera(looking_along_y(), 640, 320, box(Vec3(-1.0), Vec3(1.0)));
+  const Camera c = make_camera(looking_along_y(), 640, 320, kBox);
   EXPECT_NEAR(project(c, {0.0, 0.0, top})->y, 0, 1e-9);
   EXPECT_NEAR(project(c, {2 * top, 0.0, 0.0})->x, 640, 1e-9);
 }
 
 TEST(Camera, OrthographicHeightIsTheImageHeight) {
-  View view = looking_along_y();
-  view.orthographic = true;
-  const Camera c = make_camera(view, 200, 100, box(Vec3(-1.0), Vec3(1.0)));
+  const Camera c = make_camera(looking_along_y(true), 200, 100, kBox);
   EXPECT_NEAR(project(c, {0.0, 0.0, 2.0})->y, 0, 1e-12);
   EXPECT_NEAR(project(c, {-4.0, 5.0, 0.0})->x, 0, 1e-12);
 }
 
 TEST(Camera, PixelCentresAreAtHalfIntegers) {
   // 2 x 2 pixels: the ray of the upper left pixel is at a quarter of width and height
-  const Camera c = make_camera(looking_along_y(), 2, 2, box(Vec3(-1.0), Vec3(1.0)));
+  const Camera c = make_camera(looking_along_y(), 2, 2, kBox);
   const Ray ray = pixel_ray(c, 0.5, 0.5);
   const double t = std::tan(15 * std::acos(-1.0) / 180);
   expect_near(ray.direction, direction(Vec3(-0.5 * t, 1.0, 0.5 * t)), 1e-15);
@@ -69,14 +59,10 @@ TEST(Camera, RoundTripsAgreeWithTheMatrices) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> u(-1, 1);
   for (int i = 0; i < 200; ++i) {
-    View view{{30 * u(random), 30 * u(random), 30 * u(random)},
-              {u(random), u(random), u(random)},
-              {u(random), u(random), u(random)},
-              30,
-              i % 2 == 1,
-              5};
-    const Bounds bounds = box(Vec3(-2.0), Vec3(2.0));
-    const Camera c = make_camera(view, 801, 603, bounds);
+    const Vec3 position{30 * u(random), 30 * u(random), 30 * u(random)}, target{u(random), u(random), u(random)},
+        up{u(random), u(random), u(random)};
+    const View view{position, target, up, 30, i % 2 == 1, 5};
+    const Camera c = make_camera(view, 801, 603, {Vec3(-2.0), Vec3(2.0)});
     const Vec3 p{2 * u(random), 2 * u(random), 2 * u(random)};
     const auto pixel = project(c, p);
     if (!pixel) continue;
@@ -98,9 +84,7 @@ TEST(Camera, RoundTripsAgreeWithTheMatrices) {
 
 TEST(Camera, DepthIsZeroAtNearAndOneAtFar) {
   for (const bool orthographic : {false, true}) {
-    View view = looking_along_y();
-    view.orthographic = orthographic;
-    const Camera c = make_camera(view, 64, 64, box(Vec3(-1.0), Vec3(1.0)));
+    const Camera c = make_camera(looking_along_y(orthographic), 64, 64, kBox);
     for (const auto& [depth, expected] : {std::pair{c.near, 0.0}, std::pair{c.far, 1.0}}) {
       const glm::dvec4 clip = clip_from_view(c) * glm::dvec4(0, 0, -depth, 1);
       EXPECT_NEAR(clip.z / clip.w, expected, 1e-12);
@@ -115,7 +99,7 @@ TEST(Camera, DepthIsZeroAtNearAndOneAtFar) {
 TEST(Camera, InsideTheBoundsTheNearPlaneStaysPositive) {
   View view = looking_along_y();
   view.position = {0.1, 0.2, 0.3};
-  const Camera c = make_camera(view, 64, 64, box(Vec3(-1.0), Vec3(1.0)));
+  const Camera c = make_camera(view, 64, 64, kBox);
   EXPECT_GT(c.near, 0);
   EXPECT_LT(c.near, 1e-3);
   EXPECT_GT(c.far, 1);
@@ -163,7 +147,7 @@ TEST(Camera, FitShowsTheWholeBoxAndFillsTheImage) {
   for (const double aspect : {0.5, 1.0, 2.0})
     for (const Vec3& towards : {default_view_direction(), Vec3(0.0, 0.0, 1.0), Vec3(-1.0, 0.2, -0.4)})
       for (const bool orthographic : {false, true}) {
-        const Bounds bounds = box({3.0, -100.0, 7.0}, {9.0, -70.0, 8.0});
+        const Bounds bounds{{3.0, -100.0, 7.0}, {9.0, -70.0, 8.0}};
         View view = fit_view(bounds, aspect, towards);
         view.orthographic = orthographic;
         const Camera c = make_camera(view, 400 * aspect, 400, bounds);
@@ -221,9 +205,8 @@ TEST(Camera, FitToAnEmptyBoxAndToAPoint) {
   const View nothing = fit_view(Bounds(), 1);
   EXPECT_TRUE(is_finite(nothing.position));
   EXPECT_GT(norm(nothing.position), 2);
-  const View point = fit_view(box(Vec3(5.0), Vec3(5.0)), 1);
+  const View point = fit_view({Vec3(5.0), Vec3(5.0)}, 1);
   EXPECT_GT(norm(point.position - Vec3(5.0)), 0.5);
 }
 
-}  // namespace camera_test
-}  // namespace catena::render
+}  // namespace catena::render::camera_test

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// Off-axis projection on a display screen: projected points in both eyes for moving heads.
-#include <gtest/gtest.h>
-
-#include "engine/scene/scene.h"
-#include "render/extract/extract.h"
 #include "render/extract/extract_internal.h"
 #include "render/frame/camera.h"
+#include "tests/render/support/scene_packet.h"
 #include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
-namespace catena::render {
-namespace display_screen_test {
+namespace catena::render::display_screen_test {
 
 constexpr const char* kScene = R"({"fields": {"ball": {"analytic": "sphere", "resolution": 24}},
   "isosurfaces": [{"field": "ball", "level": 0.5}], "stereo": {"mode": "side-by-side", "separation": 0.065},
@@ -27,23 +23,21 @@ Vec2 on_screen(const scene::DisplayScreen& s, const Vec3& eye, const Vec3& point
 }
 
 TEST(DisplayScreens, PointsProjectToTheIntersectionOfLineOfSightAndScreen) {
-  auto scene = scene::parse_scene(kScene, "s.json");
-  ASSERT_TRUE(scene) << scene.error().message;
-  ASSERT_EQ(scene->stereo.screens.size(), 2u);
+  scene::Scene scene = test::scene_from(kScene);
+  ASSERT_EQ(scene.stereo.screens.size(), 2u);
   for (std::size_t which = 0; which < 2; ++which) {
-    scene->stereo.screen_index = which;
-    const scene::DisplayScreen& screen = scene->stereo.screens[which];
-    auto packet = make_frame(*scene, 320, 240);
-    ASSERT_TRUE(packet) << packet.error().message;
+    scene.stereo.screen_index = which;
+    const scene::DisplayScreen& screen = scene.stereo.screens[which];
+    FramePacket packet = test::packet_from(scene);
     for (const Vec3& head : {Vec3(0.2, -3, 0.1), Vec3(-0.6, -2.2, 0.5), Vec3(0.9, -4.5, -0.7)}) {
-      View view = packet->view;
+      View view = packet.view;
       view.position = head;
-      set_view(*scene, view, *packet);
-      ASSERT_TRUE(check_screen_view(*packet, scene->stereo));
-      ASSERT_EQ(packet->eyes.size(), 2u);
-      EXPECT_NEAR(norm(packet->eyes[1].position - packet->eyes[0].position), 0.065, 1e-12);
-      EXPECT_LT(norm(0.5 * (packet->eyes[1].position + packet->eyes[0].position) - head), 1e-12);
-      for (const View& eye : packet->eyes)
+      set_view(scene, view, packet);
+      ASSERT_TRUE(check_screen_view(packet, scene.stereo));
+      ASSERT_EQ(packet.eyes.size(), 2u);
+      EXPECT_NEAR(norm(packet.eyes[1].position - packet.eyes[0].position), 0.065, 1e-12);
+      EXPECT_LT(norm(0.5 * (packet.eyes[1].position + packet.eyes[0].position) - head), 1e-12);
+      for (const View& eye : packet.eyes)
         for (const Vec3& p : {Vec3(0, 0.3, 0.2), Vec3(1.4, 0.8, -0.5), Vec3(1.6, 3, 0.4)}) {
           const auto pixel = project(make_camera(eye, 320, 240, {}), p);
           ASSERT_TRUE(pixel);
@@ -56,18 +50,16 @@ TEST(DisplayScreens, PointsProjectToTheIntersectionOfLineOfSightAndScreen) {
 }
 
 TEST(DisplayScreens, AHeadBehindTheScreenIsAnError) {
-  auto scene = scene::parse_scene(kScene, "s.json");
-  ASSERT_TRUE(scene);
-  scene->stereo.screen_index = 0;
-  auto packet = make_frame(*scene, 64, 48);
-  ASSERT_TRUE(packet);
-  View behind = packet->view;
+  scene::Scene scene = test::scene_from(kScene);
+  scene.stereo.screen_index = 0;
+  FramePacket packet = test::packet_from(scene, 64, 48);
+  View behind = packet.view;
   behind.position = {0, 2, 0};
-  set_view(*scene, behind, *packet);
-  const Outcome checked = check_screen_view(*packet, scene->stereo);
+  set_view(scene, behind, packet);
+  const Outcome checked = check_screen_view(packet, scene.stereo);
   ASSERT_FALSE(checked);
   EXPECT_NE(checked.error().message.find("\"wall\""), std::string::npos) << checked.error().message;
-  EXPECT_EQ(packet->eyes.size(), 2u);
+  EXPECT_EQ(packet.eyes.size(), 2u);
 }
 
 TEST(DisplayScreens, TheProgramDrawsScreensAndRefusesUnknownOnes) {
@@ -95,5 +87,4 @@ TEST(DisplayScreens, TheProgramDrawsScreensAndRefusesUnknownOnes) {
   EXPECT_FALSE(scene::parse_scene(bad, "s.json"));
 }
 
-}  // namespace display_screen_test
-}  // namespace catena::render
+}  // namespace catena::render::display_screen_test

@@ -5,8 +5,7 @@
 
 #include <cmath>
 
-namespace catena::render {
-namespace flatten_test {
+namespace catena::render::flatten_test {
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -78,5 +77,4 @@ TEST(Flatten, TheNumberOfPointsIsCapped) {
   EXPECT_GE(points.size(), 100u);
 }
 
-}  // namespace flatten_test
-}  // namespace catena::render
+}  // namespace catena::render::flatten_test

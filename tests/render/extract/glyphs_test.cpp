@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Glyphs in the packet against closed forms: position, direction, length and colour; invalid regions; glyphs on moving objects.
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "engine/field/grid/grid.h"
@@ -9,26 +7,16 @@
 #include "engine/scene/document.h"
 #include "engine/scene/prepare.h"
 #include "engine/scene/widgets.h"
-#include "render/extract/extract.h"
-#include "tests/support/support.h"
+#include "tests/render/support/scene_packet.h"
 
-namespace catena::render {
-namespace glyphs_test {
+namespace catena::render::glyphs_test {
 
 constexpr const char* kHead = R"({"fields": {"v": {"analytic": "circle", "resolution": 9}, "s": {"analytic": "sphere", "resolution": 33},
   "w": {"analytic": "uniform", "direction": [0, 0, 3]}}, )";
 
-scene::Scene scene_of(const std::string& parts) {
-  auto scene = scene::parse_scene(kHead + parts + "}", "s.json");
-  EXPECT_TRUE(scene) << scene.error().message;
-  return scene ? std::move(*scene) : scene::Scene();
-}
+scene::Scene scene_of(const std::string& parts) { return test::scene_from(kHead + parts + "}"); }
 
-FramePacket packet_of(scene::Scene& scene) {
-  auto packet = make_frame(scene, 64, 48);
-  EXPECT_TRUE(packet) << packet.error().message;
-  return packet ? std::move(*packet) : FramePacket();
-}
+FramePacket packet_of(scene::Scene& scene) { return test::packet_from(scene, 64, 48); }
 
 std::vector<Glyph> glyphs_of(scene::Scene& scene) {
   const FramePacket packet = packet_of(scene);
@@ -40,11 +28,10 @@ std::vector<Glyph> glyphs_of(const std::string& parts) {
   return glyphs_of(scene);
 }
 
-std::string error_of(const std::string& parts) {
-  scene::Scene scene = scene_of(parts);
-  const auto packet = make_frame(scene, 64, 48);
-  EXPECT_FALSE(packet);
-  return packet ? "" : packet.error().message;
+/// Checks that glyphs are refused with a message that contains `part`.
+void expect_error(const std::string& parts, const std::string& part) {
+  const std::string error = test::packet_error(kHead + parts + "}");
+  EXPECT_NE(error.find(part), std::string::npos) << error;
 }
 
 Vec3 middle(const Glyph& glyph) { return 0.5 * (glyph.tail + glyph.tip); }
@@ -156,11 +143,10 @@ TEST(ExtractGlyphs, InvalidRegionsHaveNoGlyphs) {
 }
 
 TEST(ExtractGlyphs, OnASliceTheyStayWithinItsVisiblePart) {
-  auto made = scene::parse_scene(R"({"fields": {"v": {"analytic": "uniform"}, "s": {"analytic": "sphere", "box": [-1, 1], "resolution": 5}},
-    "slices": [{"field": "s", "axis": "y", "at": 0.5}], "glyphs": [{"field": "v", "on": {"slice": 0}, "spacing": 0.2}]})",
-                                 "s.json");
-  ASSERT_TRUE(made) << made.error().message;
-  const auto glyphs = glyphs_of(*made);
+  scene::Scene scene =
+      test::scene_from(R"({"fields": {"v": {"analytic": "uniform"}, "s": {"analytic": "sphere", "box": [-1, 1], "resolution": 5}},
+    "slices": [{"field": "s", "axis": "y", "at": 0.5}], "glyphs": [{"field": "v", "on": {"slice": 0}, "spacing": 0.2}]})");
+  const auto glyphs = glyphs_of(scene);
   EXPECT_NEAR(static_cast<double>(glyphs.size()), 4 / (0.04 * std::sqrt(0.75)), 12);
   for (const Glyph& glyph : glyphs) EXPECT_LE(max_abs(middle(glyph)), 1 + 1e-9);
 }
@@ -205,33 +191,28 @@ TEST(ExtractGlyphs, GlyphsFollowTheirWidgets) {
 TEST(ExtractGlyphs, OnlyAnEditOfTheirSliceRecomputesThem) {
   const std::string text = R"({"fields": {"w": {"analytic": "uniform"}}, "slices": [{"field": "w", "axis": "z", "at": 0}],
     "glyphs": [{"field": "w", "on": {"slice": 0}}], "title": "a"})";
-  const auto parsed = [](const std::string& t) { return std::move(*scene::parse_scene(t, "s.json")); };
-  scene::Scene first = parsed(text);
+  scene::Scene first = test::scene_from(text);
   const SharedList<Glyph> before = packet_of(first).glyphs[0].glyphs;
   std::string other = text;
   other.replace(other.find("\"a\""), 3, "\"b\"");
-  scene::Scene same = parsed(other);
+  scene::Scene same = test::scene_from(other);
   scene::transfer_state(first, same);
   EXPECT_TRUE(packet_of(same).glyphs[0].glyphs.shares_storage(before));
   std::string moved = other;
   moved.replace(moved.find("\"at\": 0"), 7, "\"at\": 1");
-  scene::Scene third = parsed(moved);
+  scene::Scene third = test::scene_from(moved);
   scene::transfer_state(same, third);
   EXPECT_NEAR(middle(packet_of(third).glyphs[0].glyphs[0]).z, 1, 1e-12);
 }
 
 TEST(ExtractGlyphs, TooManyGlyphsAreAnErrorWithTheirNumber) {
-  const std::string e = error_of("\n\"glyphs\": [{\"field\": \"v\",\n\"spacing\": 0.1}]");
-  EXPECT_NE(e.find("s.json:4: a \"spacing\" of 0.1 would give about 68921 glyphs; a wider one that gives at most 20000 was expected"),
-            std::string::npos)
-      << e;
+  expect_error("\n\"glyphs\": [{\"field\": \"v\",\n\"spacing\": 0.1}]",
+               "s.json:4: a \"spacing\" of 0.1 would give about 68921 glyphs; a wider one that gives at most 20000 was expected");
   for (const char* on : {R"("box": {"min": [0, 0, 0], "max": [1, 1, 1]})", R"("plane": {"axis": "x", "at": 0})", R"("isosurface": 0)"})
     for (const char* spacing : {"1e-3", "1e-9", "1e-30"})
-      EXPECT_NE(error_of(std::string(R"("isosurfaces": [{"field": "s", "level": 1}], "glyphs": [{"field": "v", "spacing": )") + spacing +
-                         ", \"on\": {" + on + "}}]")
-                    .find("at most 20000 was expected"),
-                std::string::npos)
-          << on << spacing;
+      expect_error(std::string(R"("isosurfaces": [{"field": "s", "level": 1}], "glyphs": [{"field": "v", "spacing": )") + spacing +
+                       ", \"on\": {" + on + "}}]",
+                   "at most 20000 was expected");
   // for a plane that follows a widget the spacing is increased instead
   const auto glyphs = glyphs_of(R"("widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [1, 1, 1]}],
     "glyphs": [{"field": "w", "spacing": 0.01, "on": {"plane": {"widget": "cut"}}}])");
@@ -240,13 +221,9 @@ TEST(ExtractGlyphs, TooManyGlyphsAreAnErrorWithTheirNumber) {
 }
 
 TEST(ExtractGlyphs, WrongFieldsAreNamed) {
-  EXPECT_NE(error_of("\n\"glyphs\": [{\"field\": \"s\"}]").find("s.json:3: \"s\" is a scalar field; expected a vector field for glyphs"),
-            std::string::npos);
-  EXPECT_NE(
-      error_of(R"("isosurfaces": [{"field": "s", "level": 99, "visible": false}], "glyphs": [{"field": "v", "on": {"isosurface": 0}}])")
-          .find("level 99 is outside"),
-      std::string::npos);
+  expect_error("\n\"glyphs\": [{\"field\": \"s\"}]", "s.json:3: \"s\" is a scalar field; expected a vector field for glyphs");
+  expect_error(R"("isosurfaces": [{"field": "s", "level": 99, "visible": false}], "glyphs": [{"field": "v", "on": {"isosurface": 0}}])",
+               "level 99 is outside");
 }
 
-}  // namespace glyphs_test
-}  // namespace catena::render
+}  // namespace catena::render::glyphs_test

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// Label maps in a packet: colours, legend, hidden labels, order of coplanar slices.
-#include <gtest/gtest.h>
-
-#include "render/extract/extract.h"
+#include "tests/render/support/scene_packet.h"
 #include "tests/support/support.h"
 
-namespace catena::render {
-namespace labels_test {
+namespace catena::render::labels_test {
 
 /// 26^3 voxels with label x: labels 1 to 25 and 0; labels 1 to 20 have twice as many voxels as 21 to 25.
 class LabelPacket : public testing::Test {
@@ -17,16 +14,11 @@ class LabelPacket : public testing::Test {
       for (int y = 0; y < 26; ++y)
         for (int x = 0; x < 26; ++x) bytes += static_cast<char>(z < (x < 21 ? 26 : 13) ? x : 0);
     test::write_file(folder_ / "m.raw", bytes);
-    auto scene = scene::parse_scene(R"({"fields": {"m": {"file": "m.raw", "shape": [26, 26, 26], "type": "uint8",
+    return test::packet_from(R"({"fields": {"m": {"file": "m.raw", "shape": [26, 26, 26], "type": "uint8",
         "labels": {"values": [1, 2], "names": ["one", "a name that is far too long for a legend"], "colors": [[1, 0, 0], [0, 1, 0]]}},
         "all": {"label": "*", "of": "m"}, "ball": {"analytic": "sphere", "box": [-2, 30]}}, )" +
-                                        parts + "}",
-                                    folder_ / "s.json");
-    EXPECT_TRUE(scene) << scene.error().message;
-    if (!scene) return {};
-    auto packet = make_frame(*scene, 320, 240);
-    EXPECT_TRUE(packet) << packet.error().message;
-    return packet ? *packet : FramePacket{};
+                                 parts + "}",
+                             folder_ / "s.json");
   }
   test::TemporaryFolder folder_;
 };
@@ -76,5 +68,4 @@ TEST_F(LabelPacket, AVolumeHasTheLabelsColors) {
   EXPECT_GT(interpolate_piecewise(table.extinctions, 1, 1), 0);
 }
 
-}  // namespace labels_test
-}  // namespace catena::render
+}  // namespace catena::render::labels_test

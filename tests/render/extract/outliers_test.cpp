@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Default ranges of colours, contours, lines and glyphs in the packet are equal with and without an outlier.
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "engine/io/volume/load_field.h"
-#include "engine/scene/prepare.h"
-#include "engine/scene/scene.h"
-#include "render/extract/extract.h"
-#include "render/extract/extract_internal.h"
+#include "tests/render/support/scene_packet.h"
 #include "tests/support/support.h"
 
-namespace catena::render {
-namespace outliers_test {
+namespace catena::render::outliers_test {
 
 constexpr int kSize = 24;
 
@@ -46,16 +40,11 @@ struct Ranges {
 Ranges ranges_of(bool spoiled) {
   const test::TemporaryFolder folder;
   write(folder / "f.vdb", spoiled);
-  auto scene = scene::parse_scene(kScene, folder / "s.json");
-  EXPECT_TRUE(scene) << scene.error().message;
-  if (!scene) return {};
-  const auto packet = make_frame(*scene, 64, 48);
-  EXPECT_TRUE(packet) << packet.error().message;
+  const FramePacket packet = test::packet_from(kScene, folder / "s.json", 64, 48);
   Ranges ranges;
-  if (!packet) return ranges;
-  for (const auto& bar : packet->overlay.scalar_bars) ranges.bars.push_back(bar.colors);
-  ranges.levels = packet->slices[0].contour_levels;
-  for (const Glyph& glyph : packet->glyphs[0].glyphs.list()) ranges.lengths.push_back(norm(glyph.tip - glyph.tail));
+  for (const auto& bar : packet.overlay.scalar_bars) ranges.bars.push_back(bar.colors);
+  ranges.levels = packet.slices[0].contour_levels;
+  for (const Glyph& glyph : packet.glyphs[0].glyphs.list()) ranges.lengths.push_back(norm(glyph.tip - glyph.tail));
   return ranges;
 }
 
@@ -78,5 +67,4 @@ TEST(Outliers, DoNotChangeDefaultRanges) {
   EXPECT_NEAR(spoiled.lengths.front(), clean.lengths.front(), 0.1);
 }
 
-}  // namespace outliers_test
-}  // namespace catena::render
+}  // namespace catena::render::outliers_test

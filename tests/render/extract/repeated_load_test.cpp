@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: MIT
 // A scene loaded a hundred times with new grids: memory of the device and of the process does not grow.
-#include <gtest/gtest.h>
-
-#include "render/extract/extract.h"
-#include "render/passes/renderer.h"
+#include "tests/render/support/image_fixture.h"
+#include "tests/render/support/scene_packet.h"
 #include "tests/support/resident.h"
-#include "tests/support/support.h"
-#include "tests/support/vulkan.h"
 
-namespace catena::render {
-namespace repeated_load_test {
+namespace catena::render::repeated_load_test {
 
 const std::string kScene = R"({
   "fields": {"s": {"analytic": "sphere", "resolution": 17}, "v": {"analytic": "circle"}},
@@ -20,30 +15,24 @@ const std::string kScene = R"({
 })";
 
 TEST(RepeatedLoad, AHundredLoadsHoldNoMoreMemory) {
-  test::use_lavapipe();
-  vk::DeviceOptions options;
-  options.device_filter = test::test_device();
-  auto renderer = Renderer::create(options);
-  ASSERT_TRUE(renderer) << renderer.error().message;
+  const auto renderer = test::make_renderer(0, false);
+  ASSERT_TRUE(renderer);
   std::uint64_t device = 0, host = 0;
   constexpr int kWarm = 20;
   for (int k = 0; k < kWarm + 100; ++k) {
-    auto scene = scene::parse_scene(kScene, "test.json");
-    ASSERT_TRUE(scene) << scene.error().message;
-    auto packet = make_frame(*scene, 48, 36);
-    ASSERT_TRUE(packet) << packet.error().message;
-    const std::uint64_t uploads = (*renderer)->stats().uploads;
-    const Outcome drawn = (*renderer)->draw(*packet);
+    const FramePacket packet = test::packet_from(kScene, "s.json", 48, 36);
+    const std::uint64_t uploads = renderer->stats().uploads;
+    const Outcome drawn = renderer->draw(packet);
     ASSERT_TRUE(drawn) << drawn.error().message;
     // a new grid each time
-    EXPECT_GT((*renderer)->stats().uploads, uploads);
-    EXPECT_EQ((*renderer)->device().retired_count(), 0u);
+    EXPECT_GT(renderer->stats().uploads, uploads);
+    EXPECT_EQ(renderer->device().retired_count(), 0u);
     if (k == kWarm) {
-      device = (*renderer)->device().counters().allocated_bytes;
+      device = renderer->device().counters().allocated_bytes;
       host = test::resident_bytes();
     }
     if (k > kWarm) {
-      ASSERT_EQ((*renderer)->device().counters().allocated_bytes, device) << "load " << k;
+      ASSERT_EQ(renderer->device().counters().allocated_bytes, device) << "load " << k;
     }
   }
   std::printf("host growth %.2f MB\n", 1e-6 * (double(test::resident_bytes()) - double(host)));
@@ -52,5 +41,4 @@ TEST(RepeatedLoad, AHundredLoadsHoldNoMoreMemory) {
   }
 }
 
-}  // namespace repeated_load_test
-}  // namespace catena::render
+}  // namespace catena::render::repeated_load_test

@@ -4,8 +4,7 @@
 #include "render/extract/extract_internal.h"
 #include "render/frame/camera.h"
 
-namespace catena::render {
-namespace stereo_test {
+namespace catena::render::stereo_test {
 
 FramePacket packet() {
   FramePacket p;
@@ -77,5 +76,4 @@ TEST(StereoCameras, ThePackedEyesFillTheWindow) {
   }
 }
 
-}  // namespace stereo_test
-}  // namespace catena::render
+}  // namespace catena::render::stereo_test

@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "engine/field/derived/magnitude.h"
 #include "engine/field/grid/grid.h"
-#include "render/extract/extract.h"
 #include "render/extract/extract_internal.h"
+#include "tests/render/support/scene_packet.h"
 #include "tests/support/support.h"
 
-namespace catena::render {
-namespace surfaces_test {
+namespace catena::render::surfaces_test {
 
-Result<FramePacket> extract(const std::string& text, const std::string& path = "test.json") {
-  auto scene = scene::parse_scene(text, path);
-  EXPECT_TRUE(scene) << scene.error().message;
-  return make_frame(*scene, 32, 32);
-}
+using test::packet_error, test::packet_from;
 
 std::string sliced(const std::string& keys) {
   return R"({"fields": {"s": {"analytic": "sphere", "resolution": 9}, "v": {"analytic": "circle", "resolution": 9}},
@@ -25,11 +18,11 @@ std::string sliced(const std::string& keys) {
 }
 
 TEST(ExtractSlices, PlaneColorsAndLevelsReachThePacket) {
-  const auto packet = extract(sliced(R"("field": "s", "axis": "z", "at": 0.5, "color": [[0, 1, 0, 0], [2, 0, 0, 1]], "opacity": 0.5,
+  const FramePacket packet =
+      packet_from(sliced(R"("field": "s", "axis": "z", "at": 0.5, "color": [[0, 1, 0, 0], [2, 0, 0, 1]], "opacity": 0.5,
     "contours": {"count": 3, "width": 2, "color": [0, 1, 0]}, "clip": false)"));
-  ASSERT_TRUE(packet) << packet.error().message;
-  ASSERT_EQ(packet->slices.size(), 1u);
-  const SliceItem& slice = packet->slices[0];
+  ASSERT_EQ(packet.slices.size(), 1u);
+  const SliceItem& slice = packet.slices[0];
   EXPECT_EQ(slice.point, Vec3(0, 0, 0.5));
   EXPECT_EQ(slice.normal, Vec3(0, 0, 1));
   ASSERT_EQ(slice.colors.size(), 2u);
@@ -38,28 +31,26 @@ TEST(ExtractSlices, PlaneColorsAndLevelsReachThePacket) {
   EXPECT_EQ(slice.line_width, 2);
   EXPECT_EQ(slice.opacity, 0.5f);
   EXPECT_FALSE(slice.is_clipped);
-  ASSERT_EQ(packet->objects.size(), 1u);
-  EXPECT_EQ(packet->objects[0].kind, "slice");
-  EXPECT_EQ(packet->objects[0].id, slice.id);
+  ASSERT_EQ(packet.objects.size(), 1u);
+  EXPECT_EQ(packet.objects[0].kind, "slice");
+  EXPECT_EQ(packet.objects[0].id, slice.id);
   // the fitted camera looks at the domain
-  EXPECT_NEAR(packet_bounds(*packet).diagonal(), 4 * std::sqrt(3.0), 1e-9);
+  EXPECT_NEAR(packet_bounds(packet).diagonal(), 4 * std::sqrt(3.0), 1e-9);
 }
 
 TEST(ExtractSlices, NamedColorsCoverTheFieldAndMultiplesAreWithinIt) {
-  const auto packet = extract(sliced(R"("field": "s", "axis": "z", "at": 0, "contours": {"spacing": 0.75})"));
-  ASSERT_TRUE(packet);
-  const SliceItem& slice = packet->slices[0];
+  const FramePacket packet = packet_from(sliced(R"("field": "s", "axis": "z", "at": 0, "contours": {"spacing": 0.75})"));
+  const SliceItem& slice = packet.slices[0];
   EXPECT_EQ(slice.colors.front()[0], slice.grid->min_value());
   EXPECT_EQ(slice.colors.back()[0], slice.grid->max_value());
   EXPECT_EQ(slice.contour_levels, (std::vector<double>{0, 0.75, 1.5, 2.25, 3}));
 }
 
 TEST(ExtractSlices, AVectorFieldIsShownByItsMagnitude) {
-  const auto packet = extract(sliced(R"("field": "v", "axis": "z", "at": 0)"));
-  ASSERT_TRUE(packet) << packet.error().message;
+  const FramePacket packet = packet_from(sliced(R"("field": "v", "axis": "z", "at": 0)"));
   field::Cursor cursor;
   for (const Vec3& p : {Vec3(1, 0.5, 0), Vec3(-1.5, 2, 1), Vec3(0, 0, -2)})
-    EXPECT_NEAR(packet->slices[0].grid->sample(p, cursor).value, std::hypot(p.x, p.y), 1e-6);
+    EXPECT_NEAR(packet.slices[0].grid->sample(p, cursor).value, std::hypot(p.x, p.y), 1e-6);
 }
 
 TEST(ExtractSlices, TheMagnitudeGridKeepsMaskMappingAndHoles) {
@@ -90,10 +81,9 @@ TEST(ExtractSlices, TheMagnitudeGridKeepsMaskMappingAndHoles) {
 TEST(ExtractSlices, UndrawableSlicesAreErrorsWithTheirLine) {
   for (const auto& [keys, expected] : {std::pair{R"("field": "s", "axis": "z", "at": 2.5)", "does not meet the domain"},
                                        {R"("field": "s", "axis": "z", "at": 0, "contours": {"spacing": 1e-6})", "levels; at most 1000"}}) {
-    const auto packet = extract(sliced(keys));
-    ASSERT_FALSE(packet) << keys;
-    EXPECT_NE(packet.error().message.find(expected), std::string::npos) << packet.error().message;
-    EXPECT_EQ(packet.error().message.find("test.json:2"), 0u) << packet.error().message;
+    const std::string error = packet_error(sliced(keys));
+    EXPECT_NE(error.find(expected), std::string::npos) << error;
+    EXPECT_EQ(error.find("s.json:2"), 0u) << error;
   }
 }
 
@@ -102,9 +92,8 @@ TEST(ExtractMeshes, NormalsColorsAndOpacityReachThePacket) {
   // two perpendicular faces
   test::write_file(folder / "fold.obj", "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 0 0 1\nv 0 1 1\nf 1 3 4 2\nf 1 2 6 5\n");
   const std::string fields = R"({"fields": {"x": {"analytic": "linear", "resolution": 9}}, "meshes": [{"name": "m", "file": "fold.obj")";
-  auto packet = extract(fields + R"(, "shading": "smooth", "opacity": 0.25, "edges": true}]})", folder / "s.json");
-  ASSERT_TRUE(packet) << packet.error().message;
-  const MeshItem& item = packet->meshes[0];
+  FramePacket packet = packet_from(fields + R"(, "shading": "smooth", "opacity": 0.25, "edges": true}]})", folder / "s.json");
+  const MeshItem& item = packet.meshes[0];
   EXPECT_TRUE(item.smooth && item.show_edges);
   EXPECT_EQ(item.opacity, 0.25f);
   ASSERT_EQ(item.geometry->normals.size(), 6u);
@@ -113,9 +102,8 @@ TEST(ExtractMeshes, NormalsColorsAndOpacityReachThePacket) {
     const Vec3 expected = p.x > 0 ? Vec3(0, 0, 1) : p.z > 0 ? Vec3(1, 0, 0) : direction(Vec3(1, 0, 1));
     EXPECT_LE(norm(n - expected), 1e-12) << v;
   }
-  packet = extract(fields + R"(, "color_by": {"field": "x", "color": [[0, 0, 0, 0], [2, 1, 0.5, 0]]}}]})", folder / "s.json");
-  ASSERT_TRUE(packet) << packet.error().message;
-  const MeshGeometry& colored = *packet->meshes[0].geometry;
+  packet = packet_from(fields + R"(, "color_by": {"field": "x", "color": [[0, 0, 0, 0], [2, 1, 0.5, 0]]}}]})", folder / "s.json");
+  const MeshGeometry& colored = *packet.meshes[0].geometry;
   EXPECT_TRUE(colored.normals.empty());
   ASSERT_EQ(colored.colors.size(), 6u);
   const auto field = field::make_analytic("linear", {});
@@ -127,5 +115,4 @@ TEST(ExtractMeshes, NormalsColorsAndOpacityReachThePacket) {
   }
 }
 
-}  // namespace surfaces_test
-}  // namespace catena::render
+}  // namespace catena::render::surfaces_test

@@ -5,8 +5,7 @@
 
 #include "render/frame/camera.h"
 
-namespace catena::render {
-namespace tiles_test {
+namespace catena::render::tiles_test {
 
 TEST(Tiles, CoverEverySampleOnce) {
   for (const auto& [w, h, n, tile] : {std::array{200u, 150u, 1u, 64u}, {33u, 7u, 3u, 24u}, {5000u, 3u, 1u, 0u}, {64u, 64u, 1u, 64u}}) {
@@ -64,5 +63,4 @@ TEST(Tiles, ATileHasTheRaysOfTheWholeImage) {
   }
 }
 
-}  // namespace tiles_test
-}  // namespace catena::render
+}  // namespace catena::render::tiles_test

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 // "visible": false hides the drawn object and changes nothing else.
-#include <gtest/gtest.h>
-
-#include "render/extract/extract.h"
+#include "tests/render/support/scene_packet.h"
 #include "tests/support/support.h"
 
-namespace catena::render {
-namespace visible_test {
+namespace catena::render::visible_test {
 
 std::string scene_text(const std::string& visible) {
   std::string text = R"({"fields": {"s": {"analytic": "sphere", "resolution": 9}, "v": {"analytic": "circle"}},
@@ -24,14 +21,11 @@ class VisibleKey : public testing::Test {
  protected:
   FramePacket packet(const std::string& visible) {
     test::write_file(folder_ / "m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    scene_ = scene::parse_scene(scene_text(visible), folder_ / "s.json");
-    EXPECT_TRUE(scene_) << scene_.error().message;
-    auto packet = make_frame(*scene_, 32, 32);
-    EXPECT_TRUE(packet) << packet.error().message;
-    return packet ? std::move(*packet) : FramePacket{};
+    scene_ = test::scene_from(scene_text(visible), folder_ / "s.json");
+    return test::packet_from(scene_, 32, 32);
   }
   test::TemporaryFolder folder_;
-  Result<scene::Scene> scene_ = Error{""};
+  scene::Scene scene_;
 };
 
 TEST_F(VisibleKey, TrueIsTheDefault) {
@@ -56,7 +50,7 @@ TEST_F(VisibleKey, FalseHidesTheObjectAndItsScalarBar) {
   // the bar of the visible slice, in its colours
   ASSERT_EQ(some.overlay.scalar_bars.size(), 1u);
   EXPECT_EQ(some.overlay.scalar_bars[0].colors, some.slices[0].colors);
-  EXPECT_EQ(scene_->entities.count<scene::Volume>(), 2u) << "it is still of the scene";
+  EXPECT_EQ(scene_.entities.count<scene::Volume>(), 2u) << "it is still of the scene";
 }
 
 TEST_F(VisibleKey, OnlyBooleansAreAccepted) {
@@ -70,5 +64,4 @@ TEST_F(VisibleKey, OnlyBooleansAreAccepted) {
   }
 }
 
-}  // namespace visible_test
-}  // namespace catena::render
+}  // namespace catena::render::visible_test

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// Objects that follow a widget, in the packet: valid frames at any position of the widget.
-#include <gtest/gtest.h>
-
 #include "engine/scene/prepare.h"
 #include "engine/scene/widgets.h"
-#include "render/extract/extract.h"
+#include "tests/render/support/scene_packet.h"
 
-namespace catena::render {
-namespace widget_followers_test {
+namespace catena::render::widget_followers_test {
 
 scene::Scene parsed() {
-  auto scene = scene::parse_scene(R"({
+  return test::scene_from(R"({
     "fields": {"s": {"analytic": "sphere", "resolution": 17, "box": [-1, 1]}, "v": {"analytic": "circle"}},
     "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0.25], "normal": [0, 0, 1]},
       {"name": "r", "type": "rake", "from": [0.5, 0, 0], "to": [1, 0, 0]},
@@ -19,17 +16,10 @@ scene::Scene parsed() {
     "clip": [{"widget": "cut", "side": "behind"}],
     "streamlines": [{"field": "v", "seeds": {"widget": "r", "count": 4}, "color_by": {"quantity": "speed"}, "arrows": 0.5}],
     "isosurfaces": [{"field": "s", "level": {"widget": "l"}}],
-    "scalar_bars": [{"streamlines": 0}, {"slice": 0}], "bounding_box": true})",
-                                  "s.json");
-  EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
-  return scene ? std::move(*scene) : scene::Scene{};
+    "scalar_bars": [{"streamlines": 0}, {"slice": 0}], "bounding_box": true})");
 }
 
-FramePacket frame(scene::Scene& scene) {
-  auto packet = make_frame(scene, 64, 48);
-  EXPECT_TRUE(packet) << (packet ? "" : packet.error().message);
-  return packet ? std::move(*packet) : FramePacket{};
-}
+FramePacket frame(scene::Scene& scene) { return test::packet_from(scene, 64, 48); }
 
 void move(scene::Scene& scene, const char* name, const Vec3& a, const Vec3& b = Vec3(0.0)) {
   ASSERT_TRUE(scene::set_widget_pose(scene, scene::find_widget(scene, name), {{a, b}, kIdentityRotation}));
@@ -70,21 +60,4 @@ TEST(WidgetFollowers, OutsideTheDomainTheFrameIsValid) {
   EXPECT_EQ(frame(scene).tubes.size(), 4u);
 }
 
-TEST(WidgetFollowers, ARulerAlongACurveIsDrawnOnTheCurve) {
-  auto scene = scene::parse_scene(R"({"fields": {"v": {"analytic": "circle"}},
-    "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [1, 0, 0]}],
-    "widgets": [{"name": "u", "type": "ruler", "from": [1, 0, 0], "to": [0, 1, 0], "along": ["curve"]}]})",
-                                  "s.json");
-  ASSERT_TRUE(scene) << scene.error().message;
-  const FramePacket packet = frame(*scene);
-  ASSERT_EQ(packet.overlay.labels.size(), 1u);
-  EXPECT_EQ(packet.overlay.labels[0].text, "1.571 units");
-  EXPECT_NEAR(norm(packet.overlay.labels[0].position), 1, 1e-6) << "on the line";
-  std::size_t longest = 0;
-  for (const TubeItem& tube : packet.widgets.tubes)
-    if (tube.points.size() > longest) longest = tube.points.size();
-  EXPECT_GT(longest, 8u) << "the arc beside the straight way";
-}
-
-}  // namespace widget_followers_test
-}  // namespace catena::render
+}  // namespace catena::render::widget_followers_test

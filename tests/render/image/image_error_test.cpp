@@ -6,8 +6,7 @@
 
 #include <cmath>
 
-namespace catena::test {
-namespace image_error_test {
+namespace catena::test::image_error_test {
 
 using namespace catena::render;
 
@@ -87,5 +86,4 @@ TEST(MeasureFlicker, IsTheChangeOfTheError) {
   EXPECT_EQ(measure_flicker({brighter, truth}, {brighter, truth}), 0);
 }
 
-}  // namespace image_error_test
-}  // namespace catena::test
+}  // namespace catena::test::image_error_test

@@ -12,8 +12,7 @@
 #include "tests/render/support/read_files.h"
 #include "tests/support/support.h"
 
-namespace catena::test {
-namespace image_test {
+namespace catena::test::image_test {
 
 using namespace catena::render;
 
@@ -169,5 +168,4 @@ TEST(Exr, DisplayValuesBecomeLinearLight) {
   EXPECT_FLOAT_EQ(c[3], 0.25f);
 }
 
-}  // namespace image_test
-}  // namespace catena::test
+}  // namespace catena::test::image_test

@@ -5,20 +5,13 @@
 #include "render/frame/camera.h"
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace clip_test {
+namespace catena::test::clip_test {
 
 using namespace catena::render;
 
 /// A homogeneous box of 21^3 voxels seen along y, orthographic: one pixel is 0.25 units.
 FramePacket box_packet(double sigma) {
-  FramePacket packet;
-  packet.width = packet.height = 120;
-  packet.background = {0, 0, 0, 0};
-  packet.view.position = {10, -40, 10};
-  packet.view.target = {10, 10, 10};
-  packet.view.orthographic = true;
-  packet.view.height = 30;
+  FramePacket packet = square_packet_along_y(120, 30);
   packet.volumes.push_back(volume_item(make_grid({21, 21, 21}, [](const Vec3&) { return 0.5; }), {{0, sigma}, {1, sigma}}));
   return packet;
 }
@@ -64,41 +57,27 @@ TEST_F(Clip, ASurfaceIsDrawnAtItsNextCrossingAndTrianglesAreCut) {
   packet.volumes.clear();
   const auto sphere = make_grid({21, 21, 21}, [](const Vec3& p) { return norm(p - Vec3(10.0)); });
   packet.isosurfaces.push_back({sphere, 6.0, {1, 1, 1}, 1.0f, 7});
-  TubeItem tube;
-  tube.points = {{10, 10, 0}, {10, 10, 3}};
-  tube.radius = 0.5;
-  tube.color = {1, 0, 0};
-  tube.id = 9;
-  packet.tubes.push_back(tube);
+  packet.tubes.push_back({{{10, 10, 0}, {10, 10, 3}}, 0.5, {1, 0, 0}, {}, 9});
   packet.clip_planes = {{{0, 6, 0}, {0, 1, 0}}, {{0, 0, 2}, {0, 0, 3}}};  // y >= 6, z >= 2
   draw(packet, {}, "cut");
-  const auto depth = renderer_->read_depth();
-  const auto ids = renderer_->read_ids();
-  ASSERT_TRUE(depth && ids);
   // in the middle the front of the sphere is clipped: its back is visible through the opening
-  EXPECT_NEAR(depth->depth[60 * 120 + 60], 40 + 10 + 6, 0.05);
-  EXPECT_EQ(ids->ids[60 * 120 + 60], 7u);
+  EXPECT_NEAR(depths()[60 * 120 + 60], 40 + 10 + 6, 0.05);
+  EXPECT_EQ(ids()[60 * 120 + 60], 7u);
   // the tube remains for z >= 2 (rows: z = 10 - (row + 0.5 - 60) / 4)
-  const auto id_at = [&](double z) { return ids->ids[std::size_t(60 + (10 - z) * 4) * 120 + 60]; };
+  const auto id_at = [&](double z) { return ids()[std::size_t(60 + (10 - z) * 4) * 120 + 60]; };
   EXPECT_EQ(id_at(2.8), 9u);
   EXPECT_EQ(id_at(1.0), 0u);
   // an object that is not clipped is complete
   packet.isosurfaces[0].is_clipped = packet.tubes[0].is_clipped = false;
   draw(packet, {}, "whole");
-  const auto whole = renderer_->read_depth();
-  const auto whole_ids = renderer_->read_ids();
-  ASSERT_TRUE(whole && whole_ids);
-  EXPECT_NEAR(whole->depth[60 * 120 + 60], 40 + 10 - 6, 0.05);
-  EXPECT_EQ(whole_ids->ids[std::size_t(60 + (10 - 1.0) * 4) * 120 + 60], 9u);
+  EXPECT_NEAR(depths()[60 * 120 + 60], 40 + 10 - 6, 0.05);
+  EXPECT_EQ(id_at(1.0), 9u);
 }
 
 TEST_F(Clip, MoreThanEightPlanesAreAnErrorInOneLine) {
   FramePacket packet = box_packet(0.1);
   packet.clip_planes.resize(9);
-  const auto drawn = renderer_->draw(packet);
-  ASSERT_FALSE(drawn);
-  EXPECT_NE(drawn.error().message.find("9 clip planes"), std::string::npos);
+  expect_refused(packet, "9 clip planes");
 }
 
-}  // namespace clip_test
-}  // namespace catena::test
+}  // namespace catena::test::clip_test

@@ -7,8 +7,7 @@
 
 #include "tests/render/support/cubic_rays.h"
 
-namespace catena::test {
-namespace cubic_surface_test {
+namespace catena::test::cubic_surface_test {
 
 using namespace catena::render;
 using namespace cubic_rays;
@@ -21,8 +20,7 @@ class CubicSurface : public ImageTest {
     const field::ScalarGrid& grid = *packet.isosurfaces[0].grid;
     const double level = float(packet.isosurfaces[0].level);
     draw(packet, settings, name);
-    const auto depth = renderer_->read_depth();
-    ASSERT_TRUE(depth);
+    const std::vector<float> depth = depths();
     const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
     field::Cursor cursor;
     int hits = 0, grazing = 0;
@@ -31,7 +29,7 @@ class CubicSurface : public ImageTest {
     for (std::uint32_t y = 0; y < packet.height; y += 2)
       for (std::uint32_t x = 0; x < packet.width; x += 2) {
         const PixelRay ray(grid, camera, x, y);
-        const double found = depth->depth[y * packet.width + x];
+        const double found = depth[y * packet.width + x];
         const auto off = [&](double expected) {
           return std::isfinite(found) && std::isfinite(expected)   ? std::fabs(found - expected) * ray.voxels
                  : std::isfinite(found) != std::isfinite(expected) ? HUGE_VAL
@@ -78,8 +76,7 @@ TEST_F(CubicSurface, DepthsMatchTheRootsOfTheField) {
   FramePacket packet = packet_of_grid(*waves, 110);
   packet.isosurfaces = {make_isosurface_item(waves, 0.55)};
   compare_depths(packet, {}, "waves", 800);
-  RenderSettings all;
-  all.skip_empty = false;
+  RenderSettings all{.skip_empty = false, .fast = {}};
   compare_depths(packet, all, "waves, every cell", 800);
 }
 
@@ -97,8 +94,7 @@ TEST_F(CubicSurface, DepthsOfASheardGridWithHoles) {
   FramePacket packet = packet_of_grid(*grid, 120);
   packet.isosurfaces = {make_isosurface_item(grid, 0.45)};
   compare_depths(packet, {}, "sheared", 800);
-  packet.view.orthographic = true;
-  packet.view.height = 50;
+  set_orthographic(packet, 50);
   compare_depths(packet, {}, "orthographic", 800);
 }
 
@@ -109,8 +105,7 @@ TEST_F(CubicSurface, AQuadraticSurfaceIsExactWithItsNormals) {
   const auto cubic = smoothed_grid(linear);
   FramePacket packet = make_packet(c + Vec3(30, -24, 20), c, 20);
   packet.lights = {{{0.2, -1, 1.5}, {1, 1, 1}, false}};
-  RenderSettings settings;
-  settings.float_image = true;
+  RenderSettings settings{.float_image = true, .fast = {}};
   double depth_error[2]{}, color_error[2]{};
   for (const bool smooth_one : {false, true}) {
     packet.isosurfaces = {make_isosurface_item(smooth_one ? cubic : linear, 10.24)};
@@ -120,24 +115,23 @@ TEST_F(CubicSurface, AQuadraticSurfaceIsExactWithItsNormals) {
     ASSERT_TRUE(depth && colors);
     const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
     int hits = 0;
-    for (std::uint32_t y = 0; y < packet.height; ++y)
-      for (std::uint32_t x = 0; x < packet.width; ++x) {
-        const std::size_t at = y * packet.width + x;
-        const PixelRay ray(*linear, camera, x, y);
-        const Vec3 o = scale * (ray.origin - c), d = scale * ray.direction;
-        const double half = dot(o, d), root = half * half - dot(d, d) * (dot(o, o) - 10.24);
-        if (root < 0.5 * dot(d, d)) continue;  // excludes the silhouette
-        const double t = (-half - std::sqrt(root)) / dot(d, d);
-        ASSERT_TRUE(std::isfinite(depth->depth[at]));
-        ++hits;
-        depth_error[smooth_one] = std::max(depth_error[smooth_one], std::fabs(depth->depth[at] - t));
-        const Vec3 normal = direction(scale * scale * (ray.at(t) - c)), eye = -direction(ray.direction),
-                   light = direction(packet.lights[0].direction);
-        const double n = dot(normal, light);
-        const double glint = n > 0 ? 0.2 * std::pow(std::max(0.0, dot(2 * n * normal - light, eye)), 20) : 0;
-        const double red = 0.8 * (0.2 + 0.7 * std::max(0.0, n)) + glint;
-        color_error[smooth_one] = std::max(color_error[smooth_one], std::fabs(double(colors->rgba[4 * at]) - red));
-      }
+    for (const auto& [x, y] : pixels_of(packet)) {
+      const std::size_t at = y * packet.width + x;
+      const PixelRay ray(*linear, camera, x, y);
+      const Vec3 o = scale * (ray.origin - c), d = scale * ray.direction;
+      const double half = dot(o, d), root = half * half - dot(d, d) * (dot(o, o) - 10.24);
+      if (root < 0.5 * dot(d, d)) continue;  // excludes the silhouette
+      const double t = (-half - std::sqrt(root)) / dot(d, d);
+      ASSERT_TRUE(std::isfinite(depth->depth[at]));
+      ++hits;
+      depth_error[smooth_one] = std::max(depth_error[smooth_one], std::fabs(depth->depth[at] - t));
+      const Vec3 normal = direction(scale * scale * (ray.at(t) - c)), eye = -direction(ray.direction),
+                 light = direction(packet.lights[0].direction);
+      const double n = dot(normal, light);
+      const double glint = n > 0 ? 0.2 * std::pow(std::max(0.0, dot(2 * n * normal - light, eye)), 20) : 0;
+      const double red = 0.8 * (0.2 + 0.7 * std::max(0.0, n)) + glint;
+      color_error[smooth_one] = std::max(color_error[smooth_one], std::fabs(double(colors->rgba[4 * at]) - red));
+    }
     EXPECT_GT(hits, 1500);
   }
   EXPECT_LE(depth_error[1], 2e-5);
@@ -151,21 +145,19 @@ TEST_F(CubicSurface, ATranslucentSurfaceHasEveryCrossingOfTheField) {
   FramePacket packet = packet_of_grid(*grid, 70);
   packet.isosurfaces = {make_isosurface_item(grid, 0.5)};
   packet.isosurfaces[0].opacity = 0.25f;
-  RenderSettings settings;
-  settings.termination = 1e-4;
+  RenderSettings settings{.termination = 1e-4, .fast = {}};
   const Image8 image = draw(packet, settings, "translucent");
   const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
   field::Cursor cursor;
   int compared = 0, different = 0;
-  for (std::uint32_t y = 0; y < packet.height; y += 6)
-    for (std::uint32_t x = 0; x < packet.width; x += 6) {
-      PixelRay ray(*grid, camera, x, y);
-      int crossings = 0;
-      for (double t; ray.from < ray.to && (t = first_root(*grid, 0.5, ray, 0.05, cursor)) < HUGE_VAL; ++crossings) ray.from = t + 1e-6;
-      if (crossings == 0 && image.pixel(x, y)[3] == 0) continue;
-      ++compared;
-      different += std::fabs(image.pixel(x, y)[3] - 255 * (1 - std::pow(0.75, crossings))) > 1;
-    }
+  for (const auto& [x, y] : pixels_of(packet, 6)) {
+    PixelRay ray(*grid, camera, x, y);
+    int crossings = 0;
+    for (double t; ray.from < ray.to && (t = first_root(*grid, 0.5, ray, 0.05, cursor)) < HUGE_VAL; ++crossings) ray.from = t + 1e-6;
+    if (crossings == 0 && image.pixel(x, y)[3] == 0) continue;
+    ++compared;
+    different += std::fabs(image.pixel(x, y)[3] - 255 * (1 - std::pow(0.75, crossings))) > 1;
+  }
   EXPECT_GT(compared, 150);
   EXPECT_LE(different, 3) << "of " << compared;
 }
@@ -177,8 +169,7 @@ TEST_F(CubicSurface, ColorsByACubicFieldMatchItsValues) {
   packet.isosurfaces = {make_isosurface_item(shape, 9)};
   packet.isosurfaces[0].id = 3;
   packet.isosurfaces[0].color_by = ColorSource{values, {{-0.25, 0, 1, 0}, {1.25, 1, 0, 0}}};
-  RenderSettings settings;
-  settings.float_image = true;
+  RenderSettings settings{.float_image = true, .fast = {}};
   ASSERT_TRUE(renderer_->draw(packet, settings));
   const auto depth = renderer_->read_depth();
   const auto colors = renderer_->read_back_float();
@@ -186,18 +177,16 @@ TEST_F(CubicSurface, ColorsByACubicFieldMatchItsValues) {
   const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
   field::Cursor cursor;
   int compared = 0;
-  for (std::uint32_t y = 0; y < packet.height; y += 2)
-    for (std::uint32_t x = 0; x < packet.width; x += 2) {
-      const std::size_t at = y * packet.width + x;
-      if (!std::isfinite(depth->depth[at])) continue;
-      const auto s = values->sample(unproject(camera, x + 0.5, y + 0.5, depth->depth[at]), cursor);
-      const float *c = &colors->rgba[4 * at], red = c[0] - c[2], green = c[1] - c[2];  // without the white highlight
-      if (!s.inside || red + green < 0.3f) continue;
-      ++compared;
-      ASSERT_NEAR(red / (red + green), (s.value + 0.25) / 1.5, 5e-3) << x << " " << y;
-    }
+  for (const auto& [x, y] : pixels_of(packet, 2)) {
+    const std::size_t at = y * packet.width + x;
+    if (!std::isfinite(depth->depth[at])) continue;
+    const auto s = values->sample(unproject(camera, x + 0.5, y + 0.5, depth->depth[at]), cursor);
+    const float *c = &colors->rgba[4 * at], red = c[0] - c[2], green = c[1] - c[2];  // without the white highlight
+    if (!s.inside || red + green < 0.3f) continue;
+    ++compared;
+    ASSERT_NEAR(red / (red + green), (s.value + 0.25) / 1.5, 5e-3) << x << " " << y;
+  }
   EXPECT_GT(compared, 1000);
 }
 
-}  // namespace cubic_surface_test
-}  // namespace catena::test
+}  // namespace catena::test::cubic_surface_test

@@ -5,34 +5,24 @@
 #include "render/frame/camera.h"
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace environment_test {
+namespace catena::test::environment_test {
 
 using namespace catena::render;
 
 /// A square perpendicular to y at `y`, seen along +y in orthographic projection: 0.1 units per pixel.
-MeshItem square(double y, double half, const Color& color) {
-  auto geometry = std::make_shared<MeshGeometry>();
-  geometry->vertices = {{-half, y, -half}, {half, y, -half}, {half, y, half}, {-half, y, half}};
-  geometry->triangles = {0, 1, 2, 0, 2, 3};
-  return {std::move(geometry), color};
-}
-
 FramePacket square_packet(double y, const Color& color) {
-  FramePacket packet;
-  packet.width = packet.height = 60;
-  packet.view.position = {0, -10, 0};
-  packet.view.target = {0, 0, 0};
-  packet.view.orthographic = true;
-  packet.view.height = 6;
-  packet.meshes.push_back(square(y, 2, color));
+  FramePacket packet = make_packet({0, -10, 0}, {0, 0, 0});
+  packet.background = {0, 0, 0, 1};
+  set_size(packet, 60, 60);
+  set_orthographic(packet, 6);
+  packet.meshes.push_back({square_at(y, 2), color});
   return packet;
 }
 
 class EnvironmentPass : public ImageTest {
  protected:
-  std::array<int, 3> middle(const FramePacket& packet, const std::string& name) {
-    const Image8 image = draw(packet, {}, name);
+  std::array<int, 3> middle(const FramePacket& packet, const std::string& name, const RenderSettings& settings = {}) {
+    const Image8 image = draw(packet, settings, name);
     const std::uint8_t* p = image.pixel(packet.width / 2, packet.height / 2);
     return {p[0], p[1], p[2]};
   }
@@ -83,43 +73,29 @@ TEST_F(EnvironmentPass, FogBlendsByDepth) {
 TEST_F(EnvironmentPass, FogBlendsAnIsosurfaceAndAThinVolume) {
   // z of the grid along the view; the surface at index 10
   const auto grid = make_grid({21, 21, 21}, [](const Vec3& p) { return p.y; });
-  FramePacket packet;
-  packet.width = packet.height = 60;
-  packet.view.position = {10, -20, 10};
-  packet.view.target = {10, 0, 10};
-  packet.view.orthographic = true;
-  packet.view.height = 12;
+  FramePacket packet = make_packet({10, -20, 10}, {10, 0, 10});
+  packet.background = {0, 0, 0, 1};
+  set_size(packet, 60, 60);
+  set_orthographic(packet, 12);
   packet.isosurfaces.push_back({grid, 10.0, {0.5f, 0.25f, 0.1f}, 1.0f});
   packet.fog = FogItem{{0.1f, 0.3f, 0.8f}, 25, 35, 1};
   expect_color(middle(packet, "surface"), 0.5 * (0.9 * Vec3(0.5, 0.25, 0.1) + Vec3(0.2)) + 0.5 * Vec3(0.1, 0.3, 0.8));
   // dense and beyond the end of the fog: all its colour is fogged
   packet.isosurfaces.clear();
   packet.volumes.push_back(volume_item(grid, {{0, 0}, {15.8, 0}, {16, 400}, {16.2, 0}, {20, 0}}, {0.5f, 0.25f, 0.1f}));
-  RenderSettings settings;
-  settings.step_voxels = 0.02;
-  const Image8 image = draw(packet, settings, "volume");
-  const std::uint8_t* p = image.pixel(30, 30);
-  expect_color({p[0], p[1], p[2]}, Vec3(0.1, 0.3, 0.8));
+  RenderSettings settings{.step_voxels = 0.02, .fast = {}};
+  expect_color(middle(packet, "volume", settings), Vec3(0.1, 0.3, 0.8));
 }
 
 TEST_F(EnvironmentPass, BoundingBoxAndGroundAreAtTheirPositions) {
   FramePacket packet = square_packet(0, {0.2f, 0.2f, 0.2f});
-  TubeItem edge;
-  edge.points = {{-2.5, 0, 2.5}, {2.5, 0, 2.5}};
-  edge.radius = 0.1;
-  edge.color = {1, 0, 0};
-  edge.id = 4;
-  packet.environment.tubes.push_back(edge);
+  packet.environment.tubes.push_back({{{-2.5, 0, 2.5}, {2.5, 0, 2.5}}, 0.1, {1, 0, 0}, {}, 4});
   packet.clip_planes = {{{0, 0, 0}, {0, 0, -1}}};  // clips the square, not the bounding box
   draw(packet, {}, "clipped");
-  const auto ids = renderer_->read_ids();
-  ASSERT_TRUE(ids);
-  EXPECT_EQ(ids->ids[5 * 60 + 30], 4u);
+  EXPECT_EQ(ids()[5 * 60 + 30], 4u);
   EXPECT_EQ(renderer_->stats().passes, (std::vector<std::string>{"aids", "meshes", "compose"}));
-  const auto depth = renderer_->read_depth();
-  ASSERT_TRUE(depth);
-  EXPECT_TRUE(std::isinf(depth->depth[20 * 60 + 30]));
-  EXPECT_NEAR(depth->depth[40 * 60 + 30], 10, 1e-4);
+  EXPECT_TRUE(std::isinf(depths()[20 * 60 + 30]));
+  EXPECT_NEAR(depths()[40 * 60 + 30], 10, 1e-4);
 }
 
 TEST_F(EnvironmentPass, FogAndLightsAreDrawnByExactRays) {
@@ -133,5 +109,4 @@ TEST_F(EnvironmentPass, FogAndLightsAreDrawnByExactRays) {
   EXPECT_FALSE(renderer_->can_draw_fast(packet));
 }
 
-}  // namespace environment_test
-}  // namespace catena::test
+}  // namespace catena::test::environment_test

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The driver fails at each call of a frame in turn: one error line, no leaks, no hang, and the next image is correct.
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "tests/render/support/failure_injector.h"
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace failure_test {
+namespace catena::test::failure_test {
 
 using namespace catena::render;
 using vk::DriverCall;
@@ -16,23 +13,12 @@ using vk::DriverCall;
 /// A packet with every kind of object that needs device memory.
 FramePacket everything() {
   FramePacket packet = make_packet({45, -50, 40}, {12, 12, 12});
-  packet.width = 64;
-  packet.height = 48;
+  set_size(packet, 64, 48);
   const auto grid = make_grid({24, 24, 24}, [](const Vec3& p) { return norm(p - Vec3(12, 12, 12)) / 21; });
   packet.volumes = {volume_item(grid, {{0, 0.2}, {1, 0}}, {1, 0.5f, 0.2f})};
-  IsosurfaceItem surface;
-  surface.grid = grid;
-  surface.level = 0.2;
-  packet.isosurfaces = {surface};
-  TubeItem tube;
-  tube.points = {{0, 0, 0}, {24, 20, 24}};
-  tube.radius = 1;
-  tube.color = {0, 1, 0};
-  packet.tubes = {tube};
-  CursorItem cursor;
-  cursor.probe = {20, 4, 12};
-  cursor.radius = 1;
-  packet.cursors = {cursor};
+  packet.isosurfaces.push_back({grid, 0.2, {}});
+  packet.tubes.push_back({{{0, 0, 0}, {24, 20, 24}}, 1, {0, 1, 0}});
+  packet.cursors = {cursor_item({20, 4, 12}, 1)};
   return packet;
 }
 
@@ -52,12 +38,12 @@ class DriverFailures : public ImageTest {
   void expect_silence() const {
     for (const std::string& text : renderer_->validation_texts()) ADD_FAILURE() << text;
   }
-  std::string failed(const FramePacket& packet) {
+  /// Checks that the packet is refused with one line that names the result.
+  void expect_failure(const FramePacket& packet, const char* result) {
     const Outcome drawn = renderer_->draw(packet);
-    EXPECT_FALSE(drawn);
-    const std::string message = drawn ? "" : drawn.error().message;
-    EXPECT_EQ(message.find('\n'), std::string::npos);
-    return message;
+    ASSERT_FALSE(drawn);
+    EXPECT_EQ(drawn.error().message.find('\n'), std::string::npos);
+    EXPECT_NE(drawn.error().message.find(result), std::string::npos) << drawn.error().message;
   }
   int calls_of_a_frame(const FramePacket& packet, DriverCall call) {
     start_over();
@@ -80,17 +66,17 @@ TEST_F(DriverFailures, OutOfMemoryAtEveryAllocation) {
   start_over();
   for (int n = 1; n <= allocations; ++n) {
     failing_->arm(DriverCall::allocate, VK_ERROR_OUT_OF_DEVICE_MEMORY, n);
-    const std::string message = failed(packet);
-    ASSERT_NE(message.find("VK_ERROR_OUT_OF_DEVICE_MEMORY"), std::string::npos) << n << ": " << message;
+    SCOPED_TRACE(n);
+    expect_failure(packet, "VK_ERROR_OUT_OF_DEVICE_MEMORY");
     EXPECT_FALSE(renderer_->device().is_lost());
     // all memory of the frame is freed
-    EXPECT_EQ(renderer_->device().counters().allocated_bytes, 0u) << "allocation " << n;
-    EXPECT_EQ(renderer_->device().retired_count(), 0u) << "allocation " << n;
+    EXPECT_EQ(renderer_->device().counters().allocated_bytes, 0u);
+    EXPECT_EQ(renderer_->device().retired_count(), 0u);
     EXPECT_EQ(renderer_->stats().resident_grids, 0u);
     // every fourth time the renderer is reused, for a smaller and then for the full packet
     if (n % 4 != 1 && n != allocations) continue;
-    EXPECT_EQ(max_difference(draw(smaller), few), 0) << "allocation " << n;
-    EXPECT_EQ(max_difference(draw(packet), all), 0) << "allocation " << n;
+    EXPECT_EQ(max_difference(draw(smaller), few), 0);
+    EXPECT_EQ(max_difference(draw(packet), all), 0);
     start_over();
   }
 }
@@ -116,11 +102,10 @@ TEST_F(DriverFailures, TheSceneSurvivesALostDevice) {
     for (const int n : {1, calls / 2, calls}) {
       start_over();
       failing_->arm(call, VK_ERROR_DEVICE_LOST, n);
-      const std::string message = failed(packet);
-      ASSERT_NE(message.find("VK_ERROR_DEVICE_LOST"), std::string::npos) << message;
+      expect_failure(packet, "VK_ERROR_DEVICE_LOST");
       EXPECT_TRUE(renderer_->device().is_lost());
       // the device stays lost, and the next draw reports it at once
-      EXPECT_NE(failed(packet).find("VK_ERROR_DEVICE_LOST"), std::string::npos);
+      expect_failure(packet, "VK_ERROR_DEVICE_LOST");
       start_over();
       EXPECT_FALSE(renderer_->device().is_lost());
       EXPECT_EQ(max_difference(draw(packet), before), 0) << "call " << n;
@@ -139,5 +124,4 @@ TEST_F(DriverFailures, ADeviceLostBetweenImagesIsReported) {
   EXPECT_EQ(max_difference(draw(packet), before), 0);
 }
 
-}  // namespace failure_test
-}  // namespace catena::test
+}  // namespace catena::test::failure_test

@@ -5,8 +5,7 @@
 #include "render/frame/camera.h"
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace glyphs_test {
+namespace catena::test::glyphs_test {
 
 using namespace catena::render;
 
@@ -16,8 +15,7 @@ class Glyphs : public ImageTest {};
 FramePacket along_y() {
   FramePacket packet = make_packet({0, -60, 0}, {0, 0, 0}, 20);
   packet.background = {0, 0, 0, 1};
-  packet.view.orthographic = true;
-  packet.view.height = 24;
+  set_orthographic(packet, 24);
   return packet;
 }
 
@@ -36,24 +34,17 @@ TEST_F(Glyphs, AnArrowStartsAndEndsAtItsVector) {
   FramePacket packet = along_y();
   packet.glyphs = {arrow()};
   const Image8 image = draw(packet, {}, "arrow");
-  const auto ids = renderer_->read_ids();
-  ASSERT_TRUE(ids);
-  const auto id = [&](double x, double z) {
-    return ids->ids[static_cast<std::size_t>(60 - 5 * z) * 160 + static_cast<std::size_t>(80 + 5 * x)];
+  const std::vector<std::uint32_t> id = ids();
+  const auto expect_id = [&](std::uint32_t expected, const std::vector<std::array<double, 2>>& places) {
+    for (const auto& [x, z] : places)
+      EXPECT_EQ(id[static_cast<std::size_t>(60 - 5 * z) * 160 + static_cast<std::size_t>(80 + 5 * x)], expected) << x << " " << z;
   };
   // along the axis: covered between the ends only
-  EXPECT_EQ(id(-7.8, 0), 7u);
-  EXPECT_EQ(id(0, 0), 7u);
-  EXPECT_EQ(id(7.5, 0), 7u);
-  EXPECT_EQ(id(-8.4, 0), 0u);
-  EXPECT_EQ(id(8.4, 0), 0u);
+  expect_id(7, {{-7.8, 0}, {0, 0}, {7.5, 0}});
+  expect_id(0, {{-8.4, 0}, {8.4, 0}});
   // half-widths: shaft 1, head 2.5 at its base and half of it at its middle
-  EXPECT_EQ(id(0, 0.7), 7u);
-  EXPECT_EQ(id(0, 1.3), 0u);
-  EXPECT_EQ(id(4.3, 1.9), 7u);
-  EXPECT_EQ(id(3.6, 1.9), 0u) << "before the head";
-  EXPECT_EQ(id(6, 0.9), 7u);
-  EXPECT_EQ(id(6, 1.7), 0u);
+  expect_id(7, {{0, 0.7}, {4.3, 1.9}, {6, 0.9}});
+  expect_id(0, {{0, 1.3}, {3.6, 1.9}, {6, 1.7}});
   EXPECT_GT(image.pixel(80, 60)[0], 150);
   EXPECT_EQ(image.pixel(80, 60)[1], image.pixel(80, 60)[2]) << "red, and white where it shines";
   const auto picked = renderer_->pick(80, 60);
@@ -106,5 +97,4 @@ TEST_F(Glyphs, GlyphsAreClippedAndAttenuatedByVolumes) {
   EXPECT_GT(image.pixel(80, 60)[2], 100);
 }
 
-}  // namespace glyphs_test
-}  // namespace catena::test
+}  // namespace catena::test::glyphs_test

@@ -4,20 +4,30 @@
 #include "render/frame/camera.h"
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace isosurface_test {
+namespace catena::test::isosurface_test {
 
 using namespace catena::render;
 
 class Isosurface : public ImageTest {};
 
 IsosurfaceItem surface_item(GridPtr grid, double level, float opacity = 1, Color color = {0.8f, 0.8f, 0.9f}) {
-  IsosurfaceItem item;
-  item.grid = std::move(grid);
-  item.level = level;
-  item.opacity = opacity;
-  item.color = color;
-  return item;
+  return {std::move(grid), level, color, opacity};
+}
+
+/// Distance from `c` on n^3 voxels.
+GridPtr distance_grid(int n, const Vec3& c) {
+  return make_grid({n, n, n}, [c](const Vec3& p) { return norm(p - c); });
+}
+
+/// The grid of y on 32^3 voxels, and its view along y.
+GridPtr plane_grid() {
+  return make_grid({32, 32, 32}, [](const Vec3& p) { return p.y; });
+}
+FramePacket along_y() { return make_packet({15.5, -60, 15.5}, {15.5, 0, 15.5}, 20); }
+
+/// A green fog of 0.05 per unit on 32^3 voxels.
+VolumeItem fog() {
+  return volume_item(make_grid({32, 32, 32}, [](const Vec3&) { return 0.5; }), {{0, 0.05}, {1, 0.05}}, {0, 1, 0});
 }
 
 /// The first crossing along a ray by dense search and bisection in double precision; infinite if none.
@@ -47,27 +57,19 @@ void expect_depths(Renderer& renderer, const FramePacket& packet, const field::S
   const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
   double worst = 0;
   int hits = 0, disagree = 0;
-  for (std::uint32_t y = 0; y < packet.height; y += 2)
-    for (std::uint32_t x = 0; x < packet.width; x += 2) {
-      const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
-      // entry and exit of the ray
-      const Vec3 o = grid.mapping().index_from_world(ray.origin), d = grid.mapping().index_from_world_linear * ray.direction;
-      double enter = 0, leave = 1e9;
-      for (int a = 0; a < 3; ++a) {
-        const double s = (grid.index_box().lo[a] - o[a]) / d[a], t = (grid.index_box().hi[a] - o[a]) / d[a];
-        enter = std::max(enter, std::min(s, t));
-        leave = std::min(leave, std::max(s, t));
-      }
-      const double t = enter < leave ? cpu_crossing(grid, ray, level, enter + 1e-9, leave, 0.05 * voxel) : HUGE_VAL;
-      const double expected = t * -dot(ray.direction, camera.back);
-      const double found = depth->depth[y * packet.width + x];
-      if (std::isfinite(expected) != std::isfinite(found)) {
-        ++disagree;  // grazing rays
-      } else if (std::isfinite(expected)) {
-        ++hits;
-        worst = std::max(worst, std::fabs(found - expected) / voxel);
-      }
+  for (const auto& [x, y] : pixels_of(packet, 2)) {
+    const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
+    const auto [enter, leave] = ray_interval(grid, ray.origin, ray.direction);
+    const double t = enter < leave ? cpu_crossing(grid, ray, level, enter + 1e-9, leave, 0.05 * voxel) : HUGE_VAL;
+    const double expected = t * -dot(ray.direction, camera.back);
+    const double found = depth->depth[y * packet.width + x];
+    if (std::isfinite(expected) != std::isfinite(found)) {
+      ++disagree;  // grazing rays
+    } else if (std::isfinite(expected)) {
+      ++hits;
+      worst = std::max(worst, std::fabs(found - expected) / voxel);
     }
+  }
   EXPECT_GT(hits, min_hits);
   EXPECT_LE(disagree, 2);
   EXPECT_LE(worst, 1e-3);
@@ -75,12 +77,11 @@ void expect_depths(Renderer& renderer, const FramePacket& packet, const field::S
 
 TEST_F(Isosurface, DepthOfASphereMatchesTheField) {
   const Vec3 c(15.3, 16.1, 14.7);
-  const auto grid = make_grid({32, 32, 32}, [&](const Vec3& p) { return norm(p - c); });
+  const auto grid = distance_grid(32, c);
   FramePacket packet = make_packet({70, -50, 55}, c, 25);
   packet.isosurfaces = {surface_item(grid, 11)};
   for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas}) {
-    RenderSettings settings;
-    settings.layout = layout;
+    RenderSettings settings{.layout = layout, .fast = {}};
     draw(packet, settings, layout == GridLayout::dense ? "dense" : "atlas");
     expect_depths(*renderer_, packet, *grid, 11, 1, 700);
   }
@@ -100,10 +101,9 @@ TEST_F(Isosurface, DepthOfARoughFieldOnARotatedGrid) {
 
 TEST_F(Isosurface, DepthInOrthographicProjection) {
   const Vec3 c(15.5);
-  const auto grid = make_grid({32, 32, 32}, [&](const Vec3& p) { return norm(p - c); });
+  const auto grid = distance_grid(32, c);
   FramePacket packet = make_packet({70, -50, 55}, c);
-  packet.view.orthographic = true;
-  packet.view.height = 30;
+  set_orthographic(packet, 30);
   packet.isosurfaces = {surface_item(grid, 10)};
   draw(packet, {}, "sphere");
   expect_depths(*renderer_, packet, *grid, 10, 1, 700);
@@ -112,31 +112,30 @@ TEST_F(Isosurface, DepthInOrthographicProjection) {
 TEST_F(Isosurface, ASphereIsShadedByItsNormal) {
   const Vec3 c(23.5);
   const double radius = 16;
-  const auto grid = make_grid({48, 48, 48}, [&](const Vec3& p) { return norm(p - c); });
+  const auto grid = distance_grid(48, c);
   FramePacket packet = make_packet({100, -60, 70}, c, 22);
   packet.isosurfaces = {surface_item(grid, radius, 1, {0.9f, 0.5f, 0.1f})};
   const Image8 image = draw(packet);
   const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
   int compared = 0;
-  for (std::uint32_t y = 0; y < packet.height; ++y)
-    for (std::uint32_t x = 0; x < packet.width; ++x) {
-      const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
-      const Vec3 to = ray.origin - c;
-      const double b = dot(to, ray.direction), q = b * b - dot(to, to) + radius * radius;
-      if (q < 12) continue;  // the silhouette
-      const Vec3 n = (to + (-b - std::sqrt(q)) * ray.direction) / radius;
-      const double lambert = std::fabs(dot(n, ray.direction)), mirrored = std::max(0.0, 2 * lambert * lambert - 1);
-      const double expected = (0.2 + 0.7 * lambert) * 0.9 + 0.2 * std::pow(mirrored, 20);
-      ASSERT_NEAR(image.pixel(x, y)[0], 255 * std::min(1.0, expected), 3) << x << " " << y;
-      ASSERT_EQ(image.pixel(x, y)[3], 255);
-      ++compared;
-    }
+  for (const auto& [x, y] : pixels_of(packet)) {
+    const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
+    const Vec3 to = ray.origin - c;
+    const double b = dot(to, ray.direction), q = b * b - dot(to, to) + radius * radius;
+    if (q < 12) continue;  // the silhouette
+    const Vec3 n = (to + (-b - std::sqrt(q)) * ray.direction) / radius;
+    const double lambert = std::fabs(dot(n, ray.direction)), mirrored = std::max(0.0, 2 * lambert * lambert - 1);
+    const double expected = (0.2 + 0.7 * lambert) * 0.9 + 0.2 * std::pow(mirrored, 20);
+    ASSERT_NEAR(image.pixel(x, y)[0], 255 * std::min(1.0, expected), 3) << x << " " << y;
+    ASSERT_EQ(image.pixel(x, y)[3], 255);
+    ++compared;
+  }
   EXPECT_GT(compared, 2000);
 }
 
 TEST_F(Isosurface, ATranslucentSphereShowsTwoWalls) {
   const Vec3 c(15.5);
-  const auto grid = make_grid({32, 32, 32}, [&](const Vec3& p) { return norm(p - c); });
+  const auto grid = distance_grid(32, c);
   FramePacket packet = make_packet({70, -50, 55}, c, 25);
   packet.isosurfaces = {surface_item(grid, 11, 0.4f)};
   const Image8 image = draw(packet, {}, "shell");
@@ -146,11 +145,9 @@ TEST_F(Isosurface, ATranslucentSphereShowsTwoWalls) {
 
 TEST_F(Isosurface, ATranslucentSurfaceIsSortedWithTheVolume) {
   // a fog box of sigma s from y = 0 to 31, a plane at y = 16 of opacity 0.5, seen along +y
-  const auto fog = make_grid({32, 32, 32}, [](const Vec3&) { return 0.5; });
-  const auto plane = make_grid({32, 32, 32}, [](const Vec3& p) { return p.y; });
-  FramePacket packet = make_packet({15.5, -60, 15.5}, {15.5, 0, 15.5}, 20);
-  packet.volumes = {volume_item(fog, {{0, 0.05}, {1, 0.05}}, {0, 1, 0})};
-  packet.isosurfaces = {surface_item(plane, 16, 0.5f, {1, 0, 0})};
+  FramePacket packet = along_y();
+  packet.volumes = {fog()};
+  packet.isosurfaces = {surface_item(plane_grid(), 16, 0.5f, {1, 0, 0})};
   packet.background = {0, 0, 1, 1};
   const Image8 image = draw(packet, {}, "sorted");
   const double front = std::exp(-0.05 * 16), all = 0.5 * std::exp(-0.05 * 31);
@@ -162,8 +159,8 @@ TEST_F(Isosurface, ATranslucentSurfaceIsSortedWithTheVolume) {
 }
 
 TEST_F(Isosurface, SeveralTranslucentSurfacesAreInOrder) {
-  const auto plane = make_grid({32, 32, 32}, [](const Vec3& p) { return p.y; });
-  FramePacket packet = make_packet({15.5, -60, 15.5}, {15.5, 0, 15.5}, 20);
+  const auto plane = plane_grid();
+  FramePacket packet = along_y();
   packet.isosurfaces = {surface_item(plane, 24.5, 0.5f, {0, 0, 1}), surface_item(plane, 8.25, 0.5f, {0, 1, 0})};
   const Image8 image = draw(packet, {}, "planes");
   const std::uint8_t* p = image.pixel(80, 60);
@@ -174,11 +171,9 @@ TEST_F(Isosurface, SeveralTranslucentSurfacesAreInOrder) {
 }
 
 TEST_F(Isosurface, AnOpaqueSurfaceHidesTheVolumeBehindIt) {
-  const auto fog = make_grid({32, 32, 32}, [](const Vec3&) { return 0.5; });
-  const auto plane = make_grid({32, 32, 32}, [](const Vec3& p) { return p.y; });
-  FramePacket packet = make_packet({15.5, -60, 15.5}, {15.5, 0, 15.5}, 20);
-  packet.volumes = {volume_item(fog, {{0, 0.05}, {1, 0.05}}, {0, 1, 0})};
-  packet.isosurfaces = {surface_item(plane, 12.5, 1, {1, 0, 0})};
+  FramePacket packet = along_y();
+  packet.volumes = {fog()};
+  packet.isosurfaces = {surface_item(plane_grid(), 12.5, 1, {1, 0, 0})};
   const Image8 image = draw(packet, {}, "cut");
   const double front = std::exp(-0.05 * 12.5);
   EXPECT_NEAR(image.pixel(80, 60)[1], 255 * ((1 - front) + front * 0.2), 1.5);
@@ -187,25 +182,21 @@ TEST_F(Isosurface, AnOpaqueSurfaceHidesTheVolumeBehindIt) {
 
 TEST_F(Isosurface, MaskedCellsHaveNoSurface) {
   const Vec3 c(15.5);
-  const auto valid = [](const Vec3& p) { return p.z < 16; };
   const auto grid = make_grid(
-      {32, 32, 32}, [&](const Vec3& p) { return norm(p - c); }, {}, valid);
+      {32, 32, 32}, [&](const Vec3& p) { return norm(p - c); }, {}, [](const Vec3& p) { return p.z < 16; });
   FramePacket packet = make_packet({70, -50, 40}, c, 25);
   packet.isosurfaces = {surface_item(grid, 11)};
   draw(packet, {}, "bowl");
-  const auto depth = renderer_->read_depth();
-  ASSERT_TRUE(depth);
+  const std::vector<float> depth = depths();
   const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
   int below = 0;
-  for (std::uint32_t y = 0; y < packet.height; ++y)
-    for (std::uint32_t x = 0; x < packet.width; ++x) {
-      const float d = depth->depth[y * packet.width + x];
-      if (!std::isfinite(d)) continue;
-      EXPECT_LT(unproject(camera, x + 0.5, y + 0.5, d).z, 15.01);
-      ++below;
-    }
+  for (const auto& [x, y] : pixels_of(packet)) {
+    const float d = depth[y * packet.width + x];
+    if (!std::isfinite(d)) continue;
+    EXPECT_LT(unproject(camera, x + 0.5, y + 0.5, d).z, 15.01);
+    ++below;
+  }
   EXPECT_GT(below, 800);
 }
 
-}  // namespace isosurface_test
-}  // namespace catena::test
+}  // namespace catena::test::isosurface_test

@@ -6,8 +6,7 @@
 #include "render/frame/camera.h"
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace labels_test {
+namespace catena::test::labels_test {
 
 using namespace catena::render;
 
@@ -49,11 +48,7 @@ Rgb rgb(const Image8& image, std::uint32_t x, std::uint32_t y) {
 }
 
 SliceItem slice_of(const GridPtr& grid, const Vec3& normal) {
-  SliceItem item;
-  item.grid = grid;
-  item.point = middle(*grid) + Vec3(0.07, 0.03, 0.11);
-  item.normal = normal;
-  item.colors = label_rows();
+  SliceItem item{grid, middle(*grid) + Vec3(0.07, 0.03, 0.11), normal, label_rows()};
   item.hidden_label = 0;
   return item;
 }
@@ -65,28 +60,27 @@ TEST_F(LabelImage, ASliceHasTheColorOfTheNearestVoxelInEveryPixel) {
   const Image8 image = draw(packet, {}, "slice");
   const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
   int seen = 0, empty = 0;
-  for (std::uint32_t y = 0; y < packet.height; ++y)
-    for (std::uint32_t x = 0; x < packet.width; ++x) {
-      const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
-      const SliceItem& item = packet.slices[0];
-      const Vec3 world = ray.origin + dot(item.normal, item.point - ray.origin) / dot(item.normal, ray.direction) * ray.direction;
-      const Vec3 index = grid->mapping().index_from_world(world);
-      const Rgb got = rgb(image, x, y);
-      const bool drawn = image.pixel(x, y)[3] > 0;
-      ASSERT_TRUE(!drawn || std::count(std::begin(kRgb), std::end(kRgb), got) == 1) << "a colour of no label";
-      // within a thousandth of a face float rounding decides
-      bool sure = true, inside = true;
-      for (int a = 0; a < 3; ++a) {
-        sure = sure && std::fabs(index[a] - std::floor(index[a]) - 0.5) > 1e-3;
-        inside = inside && index[a] > grid->index_box().lo[a] && index[a] < grid->index_box().hi[a];
-        sure = sure && std::fabs(index[a] - grid->index_box().lo[a]) > 1e-2 && std::fabs(index[a] - grid->index_box().hi[a]) > 1e-2;
-      }
-      if (!sure) continue;
-      const std::size_t label = inside ? label_index({std::round(index.x), std::round(index.y), std::round(index.z)}) : 0;
-      ASSERT_EQ(drawn, label != 0) << x << " " << y;
-      label != 0 ? ++seen : ++empty;
-      ASSERT_TRUE(!drawn || got == kRgb[label]) << x << " " << y;
+  for (const auto& [x, y] : pixels_of(packet)) {
+    const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
+    const SliceItem& item = packet.slices[0];
+    const Vec3 world = ray.origin + dot(item.normal, item.point - ray.origin) / dot(item.normal, ray.direction) * ray.direction;
+    const Vec3 index = grid->mapping().index_from_world(world);
+    const Rgb got = rgb(image, x, y);
+    const bool drawn = image.pixel(x, y)[3] > 0;
+    ASSERT_TRUE(!drawn || std::count(std::begin(kRgb), std::end(kRgb), got) == 1) << "a colour of no label";
+    // within a thousandth of a face float rounding decides
+    bool sure = true, inside = true;
+    for (int a = 0; a < 3; ++a) {
+      sure = sure && std::fabs(index[a] - std::floor(index[a]) - 0.5) > 1e-3;
+      inside = inside && index[a] > grid->index_box().lo[a] && index[a] < grid->index_box().hi[a];
+      sure = sure && std::fabs(index[a] - grid->index_box().lo[a]) > 1e-2 && std::fabs(index[a] - grid->index_box().hi[a]) > 1e-2;
     }
+    if (!sure) continue;
+    const std::size_t label = inside ? label_index({std::round(index.x), std::round(index.y), std::round(index.z)}) : 0;
+    ASSERT_EQ(drawn, label != 0) << x << " " << y;
+    label != 0 ? ++seen : ++empty;
+    ASSERT_TRUE(!drawn || got == kRgb[label]) << x << " " << y;
+  }
   EXPECT_GT(seen, 2000);
   EXPECT_GT(empty, 2000);
 }
@@ -110,14 +104,13 @@ TEST_F(LabelImage, AVolumeDoesNotBlendColorsBetweenLabels) {
   packet.volumes = {item};
   const Image8 image = draw(packet, {}, "volume");
   int seen = 0, red = 0, blue = 0, green = 0;
-  for (std::uint32_t y = 0; y < packet.height; ++y)
-    for (std::uint32_t x = 0; x < packet.width; ++x) {
-      const Rgb got = rgb(image, x, y);
-      seen += image.pixel(x, y)[3] == 255;
-      red += got[0] > 200;
-      blue += got[2] > 200;
-      green = std::max(green, got[1]);
-    }
+  for (const auto& [x, y] : pixels_of(packet)) {
+    const Rgb got = rgb(image, x, y);
+    seen += image.pixel(x, y)[3] == 255;
+    red += got[0] > 200;
+    blue += got[2] > 200;
+    green = std::max(green, got[1]);
+  }
   EXPECT_GT(seen, 2000);
   EXPECT_GT(red, 1000);
   EXPECT_GT(blue, 300);
@@ -129,45 +122,37 @@ TEST_F(LabelImage, ASurfaceIsColoredByAGridWithAnotherTransform) {
   const auto ball = make_grid(
       {40, 40, 40}, [](const Vec3& p) { return norm(p - Vec3(19.5)); }, field::Mapping::from_linear(Mat3(0.5), {-9.75, -9.75, -9.75}));
   const field::Mapping mapping = turned();
-  const field::Index3 n{40, 40, 40};
   const Vec3 centre = mapping.world_from_index(Vec3(19.5));
   const field::Mapping shifted = field::Mapping::from_linear(mapping.world_from_index_linear, mapping.origin - centre);
   const auto halves =
       make_grid(
-          n, [&](const Vec3& p) { return shifted.world_from_index(p).x > 0   ? 41
-                                         : shifted.world_from_index(p).z > 2 ? 0
-                                                                             : 40; }, shifted)
+          {40, 40, 40}, [&](const Vec3& p) { return shifted.world_from_index(p).x > 0   ? 41
+                                                    : shifted.world_from_index(p).z > 2 ? 0
+                                                                                        : 40; },
+          shifted)
           ->with_interpolation(field::Interpolation::nearest);
   FramePacket packet = make_packet({0, -40, 0}, {0, 0, 0});
-  IsosurfaceItem item;
-  item.grid = ball;
-  item.level = 14;
-  item.color = {1, 0, 0};
-  item.id = 1;
-  item.color_by = ColorSource{halves, label_rows(), true, false};
-  packet.isosurfaces = {item};
+  packet.isosurfaces = {{ball, 14, {1, 0, 0}, 1, 1, true, ColorSource{halves, label_rows(), true, false}}};
   const Image8 image = draw(packet, {}, "turned");
-  const auto depth = renderer_->read_depth();
-  ASSERT_TRUE(depth);
+  const std::vector<float> depth = depths();
   const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
   int counts[3] = {0, 0, 0}, wrong = 0;
-  for (std::uint32_t y = 0; y < packet.height; ++y)
-    for (std::uint32_t x = 0; x < packet.width; ++x) {
-      const double t = depth->depth[y * packet.width + x];
-      if (!std::isfinite(t)) continue;
-      const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
-      const Vec3 world = ray.origin + t / dot(ray.direction, -camera.back) * ray.direction;
-      field::Cursor cursor;
-      const Vec3 index = shifted.index_from_world(world);
-      bool sure = true;
-      for (int a = 0; a < 3; ++a) sure = sure && std::fabs(index[a] - std::floor(index[a]) - 0.5) > 1e-2;
-      if (!sure) continue;
-      const double label = halves->sample(world, cursor).value;
-      const Rgb got = rgb(image, x, y);
-      const int channel = label == 41 ? 2 : label == 40 ? 1 : 0;
-      ++counts[channel];
-      wrong += got[std::size_t(channel)] < 40 || got[std::size_t(channel)] != *std::max_element(got.begin(), got.end());
-    }
+  for (const auto& [x, y] : pixels_of(packet)) {
+    const double t = depth[y * packet.width + x];
+    if (!std::isfinite(t)) continue;
+    const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
+    const Vec3 world = ray.origin + t / dot(ray.direction, -camera.back) * ray.direction;
+    field::Cursor cursor;
+    const Vec3 index = shifted.index_from_world(world);
+    bool sure = true;
+    for (int a = 0; a < 3; ++a) sure = sure && std::fabs(index[a] - std::floor(index[a]) - 0.5) > 1e-2;
+    if (!sure) continue;
+    const double label = halves->sample(world, cursor).value;
+    const Rgb got = rgb(image, x, y);
+    const int channel = label == 41 ? 2 : label == 40 ? 1 : 0;
+    ++counts[channel];
+    wrong += got[std::size_t(channel)] < 40 || got[std::size_t(channel)] != *std::max_element(got.begin(), got.end());
+  }
   for (const int count : counts) EXPECT_GT(count, 300);
   EXPECT_EQ(wrong, 0);
 }
@@ -181,33 +166,23 @@ TEST_F(LabelImage, CoplanarSlicesAreDrawnInTheirOrder) {
     for (const bool first_opaque : {true, false}) {
       FramePacket packet = make_packet(Vec3(4.0) + Vec3(7, 9, 20 * side), Vec3(4.0));
       packet.background = {0, 0, 0, 1};
-      SliceItem below, over;
-      below.grid = one;
-      below.point = {0, 0, 4.3};
-      below.colors = {{0, 1, 0, 0}};
-      below.opacity = first_opaque ? 1.f : 0.5f;
-      below.id = 1;
-      over = below;
-      over.grid = two;
-      over.point = {3, 2, 4.3};
-      over.colors = {{0, 0, 0, 1}};
-      over.opacity = 0.5f;
+      SliceItem below{one, {0, 0, 4.3}, {0, 0, 1}, {{0, 1, 0, 0}}, first_opaque ? 1.f : 0.5f};
+      SliceItem over{two, {3, 2, 4.3}, {0, 0, 1}, {{0, 0, 0, 1}}, 0.5f};
       over.stack_order = 1;
+      below.id = 1;
       over.id = 2;
       packet.slices = {below, over};
       const Image8 image = draw(packet, {}, std::string(side > 0 ? "above" : "below") + (first_opaque ? "1" : "2"));
       int both = 0;
-      for (std::uint32_t y = 0; y < packet.height; ++y)
-        for (std::uint32_t x = 0; x < packet.width; ++x) {
-          const Rgb got = rgb(image, x, y);
-          if (got[0] == 0 || got[2] == 0) continue;
-          ++both;
-          ASSERT_NEAR(got[2], 128, 1) << x << " " << y;
-          ASSERT_NEAR(got[0], first_opaque ? 128 : 64, 1) << x << " " << y;
-        }
+      for (const auto& [x, y] : pixels_of(packet)) {
+        const Rgb got = rgb(image, x, y);
+        if (got[0] == 0 || got[2] == 0) continue;
+        ++both;
+        ASSERT_NEAR(got[2], 128, 1) << x << " " << y;
+        ASSERT_NEAR(got[0], first_opaque ? 128 : 64, 1) << x << " " << y;
+      }
       EXPECT_GT(both, 1500);
     }
 }
 
-}  // namespace labels_test
-}  // namespace catena::test
+}  // namespace catena::test::labels_test

@@ -7,8 +7,7 @@
 #include "render/vk/commands.h"
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace layers_test {
+namespace catena::test::layers_test {
 
 using namespace catena::render;
 
@@ -88,12 +87,7 @@ class Layers : public ImageTest {
 
 /// A white fog from y = 0 to 20, seen along y from -40.
 FramePacket fog_packet(double sigma) {
-  FramePacket packet;
-  packet.width = packet.height = 64;
-  packet.view.position = {10, -40, 10};
-  packet.view.target = {10, 10, 10};
-  packet.view.orthographic = true;
-  packet.view.height = 16;
+  FramePacket packet = square_packet_along_y(64, 16);
   packet.volumes.push_back(volume_item(make_grid({21, 21, 21}, [](const Vec3&) { return 0.5; }), {{0, sigma}, {1, sigma}}));
   return packet;
 }
@@ -130,12 +124,7 @@ TEST_F(Layers, AreBlendedWithinAVolumeInOrder) {
 TEST_F(Layers, AreBlendedWithASurface) {
   packet_ = fog_packet(0);
   packet_.volumes.clear();
-  IsosurfaceItem plane;
-  plane.grid = make_grid({21, 21, 21}, [](const Vec3& p) { return p.y; });
-  plane.level = 10;
-  plane.color = {1, 1, 1};
-  plane.opacity = 0.5f;
-  packet_.isosurfaces = {plane};
+  packet_.isosurfaces = {{make_grid({21, 21, 21}, [](const Vec3& p) { return p.y; }), 10, {1, 1, 1}, 0.5f}};
   const std::array<float, 4> red{0.5f, 0, 0, 0.5f};
   const auto rendered = draw_with({{45, red}}, {{55, red}});
   const double lit = 1.1;  // 0.2 + 0.7 + 0.2, seen along the normal
@@ -169,5 +158,4 @@ TEST_F(Layers, MoreThanFourLayersAreAnError) {
   EXPECT_NE(prepared.error().message.find("5 translucent layers"), std::string::npos);
 }
 
-}  // namespace layers_test
-}  // namespace catena::test
+}  // namespace catena::test::layers_test

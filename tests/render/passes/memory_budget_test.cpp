@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The memory budget is never exceeded; grids that do not fit are drawn downsampled, at their position, and reported.
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace memory_budget_test {
+namespace catena::test::memory_budget_test {
 
 using namespace catena::render;
 
@@ -16,8 +13,7 @@ constexpr std::uint64_t kPixels = 160 * 120, kReserve = 1'000'000 + kPixels * (4
 constexpr const char* kOwnSizes = "what an image takes is a driver's own: these budgets are lavapipe's";
 
 RenderSettings exact() {
-  RenderSettings settings;
-  settings.texel_format = TexelFormat::r32f;
+  RenderSettings settings{.texel_format = TexelFormat::r32f, .fast = {}};
   return settings;
 }
 
@@ -25,13 +21,8 @@ class MemoryBudget : public ImageTest {
  protected:
   /// Sets the budget to the image's own memory plus `left` bytes.
   void limit(std::uint64_t left) {
-    vk::DeviceOptions options;
-    options.validation = true;
-    options.device_filter = test_device();
-    options.memory_budget_bytes = kReserve + left;
-    auto renderer = Renderer::create(options);
-    ASSERT_TRUE(renderer) << renderer.error().message;
-    renderer_ = std::move(*renderer);
+    renderer_ = make_renderer(kReserve + left);
+    ASSERT_TRUE(renderer_);
   }
   int factor() const {
     const auto list = renderer_->stats().downsampled_grids;
@@ -44,10 +35,15 @@ GridPtr linear_grid() {
   return make_grid({64, 64, 64}, [](const Vec3& p) { return (p.x + 0.5 * p.y + 0.25 * p.z) / 112; });
 }
 
+FramePacket packet_of(const std::vector<VolumeItem>& volumes) {
+  FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
+  packet.volumes = volumes;
+  return packet;
+}
+
 TEST_F(MemoryBudget, ALinearFieldLooksTheSameAtEveryResolution) {
   if (!uses_lavapipe()) GTEST_SKIP() << kOwnSizes;
-  FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
-  packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.06}}, {1, 0.8f, 0.4f})};
+  const FramePacket packet = packet_of({volume_item(linear_grid(), {{0, 0}, {1, 0.06}}, {1, 0.8f, 0.4f})});
   const Image8 whole = draw(packet, exact(), "whole");
   EXPECT_EQ(factor(), 1);
   EXPECT_GT(whole.pixel(80, 60)[3], 100);
@@ -65,8 +61,7 @@ TEST_F(MemoryBudget, ALinearFieldLooksTheSameAtEveryResolution) {
 TEST_F(MemoryBudget, DownsampledGridsAreReportedWithTheirReason) {
   if (!uses_lavapipe()) GTEST_SKIP() << kOwnSizes;
   limit(400'000);
-  FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
-  packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.06}})};
+  FramePacket packet = packet_of({volume_item(linear_grid(), {{0, 0}, {1, 0.06}})});
   draw(packet, exact());
   const auto list = renderer_->stats().downsampled_grids;
   ASSERT_EQ(list.size(), 1u);
@@ -79,27 +74,21 @@ TEST_F(MemoryBudget, DownsampledGridsAreReportedWithTheirReason) {
 
 TEST_F(MemoryBudget, AnIsosurfaceOfAPlaneKeepsItsPosition) {
   if (!uses_lavapipe()) GTEST_SKIP() << kOwnSizes;
-  IsosurfaceItem item;
-  item.grid = linear_grid();
-  item.level = 0.5;
-  item.color = {0.8f, 0.8f, 0.9f};
-  FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
-  packet.isosurfaces = {item};
+  FramePacket packet = packet_of({});
+  packet.isosurfaces = {{linear_grid(), 0.5, {0.8f, 0.8f, 0.9f}}};
   draw(packet, {}, "whole");
-  const auto whole = renderer_->read_depth();
-  ASSERT_TRUE(whole);
+  const std::vector<float> whole = depths();
   limit(400'000 + kPixels * 20);
   draw(packet, {}, "half");
   EXPECT_EQ(factor(), 2);
-  const auto half = renderer_->read_depth();
-  ASSERT_TRUE(half);
+  const std::vector<float> half = depths();
   int hit = 0, differing = 0;
-  for (std::size_t i = 0; i < whole->depth.size(); ++i) {
-    if (std::isfinite(whole->depth[i]) != std::isfinite(half->depth[i])) {
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    if (std::isfinite(whole[i]) != std::isfinite(half[i])) {
       ++differing;
-    } else if (std::isfinite(whole->depth[i])) {
+    } else if (std::isfinite(whole[i])) {
       ++hit;
-      ASSERT_NEAR(whole->depth[i], half->depth[i], 2e-3) << i;
+      ASSERT_NEAR(whole[i], half[i], 2e-3) << i;
     }
   }
   EXPECT_GT(hit, 1000);
@@ -136,9 +125,7 @@ TEST_F(MemoryBudget, ASparseGridIsDownsampledInItsAtlas) {
 
 TEST_F(MemoryBudget, TwoGridsShareTheBudget) {
   limit(500'000);
-  FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
-  packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.03}}), volume_item(linear_grid(), {{0, 0}, {1, 0.03}})};
-  draw(packet, exact(), "two");
+  draw(packet_of({volume_item(linear_grid(), {{0, 0}, {1, 0.03}}), volume_item(linear_grid(), {{0, 0}, {1, 0.03}})}), exact(), "two");
   EXPECT_EQ(renderer_->stats().resident_grids, 2u);
   EXPECT_EQ(renderer_->stats().downsampled_grids.size(), 2u);
   expect_within();
@@ -147,8 +134,7 @@ TEST_F(MemoryBudget, TwoGridsShareTheBudget) {
 TEST_F(MemoryBudget, AGridReturnsToFullResolutionWhenItFits) {
   limit(1'900'000);
   const VolumeItem one = volume_item(linear_grid(), {{0, 0}, {1, 0.03}}), two = volume_item(linear_grid(), {{0, 0}, {1, 0.03}});
-  FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
-  packet.volumes = {one, two};
+  FramePacket packet = packet_of({one, two});
   draw(packet, exact());
   EXPECT_EQ(factor(), 2);
   packet.volumes = {two};
@@ -160,8 +146,7 @@ TEST_F(MemoryBudget, AGridReturnsToFullResolutionWhenItFits) {
 
 TEST_F(MemoryBudget, AGridThatFitsAtNoResolutionIsAnErrorInOneLine) {
   limit(2'000);
-  FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
-  packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.03}})};
+  FramePacket packet = packet_of({volume_item(linear_grid(), {{0, 0}, {1, 0.03}})});
   const Outcome drawn = renderer_->draw(packet, exact());
   ASSERT_FALSE(drawn);
   EXPECT_EQ(drawn.error().message.find('\n'), std::string::npos);
@@ -175,20 +160,15 @@ TEST_F(MemoryBudget, AGridThatFitsAtNoResolutionIsAnErrorInOneLine) {
 
 TEST_F(MemoryBudget, ALargerImageStaysWithinTheBudget) {
   limit(1'400'000);
-  FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
-  packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.06}})};
+  FramePacket packet = packet_of({volume_item(linear_grid(), {{0, 0}, {1, 0.06}})});
   draw(packet, exact());
   EXPECT_EQ(factor(), 1);
-  packet.width = 256;
-  packet.height = 192;
+  set_size(packet, 256, 192);
   EXPECT_GT(draw(packet, exact()).pixel(128, 96)[3], 100);
   // a budget too small for the image is an error in one line
-  packet.width = packet.height = 1024;
-  const Outcome drawn = renderer_->draw(packet, exact());
-  ASSERT_FALSE(drawn);
-  EXPECT_NE(drawn.error().message.find("MB"), std::string::npos) << drawn.error().message;
+  set_size(packet, 1024, 1024);
+  expect_refused(packet, "MB", exact());
   expect_within();
 }
 
-}  // namespace memory_budget_test
-}  // namespace catena::test
+}  // namespace catena::test::memory_budget_test

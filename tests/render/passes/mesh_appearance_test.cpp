@@ -5,8 +5,7 @@
 #include "tests/render/support/image_fixture.h"
 #include "tests/support/mesh_shapes.h"
 
-namespace catena::test {
-namespace mesh_appearance_test {
+namespace catena::test::mesh_appearance_test {
 
 using namespace catena::render;
 
@@ -16,8 +15,7 @@ class MeshAppearance : public ImageTest {};
 FramePacket along_y() {
   FramePacket packet = make_packet({0, -10, 0}, {0, 0, 0});
   packet.background = {0, 0, 0, 1};
-  packet.view.orthographic = true;
-  packet.view.height = 6;
+  set_orthographic(packet, 6);
   return packet;
 }
 
@@ -79,9 +77,7 @@ TEST_F(MeshAppearance, EdgesAreOnePixelWide) {
 
 TEST_F(MeshAppearance, ColorsAreInterpolatedBetweenVertices) {
   FramePacket packet = along_y();
-  auto geometry = std::make_shared<MeshGeometry>();
-  geometry->vertices = {{-2, 0, -2}, {2, 0, -2}, {2, 0, 2}, {-2, 0, 2}};
-  geometry->triangles = {0, 1, 2, 0, 2, 3};
+  auto geometry = std::make_shared<MeshGeometry>(*square_at(0, 2));
   geometry->colors = {{0, 0, 0}, {0.5f, 0, 0}, {0.5f, 0.25f, 0}, {0, 0.25f, 0}};
   packet.meshes = {{geometry, {1, 1, 1}, 1}};
   const Image8 image = draw(packet, {}, "colors");
@@ -93,5 +89,4 @@ TEST_F(MeshAppearance, ColorsAreInterpolatedBetweenVertices) {
     }
 }
 
-}  // namespace mesh_appearance_test
-}  // namespace catena::test
+}  // namespace catena::test::mesh_appearance_test

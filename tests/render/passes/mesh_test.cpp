@@ -4,20 +4,13 @@
 #include "tests/render/support/image_fixture.h"
 #include "tests/support/mesh_shapes.h"
 
-namespace catena::test {
-namespace mesh_test {
+namespace catena::test::mesh_test {
 
 using namespace catena::render;
 
 class Mesh : public ImageTest {};
 
-TubeItem tube_of(const Vec3& a, const Vec3& b, double radius, Color color) {
-  TubeItem tube;
-  tube.points = {a, b};
-  tube.radius = radius;
-  tube.color = color;
-  return tube;
-}
+TubeItem tube_of(const Vec3& a, const Vec3& b, double radius, Color color) { return {{a, b}, radius, color}; }
 
 FramePacket along_y() {
   FramePacket packet = make_packet({15.5, -60, 15.5}, {15.5, 0, 15.5}, 20);
@@ -42,8 +35,7 @@ TEST_F(Mesh, ATubeInFrontOfAndBehindAVolume) {
 
 TEST_F(Mesh, ColorsVaryAlongATube) {
   FramePacket packet = along_y();
-  packet.view.orthographic = true;
-  packet.view.height = 24;
+  set_orthographic(packet, 24);
   TubeItem tube = tube_of({3.5, 10, 15.5}, {27.5, 10, 15.5}, 3, {1, 1, 1});
   tube.points = {tube.points[0], Vec3(15.5, 10, 15.5), tube.points[1]};
   tube.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -64,8 +56,7 @@ TEST_F(Mesh, ColorsVaryAlongATube) {
 
 TEST_F(Mesh, ArrowsAndTheIndicatorAreDrawn) {
   FramePacket packet = along_y();
-  packet.view.orthographic = true;
-  packet.view.height = 24;
+  set_orthographic(packet, 24);
   packet.arrows = {{{5.5, 10, 15.5}, {11.5, 10, 15.5}, 3, {1, 0, 0}}};
   packet.indicators = {{tube_of({17.5, 10, 15.5}, {21.5, 10, 15.5}, 1, {0, 1, 0}), {{21.5, 10, 15.5}, {25.5, 10, 15.5}, 2.5, {0, 1, 0}}}};
   const Image8 image = draw(packet, {}, "arrows");
@@ -82,30 +73,22 @@ TEST_F(Mesh, DepthOfATubeIsExact) {
   FramePacket packet = along_y();
   packet.tubes = {tube_of({-20, 10, 15.5}, {50, 10, 15.5}, 2, {1, 0, 0})};
   draw(packet, {}, "tube");
-  const auto depth = renderer_->read_depth();
-  ASSERT_TRUE(depth);
+  const std::vector<float> depth = depths();
   // 68 from the camera; a faceted tube is slightly thinner
-  EXPECT_NEAR(depth->depth[60 * 160 + 80], 68, 0.1);
-  EXPECT_TRUE(std::isinf(depth->depth[2 * 160 + 80]));
+  EXPECT_NEAR(depth[60 * 160 + 80], 68, 0.1);
+  EXPECT_TRUE(std::isinf(depth[2 * 160 + 80]));
 }
 
-MeshItem item_of(const mesh::TriangleSoup& soup, Color color) {
-  auto geometry = std::make_shared<MeshGeometry>();
-  geometry->vertices = soup.vertices;
-  for (const mesh::Triangle& t : soup.triangles) geometry->triangles.insert(geometry->triangles.end(), t.begin(), t.end());
-  return {geometry, color};
-}
+MeshItem item_of(const mesh::TriangleSoup& soup, Color color) { return {geometry_of(soup), color}; }
 
 /// A box seen along y in orthographic projection: a rectangle with sharp edges, one colour and one depth.
 TEST_F(Mesh, ABoxHasItsSilhouetteColorAndDepth) {
   FramePacket packet = make_packet({0, -10, 0}, {0, 0, 0});
   packet.background = {0, 0, 0, 1};
-  packet.view.orthographic = true;
-  packet.view.height = 12;  // 0.1 per pixel
+  set_orthographic(packet, 12);  // 0.1 per pixel
   packet.meshes = {item_of(box_soup({-2, 1, -1}, {3, 4, 1.5}), {1, 0.5, 0})};
   const Image8 image = draw(packet, {}, "box");
-  const auto depth = renderer_->read_depth();
-  ASSERT_TRUE(depth);
+  const std::vector<float> depth = depths();
   for (std::uint32_t y = 0; y < 120; ++y)
     for (std::uint32_t x = 0; x < 160; ++x) {
       const double u = (x - 79.5) * 0.1, v = (59.5 - y) * 0.1;
@@ -115,7 +98,7 @@ TEST_F(Mesh, ABoxHasItsSilhouetteColorAndDepth) {
       ASSERT_NEAR(p[0], inside ? 255 : 0, 1) << x << " " << y;
       ASSERT_NEAR(p[1], inside ? 255 * (0.9 * 0.5 + 0.2) : 0, 1) << x << " " << y;
       ASSERT_NEAR(p[2], inside ? 255 * 0.2 : 0, 1) << x << " " << y;
-      const float d = depth->depth[y * 160 + x];
+      const float d = depth[y * 160 + x];
       ASSERT_EQ(std::isfinite(d), inside) << x << " " << y;
       if (inside) {
         ASSERT_NEAR(d, 11, 1e-5);
@@ -127,8 +110,7 @@ TEST_F(Mesh, ABoxHasItsSilhouetteColorAndDepth) {
 TEST_F(Mesh, FacesAreShadedByTheirOwnNormals) {
   FramePacket packet = make_packet({0, -10, 0}, {0, 0, 0});
   packet.background = {0, 0, 0, 1};
-  packet.view.orthographic = true;
-  packet.view.height = 12;
+  set_orthographic(packet, 12);
   mesh::TriangleSoup roof;
   const double rise = 4 * std::sqrt(3.0);
   add_quad(roof, {0, 0, -4}, {4, rise, -4}, {4, rise, 4}, {0, 0, 4});
@@ -157,13 +139,8 @@ TEST_F(Mesh, TubeAndOpaqueSurfaceHideEachOther) {
   for (const bool orthographic : {false, true})
     for (const double y : {8.0, 20.0}) {
       FramePacket packet = along_y();
-      packet.view.orthographic = orthographic;
-      packet.view.height = 25;
-      IsosurfaceItem wall;
-      wall.grid = plane;
-      wall.level = 14.5;
-      wall.color = {0, 1, 0};
-      packet.isosurfaces = {wall};
+      if (orthographic) set_orthographic(packet, 25);
+      packet.isosurfaces = {{plane, 14.5, {0, 1, 0}}};
       packet.tubes = {tube_of({-20, y, 15.5}, {50, y, 15.5}, 2, {1, 0, 0})};
       const Image8 image = draw(packet, {}, std::string(orthographic ? "o" : "p") + std::to_string(int(y)));
       EXPECT_EQ(image.pixel(80, 60)[0] > 150, y < 14) << y << " " << orthographic;
@@ -183,17 +160,11 @@ TEST_F(Mesh, ATubeFarFromTheOriginIsAtItsPosition) {
 
 TEST_F(Mesh, TheCursorIsDrawn) {
   FramePacket packet = along_y();
-  CursorItem cursor;
-  cursor.probe = {15.5, 10, 15.5};
-  cursor.proxies = {{19, 10, 15.5}};
-  cursor.link_active = {true};
-  cursor.radius = 1;
-  packet.cursors = {cursor};
+  packet.cursors = {{{15.5, 10, 15.5}, {{19, 10, 15.5}}, {true}, {}, 1, {}}};
   const Image8 image = draw(packet, {}, "cursor");
   int covered = 0;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) covered += image.rgba[i] + image.rgba[i + 1] + image.rgba[i + 2] > 30;
   EXPECT_GT(covered, 60);
 }
 
-}  // namespace mesh_test
-}  // namespace catena::test
+}  // namespace catena::test::mesh_test

@@ -2,15 +2,12 @@
 /// Text and flat shapes over the image, against independently computed positions and colours. Pixels of text are counted, not compared.
 #include "render/passes/passes.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "render/passes/overlay/canvas.h"
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace overlay_test {
+namespace catena::test::overlay_test {
 
 using namespace catena::render;
 
@@ -19,8 +16,7 @@ class OverlayImages : public ImageTest {
   /// A packet with only the overlay on opaque black.
   static FramePacket black(std::uint32_t width = 256, std::uint32_t height = 192) {
     FramePacket packet = make_packet({0, -10, 0}, {0, 0, 0});
-    packet.width = width;
-    packet.height = height;
+    set_size(packet, width, height);
     packet.background = {0, 0, 0, 1};
     return packet;
   }
@@ -167,10 +163,7 @@ TEST_F(OverlayImages, LabelsAreAtTheirProjectedPoint) {
 
 TEST_F(OverlayImages, ALabelBehindASurfaceIsHiddenByItsOption) {
   FramePacket packet = black();
-  auto wall = std::make_shared<MeshGeometry>();
-  wall->vertices = {{-3, 0, -3}, {3, 0, -3}, {3, 0, 3}, {-3, 0, 3}};
-  wall->triangles = {0, 1, 2, 0, 2, 3};
-  packet.meshes = {{wall, {0, 0, 1}}};
+  packet.meshes = {{square_at(0, 3), {0, 0, 1}}};
   const auto red_pixels = [&](const Vec3& at, bool hidden) {
     packet.overlay.labels = {{at, "HHH", Anchor::left, {4.0, 0.0}, 60, Color{1, 0, 0}, true, hidden}};
     const Image8 image = draw(packet);
@@ -196,20 +189,17 @@ TEST_F(OverlayImages, TheOrientationMarkersArrowsPointAlongTheAxes) {
     const MarkerLayout place = layout_orientation_marker(Canvas(packet, typesetter_), *packet.overlay.orientation_marker);
     const Vec3 forward = direction(-eye), right = direction(cross(forward, Vec3(0, 0, 1))), up = cross(right, forward);
     for (int axis = 0; axis < 3; ++axis) {
-      Vec3 unit(0.0);
-      unit[axis] = 1;
+      const auto pixel_at = [&](double share) {
+        return image.pixel(std::uint32_t(place.center.x + share * place.arrow_length * right[axis]),
+                           std::uint32_t(place.center.y - share * place.arrow_length * up[axis]));
+      };
       // on the shaft and within the cone, without other arrows
       for (const double share : {0.55, 0.85}) {
-        const auto x = std::uint32_t(place.center.x + share * place.arrow_length * dot(unit, right));
-        const auto y = std::uint32_t(place.center.y - share * place.arrow_length * dot(unit, up));
-        const std::uint8_t* p = image.pixel(x, y);
+        const std::uint8_t* p = pixel_at(share);
         for (const int other : {(axis + 1) % 3, (axis + 2) % 3})
           EXPECT_GT(p[axis], p[other] + 25) << "axis " << axis << " share " << share << " eye " << eye.x;
       }
-      // empty beyond the tip
-      const auto x = std::uint32_t(place.center.x + 1.1 * place.arrow_length * dot(unit, right));
-      const auto y = std::uint32_t(place.center.y - 1.1 * place.arrow_length * dot(unit, up));
-      EXPECT_EQ(brightest(image.pixel(x, y)), 0) << "axis " << axis;
+      EXPECT_EQ(brightest(pixel_at(1.1)), 0) << "beyond the tip of axis " << axis;
     }
   }
 }
@@ -282,15 +272,9 @@ TEST_F(OverlayImages, ATileHasItsPartOfTheWholeOverlay) {
   const Image8 image = draw(whole, {}, "whole");
   for (const auto& [x, y] : {std::pair{0u, 0u}, std::pair{128u, 0u}, std::pair{96u, 64u}}) {
     FramePacket tile = whole;
-    tile.width = 128;
-    tile.height = 96;
+    set_size(tile, 128, 96);
     tile.overlay.frame = {double(x), double(y), 256, 192};
-    const Image8 part = draw(tile);
-    int maximum = 0;
-    for (std::uint32_t j = 0; j < 96; ++j)
-      for (std::uint32_t i = 0; i < 128; ++i)
-        for (int c = 0; c < 4; ++c) maximum = std::max(maximum, std::abs(int(part.pixel(i, j)[c]) - int(image.pixel(x + i, y + j)[c])));
-    EXPECT_LE(maximum, 1) << x << " " << y;
+    EXPECT_LE(max_difference(draw(tile), image, x, y), 1) << x << " " << y;
   }
 }
 
@@ -298,8 +282,7 @@ TEST_F(OverlayImages, AllItemsTogetherAreReadableAndRepeatable) {
   const auto grid = make_grid({32, 32, 32}, [](const Vec3& p) { return 1 - norm(p - Vec3(15.5)) / 16; });
   FramePacket packet = make_packet({60, -70, 50}, {16, 16, 16});
   packet.volumes = {volume_item(grid, {{0, 0.0}, {0.2, 0}, {1, 0.3}}, {0.9f, 0.6f, 0.3f})};
-  packet.width = 256;
-  packet.height = 192;
+  set_size(packet, 256, 192);
   packet.overlay.scalar_bars = {bar_of(Side::right), bar_of(Side::bottom), bar_of(Side::left), bar_of(Side::top)};
   packet.overlay.scalar_bars[0].factor = "×10⁻⁵";
   packet.overlay.texts = {{"A ball of fog, 1.5 µm", Anchor::top, {0.0, 12.0}, 17, true, {}}};
@@ -320,5 +303,4 @@ TEST_F(OverlayImages, AllItemsTogetherAreReadableAndRepeatable) {
   }
 }
 
-}  // namespace overlay_test
-}  // namespace catena::test
+}  // namespace catena::test::overlay_test

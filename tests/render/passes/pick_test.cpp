@@ -5,8 +5,7 @@
 #include "render/frame/camera.h"
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace pick_test {
+namespace catena::test::pick_test {
 
 using namespace catena::render;
 
@@ -17,42 +16,32 @@ TEST_F(Pick, ASphereAndASliceAreFoundAtTheirDepth) {
   const Vec3 centre(12.0);
   const auto grid = make_grid({25, 25, 25}, [&](const Vec3& p) { return norm(p - centre); });
   FramePacket packet = make_packet(centre + Vec3(0, -50, 0), centre);
-  IsosurfaceItem surface;
-  surface.grid = grid;
-  surface.level = 8;
-  surface.id = 5;
-  packet.isosurfaces = {surface};
+  packet.isosurfaces = {{grid, 8, {}, 1, 5}};
   ASSERT_TRUE(renderer_->draw(packet));
   EXPECT_EQ(renderer_->view_size(), (std::array<std::uint32_t, 2>{160, 120}));
-  const auto ids = renderer_->read_ids();
-  const auto depths = renderer_->read_depth();
-  ASSERT_TRUE(ids && depths);
+  const std::vector<std::uint32_t> id = ids();
+  const std::vector<float> depth = depths();
   const Camera camera = make_camera(packet.view, 160, 120, {});
   int met = 0;
   for (const auto& [x, y] : {std::pair{80u, 60u}, std::pair{95u, 52u}, std::pair{70u, 75u}, std::pair{2u, 2u}, std::pair{159u, 119u}}) {
     const auto picked = renderer_->pick(x, y);
     ASSERT_TRUE(picked) << picked.error().message;
     const std::size_t at = y * 160 + x;
-    EXPECT_EQ(picked->id, ids->ids[at]);
+    EXPECT_EQ(picked->id, id[at]);
     if (picked->id == 0) {
       EXPECT_TRUE(std::isinf(picked->depth));
       continue;
     }
     ++met;
-    EXPECT_NEAR(picked->depth, depths->depth[at], 1e-5);
+    EXPECT_NEAR(picked->depth, depth[at], 1e-5);
     const Vec3 place = unproject(camera, x + 0.5, y + 0.5, picked->depth);
     EXPECT_NEAR(norm(place - centre), 8, 0.05) << "trilinear between the nodes";
   }
   EXPECT_EQ(met, 3);
 
-  SliceItem slice;
-  slice.grid = grid;
-  slice.point = centre;
-  slice.normal = {0, 1, 0};
-  slice.colors = {{0, 1, 0, 0}, {20, 0, 1, 0}};
-  slice.id = 9;
   packet.isosurfaces.clear();
-  packet.slices = {slice};
+  packet.slices = {{grid, centre, {0, 1, 0}, {{0, 1, 0, 0}, {20, 0, 1, 0}}}};
+  packet.slices[0].id = 9;
   ASSERT_TRUE(renderer_->draw(packet));
   const auto picked = renderer_->pick(100, 40);
   ASSERT_TRUE(picked);
@@ -74,11 +63,7 @@ TEST_F(Pick, APickDoesNotChangeTheNextImage) {
   const auto grid = make_grid({9, 9, 9}, [](const Vec3& p) { return p.x; });
   FramePacket packet = make_packet({4, -20, 4}, {4, 4, 4});
   packet.volumes = {volume_item(grid, {{0, 0}, {8, 0.3}})};
-  IsosurfaceItem surface;
-  surface.grid = grid;
-  surface.level = 6;
-  surface.id = 1;
-  packet.isosurfaces = {surface};
+  packet.isosurfaces = {{grid, 6, {}, 1, 1}};
   const Image8 first = draw(packet);
   ASSERT_TRUE(renderer_->pick(80, 60));
   ASSERT_TRUE(renderer_->read_back());
@@ -88,8 +73,7 @@ TEST_F(Pick, APickDoesNotChangeTheNextImage) {
 TEST_F(Pick, AWindowAreaShowsTheImageBesideBlack) {
   FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
   packet.background = {0, 1, 0, 1};
-  packet.width = 20;
-  packet.height = 10;
+  set_size(packet, 20, 10);
   ASSERT_TRUE(renderer_->draw(packet));
   UiItems items;
   const auto shown = [&](std::uint32_t width, std::uint32_t height) {
@@ -112,5 +96,4 @@ TEST_F(Pick, AWindowAreaShowsTheImageBesideBlack) {
   EXPECT_EQ(int(shown(8, 4).pixel(2, 2)[1]), 255);
 }
 
-}  // namespace pick_test
-}  // namespace catena::test
+}  // namespace catena::test::pick_test

@@ -3,8 +3,7 @@
 
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace renderer_test {
+namespace catena::test::renderer_test {
 
 using namespace catena::render;
 
@@ -14,12 +13,8 @@ TEST_F(Frames, AnEmptyPacketShowsTheBackground) {
   FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
   packet.background = {0.2f, 0.4f, 0.6f, 1};
   const Image8 image = draw(packet);
-  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
-    ASSERT_EQ(image.rgba[i], 51);
-    ASSERT_EQ(image.rgba[i + 1], 102);
-    ASSERT_EQ(image.rgba[i + 2], 153);
-    ASSERT_EQ(image.rgba[i + 3], 255);
-  }
+  const int expected[] = {51, 102, 153, 255};
+  for (std::size_t i = 0; i < image.rgba.size(); ++i) ASSERT_EQ(image.rgba[i], expected[i % 4]);
   packet.background = {1, 1, 1, 0};
   const Image8 clear = draw(packet);
   for (const std::uint8_t byte : clear.rgba) ASSERT_EQ(byte, 0);
@@ -34,11 +29,8 @@ TEST_F(Frames, PassesAreCreatedOnDemand) {
   packet.volumes = {volume_item(grid, {{0, 0.1}, {1, 0.1}})};
   draw(packet);
   EXPECT_EQ(renderer_->stats().pipelines, 3u);  // volume, and compose over it
-  TubeItem tube;
-  tube.points = {{0, 0, 0}, {16, 16, 16}};
-  tube.radius = 1;
   packet.volumes.clear();
-  packet.tubes = {tube};
+  packet.tubes.push_back({{{0, 0, 0}, {16, 16, 16}}, 1, {}});
   draw(packet);
   EXPECT_EQ(renderer_->stats().pipelines, 5u);  // mesh, and compose over it
   EXPECT_EQ(renderer_->stats().resident_grids, 0u);
@@ -48,20 +40,9 @@ TEST_F(Frames, TheSecondFrameUploadsNothing) {
   const auto grid = make_grid({40, 40, 40}, [](const Vec3& p) { return p.x / 40; });
   FramePacket packet = make_packet({60, -70, 50}, {20, 20, 20});
   packet.volumes = {volume_item(grid, {{0, 0}, {1, 0.1}})};
-  IsosurfaceItem wall;
-  wall.grid = grid;
-  wall.level = 0.7;
-  packet.isosurfaces = {wall};
-  wall.opacity = 0.5f;
-  wall.level = 0.3;
-  packet.isosurfaces.push_back(wall);
-  TubeItem tube;
-  tube.points = {{0, 0, 0}, {40, 40, 40}};
-  tube.radius = 1;
-  packet.tubes = {tube};
-  CursorItem cursor;
-  cursor.radius = 1;
-  packet.cursors = {cursor};
+  packet.isosurfaces = {{grid, 0.7, {}}, {grid, 0.3, {}, 0.5f}};
+  packet.tubes.push_back({{{0, 0, 0}, {40, 40, 40}}, 1, {}});
+  packet.cursors = {cursor_item({0, 0, 0}, 1)};
   draw(packet);
   const RenderStats first = renderer_->stats();
   EXPECT_GT(first.uploads, 3u);
@@ -117,21 +98,16 @@ TEST_F(Frames, ImagesRepeatAfterAResize) {
   FramePacket packet = make_packet({30, -40, 30}, {8, 8, 8});
   packet.volumes = {volume_item(grid, {{0, 0.1}, {1, 0.1}})};
   const Image8 first = draw(packet);
-  packet.width = 33;
-  packet.height = 71;
+  set_size(packet, 33, 71);
   EXPECT_EQ(draw(packet).rgba.size(), 33u * 71 * 4);
-  packet.width = 160;
-  packet.height = 120;
+  set_size(packet, 160, 120);
   EXPECT_EQ(max_difference(first, draw(packet)), 0);
 }
 
 TEST_F(Frames, ImpossibleSizesAreRefused) {
   FramePacket packet = make_packet({30, -40, 30}, {8, 8, 8});
   packet.width = 1 << 20;
-  const auto drawn = renderer_->draw(packet);
-  ASSERT_FALSE(drawn);
-  EXPECT_NE(drawn.error().message.find("1048576 x 120"), std::string::npos);
+  expect_refused(packet, "1048576 x 120");
 }
 
-}  // namespace renderer_test
-}  // namespace catena::test
+}  // namespace catena::test::renderer_test

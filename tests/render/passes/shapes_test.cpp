@@ -6,12 +6,11 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <tuple>
+#include <numbers>
 
-namespace catena::render {
-namespace shapes_test {
+namespace catena::render::shapes_test {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kPi = std::numbers::pi;
 
 std::vector<Vec3> helix(int n, double turns = 2) {
   std::vector<Vec3> points;
@@ -65,16 +64,15 @@ double volume_of(const ShapeMesh& shape) {
   return volume;
 }
 
-/// Checks that the triangles' winding agrees with the unit vertex normals.
-void expect_outward(const ShapeMesh& shape) {
+/// Checks that the mesh is closed, and that the triangles' winding agrees with the unit vertex normals.
+void expect_closed_and_outward(const ShapeMesh& shape) {
+  expect_closed(shape);
   for (const MeshVertex& v : shape.vertices) ASSERT_NEAR(norm(v.normal), 1, 1e-12);
   for (std::size_t t = 0; t < shape.triangles.size(); t += 3) {
     const MeshVertex &a = shape.vertices[shape.triangles[t]], &b = shape.vertices[shape.triangles[t + 1]],
                      &c = shape.vertices[shape.triangles[t + 2]];
     const Vec3 face = direction(cross(b.position - a.position, c.position - a.position));
-    ASSERT_GT(dot(face, a.normal), 0.2);
-    ASSERT_GT(dot(face, b.normal), 0.2);
-    ASSERT_GT(dot(face, c.normal), 0.2);
+    for (const MeshVertex* v : {&a, &b, &c}) ASSERT_GT(dot(face, v->normal), 0.2);
   }
 }
 
@@ -93,8 +91,7 @@ double distance_to(const Vec3& p, const std::vector<Vec3>& line) {
 TEST(Shapes, ATubeIsClosedAndOutward) {
   for (const auto& points : {helix(200), knotted_loop(400), std::vector<Vec3>{{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}}}) {
     const ShapeMesh shape = tube(points, 0.05);
-    expect_closed(shape);
-    expect_outward(shape);
+    expect_closed_and_outward(shape);
     EXPECT_GT(volume_of(shape), 0);
   }
 }
@@ -109,16 +106,12 @@ TEST(Shapes, AStraightTubeKeepsTheRadiusThroughSharpCorners) {
   const std::vector<Vec3> corner{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
   const ShapeMesh shape = tube(corner, 0.05);
   expect_closed(shape);
-  for (const MeshVertex& v : shape.vertices) {
-    const double d = distance_to(v.position, corner);
-    EXPECT_LE(d, 0.05 * (1 + 1e-12));
-  }
+  for (const MeshVertex& v : shape.vertices) EXPECT_LE(distance_to(v.position, corner), 0.05 * (1 + 1e-12));
 }
 
 TEST(Shapes, TheVolumeOfATubeIsThatOfACapsule) {
   const double r = 0.1, l = 2;
-  const int n = 48;
-  const ShapeMesh shape = tube({{0.0, 0.0, 0.0}, {0.0, 0.0, l}}, r, n);
+  const ShapeMesh shape = tube({{0.0, 0.0, 0.0}, {0.0, 0.0, l}}, r, 48);
   EXPECT_NEAR(volume_of(shape), kPi * r * r * l + 4.0 / 3 * kPi * r * r * r, 0.01 * kPi * r * r * l);
 }
 
@@ -157,8 +150,7 @@ TEST(Shapes, DegenerateTubesAreHandled) {
   expect_closed(point);
   EXPECT_FALSE(point.triangles.empty());
   const ShapeMesh repeated = tube({{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, 0.1);
-  expect_closed(repeated);
-  expect_outward(repeated);
+  expect_closed_and_outward(repeated);
   const ShapeMesh there_and_back = tube({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, 0.1);
   expect_closed(there_and_back);
   for (const MeshVertex& v : there_and_back.vertices) ASSERT_TRUE(is_finite(v.position) && is_finite(v.normal));
@@ -172,8 +164,7 @@ TEST(Shapes, BallCylinderConeAreClosedAndOutward) {
   add_cylinder(cylinder, {0.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, 0.2, {}, 40);
   add_cone(cone, {0.0, 0.0, 0.0}, {0.0, -1.0, 0.5}, 0.3, {}, 40);
   for (const ShapeMesh* s : {&ball, &cylinder, &cone}) {
-    expect_closed(*s);
-    expect_outward(*s);
+    expect_closed_and_outward(*s);
   }
   EXPECT_NEAR(volume_of(ball), 4.0 / 3 * kPi * 0.125, 0.02);
   EXPECT_NEAR(volume_of(cylinder), kPi * 0.04 * std::sqrt(2.0), 0.002);
@@ -185,23 +176,26 @@ TEST(Shapes, BallCylinderConeAreClosedAndOutward) {
   EXPECT_TRUE(none.vertices.empty());
 }
 
+ShapeMesh shape_of(const CursorItem& item) {
+  ShapeMesh shape;
+  add_cursor(shape, item);
+  return shape;
+}
+
 CursorItem cursor() { return {{0.0, 0.0, 0.0}, {{1.0, 0.0, 0.0}, {1.0, 2.0, 0.0}}, {true, false}, {0.0, 0.0, 3.0}, 0.1, {}}; }
 
 TEST(Shapes, TheCursorShowsEveryProxyAndTheForce) {
-  ShapeMesh shape;
-  add_cursor(shape, cursor());
-  expect_closed(shape);
-  expect_outward(shape);
+  const ShapeMesh shape = shape_of(cursor());
+  expect_closed_and_outward(shape);
   // the first proxy's ball has the colour of link 0, the second's the dimmed colour of link 1
   int first = 0, second = 0;
   double highest = 0;
   for (const MeshVertex& v : shape.vertices) {
-    const auto is = [&](const Color& c) { return v.color.r == c.r && v.color.g == c.g && v.color.b == c.b; };
-    if (is(link_color(0, true))) {
+    if (v.color == link_color(0, true)) {
       ++first;
       EXPECT_LE(norm(v.position - Vec3(1.0, 0.0, 0.0)), 0.1);
     }
-    if (is(link_color(1, false))) {
+    if (v.color == link_color(1, false)) {
       ++second;
       EXPECT_LE(norm(v.position - Vec3(1.0, 2.0, 0.0)), 0.1);
     }
@@ -214,35 +208,31 @@ TEST(Shapes, TheCursorShowsEveryProxyAndTheForce) {
 
 int vertices_of(const ShapeMesh& shape, const Color& c) {
   int count = 0;
-  for (const MeshVertex& v : shape.vertices) count += v.color.r == c.r && v.color.g == c.g && v.color.b == c.b;
+  for (const MeshVertex& v : shape.vertices) count += v.color == c;
   return count;
 }
 
 TEST(Shapes, ALinkNearItsReleaseIsHighlighted) {
   CursorItem item = cursor();
-  ShapeMesh calm, near, gone;
-  add_cursor(calm, item);
+  const ShapeMesh calm = shape_of(item);
   item.release_ratios = {0.5, 0};
-  add_cursor(near, item);
+  const ShapeMesh near = shape_of(item);
   item.release_ratios = {0, 1};  // link 1 is released and not active
-  add_cursor(gone, item);
+  const ShapeMesh gone = shape_of(item);
   EXPECT_GT(vertices_of(calm, release_color(0)), 0);
   EXPECT_EQ(vertices_of(near, release_color(0)), 0);
   EXPECT_GT(vertices_of(near, release_color(0.5)), 0);
   EXPECT_EQ(vertices_of(calm, release_color(1)), 0);
   EXPECT_GT(vertices_of(gone, release_color(1)), 100) << "rings around the place";
-  expect_closed(gone);
-  expect_outward(gone);
+  expect_closed_and_outward(gone);
   EXPECT_GT(release_color(1).r - release_color(1).g, 0.5f);
 }
 
 TEST(Shapes, ADropLineEndsInACross) {
   CursorItem item = cursor();
   item.foot_point = Vec3(0.0, 0.0, -5.0);
-  ShapeMesh shape;
-  add_cursor(shape, item);
-  expect_closed(shape);
-  expect_outward(shape);
+  const ShapeMesh shape = shape_of(item);
+  expect_closed_and_outward(shape);
   double lowest = 0, widest = 0, thickest = 0;
   for (const MeshVertex& v : shape.vertices) {
     lowest = std::min(lowest, v.position.z);
@@ -253,24 +243,19 @@ TEST(Shapes, ADropLineEndsInACross) {
   EXPECT_NEAR(widest, std::hypot(0.15, 0.015), 1e-6);
   EXPECT_NEAR(thickest, 0.015, 1e-6);
   item.foot_point = item.probe;
-  ShapeMesh none, plain;
-  add_cursor(none, item);
-  add_cursor(plain, cursor());
-  EXPECT_EQ(none.vertices.size(), plain.vertices.size());
+  EXPECT_EQ(shape_of(item).vertices.size(), shape_of(cursor()).vertices.size());
 }
 
 TEST(Shapes, ACrosshairIsThreeRodsIndependentOfTheForce) {
   CursorItem item = cursor();
   item.is_crosshair = true;
-  ShapeMesh held, free;
-  add_cursor(held, item);
+  const ShapeMesh held = shape_of(item);
   item.proxies.clear();
   item.link_active.clear();
   item.force_n = Vec3(0.0);
   item.force_ratio = 0.7;
-  add_cursor(free, item);
-  expect_closed(held);
-  expect_outward(held);
+  const ShapeMesh free = shape_of(item);
+  expect_closed_and_outward(held);
   ASSERT_EQ(held.vertices.size(), free.vertices.size());
   Vec3 longest(0.0);
   for (std::size_t i = 0; i < held.vertices.size(); ++i) {
@@ -294,13 +279,12 @@ TEST(Shapes, WithoutADeviceColorsShowTheForce) {
     }
     return maximum;
   };
-  ShapeMesh calm, half, maximum;
   item.force_ratio = 0;
-  add_cursor(calm, item);
+  const ShapeMesh calm = shape_of(item);
   item.force_ratio = 0.5;
-  add_cursor(half, item);
+  const ShapeMesh half = shape_of(item);
   item.force_ratio = 1;
-  add_cursor(maximum, item);
+  const ShapeMesh maximum = shape_of(item);
   // the cursor is at the last proxy; the probe is the smaller ball
   double at_proxy = 0, at_probe = 0, highest = 0;
   for (const MeshVertex& v : calm.vertices) {
@@ -312,8 +296,7 @@ TEST(Shapes, WithoutADeviceColorsShowTheForce) {
   EXPECT_NEAR(highest, cursor_arrow_length(norm(item.force_n), item.radius), 1e-9) << "the arrow begins where the hand is held";
   EXPECT_NEAR(at_proxy, 0.1, 1e-6);
   EXPECT_NEAR(at_probe, 0.045, 1e-3);
-  expect_closed(maximum);
-  expect_outward(maximum);
+  expect_closed_and_outward(maximum);
   EXPECT_LT(reddest_far_from(calm, item.probe), 0.5f) << "green, and the calm colour";
   EXPECT_GT(reddest_far_from(half, item.probe), 0.6f);
   EXPECT_GT(reddest_far_from(maximum, item.probe), 0.85f);
@@ -329,14 +312,12 @@ TEST(Shapes, ArrowLengthFollowsTheForceWithinLimits) {
 }
 
 TEST(Shapes, ACursorWithoutSizeOrPositionIsNotDrawn) {
-  ShapeMesh shape;
   CursorItem item = cursor();
   item.radius = 0;
-  add_cursor(shape, item);
+  EXPECT_TRUE(shape_of(item).vertices.empty());
   item = cursor();
   item.probe.x = std::nan("");
-  add_cursor(shape, item);
-  EXPECT_TRUE(shape.vertices.empty());
+  EXPECT_TRUE(shape_of(item).vertices.empty());
 }
 
 TEST(Shapes, LinkColorsDiffer) {
@@ -362,5 +343,4 @@ TEST(Tube, EveryRingHasItsPointsColor) {
   }
 }
 
-}  // namespace shapes_test
-}  // namespace catena::render
+}  // namespace catena::render::shapes_test

@@ -13,191 +13,101 @@
 #include "shaders/shared/vignette.h"
 #include "tests/render/support/spirv.h"
 
-namespace catena::test {
-namespace shared_structs_test {
+namespace catena::test::shared_structs_test {
 
 using namespace catena::render::shared;
 
-#define EXPECT_OFFSET(Struct, member)                                            \
-  EXPECT_EQ(found.at(#member), offsetof(Struct, member)) << #Struct "." #member; \
-  ++compared
+using Offsets = std::map<std::string, std::uint32_t>;
+
+/// A member's name and its offset in C++.
+#define MEMBER(Struct, member) \
+  { #member, std::uint32_t(offsetof(Struct, member)) }
+/// The stride of an array of a struct.
+#define STRIDE(Struct) \
+  { "[]", std::uint32_t(sizeof(Struct)) }
+
+/// Checks that a struct has exactly these members, at these offsets, in every one of the shaders.
+void expect_offsets(const std::vector<const char*>& shaders, const std::string& name, const Offsets& members) {
+  for (const char* shader : shaders) EXPECT_EQ(struct_offsets(shader_words(shader))[name], members) << shader << " " << name;
+}
 
 TEST(SharedStructs, FrameAndGridData) {
-  for (const char* shader : {"blend.frag", "blend_cubic.frag", "blend_layers.frag", "blend_layers_cubic.frag", "volume.frag",
-                             "projection.frag", "surface_color.frag", "isosurface.frag", "slice.frag", "sample.comp"}) {
+  const std::vector<const char*> shaders{"blend.frag",  "blend_cubic.frag", "blend_layers.frag",  "blend_layers_cubic.frag",
+                                         "volume.frag", "projection.frag",  "surface_color.frag", "isosurface.frag",
+                                         "slice.frag",  "sample.comp"};
+  Offsets grid{
+      MEMBER(GridData, origin),       MEMBER(GridData, origin_x),       MEMBER(GridData, origin_y),    MEMBER(GridData, direction),
+      MEMBER(GridData, direction_x),  MEMBER(GridData, direction_y),    MEMBER(GridData, lo),          MEMBER(GridData, hi),
+      MEMBER(GridData, domain_lo),    MEMBER(GridData, domain_hi),      MEMBER(GridData, texel),       MEMBER(GridData, world_gradient),
+      MEMBER(GridData, value_offset), MEMBER(GridData, value_scale),    MEMBER(GridData, value_table), MEMBER(GridData, gradient_table),
+      MEMBER(GridData, bound_lo),     MEMBER(GridData, bound_per_code), MEMBER(GridData, level),       MEMBER(GridData, opacity),
+      MEMBER(GridData, color),        MEMBER(GridData, is_clipped),     MEMBER(GridData, id),          MEMBER(GridData, nearest),
+      MEMBER(GridData, spread_labels)};
+  grid["[]"] = sizeof(GridData);
+  expect_offsets(shaders, "GridData", grid);
+  expect_offsets(shaders, "FrameData", {MEMBER(FrameData, half_size),    MEMBER(FrameData, axis),        MEMBER(FrameData, clip_count),
+                                        MEMBER(FrameData, light_count),  MEMBER(FrameData, lights),      MEMBER(FrameData, fog),
+                                        MEMBER(FrameData, clips),        MEMBER(FrameData, slope),       MEMBER(FrameData, right),
+                                        MEMBER(FrameData, up),           MEMBER(FrameData, forward),     MEMBER(FrameData, reference_depth),
+                                        MEMBER(FrameData, front_depth),  MEMBER(FrameData, depth_near),  MEMBER(FrameData, depth_far),
+                                        MEMBER(FrameData, orthographic), MEMBER(FrameData, spacing),     MEMBER(FrameData, first),
+                                        MEMBER(FrameData, step_world),   MEMBER(FrameData, termination), MEMBER(FrameData, grids)});
+  const Offsets table{MEMBER(TableData, start),       MEMBER(TableData, last),      MEMBER(TableData, control_points),
+                      MEMBER(TableData, per_linear),  MEMBER(TableData, lo),        MEMBER(TableData, entries_per_unit),
+                      MEMBER(TableData, first_value), MEMBER(TableData, last_value)};
+  for (const char* shader : shaders) {
     auto all = struct_offsets(shader_words(shader));
-    std::size_t compared = 0;
-    {
-      const auto& found = all["GridData"];
-      EXPECT_OFFSET(GridData, origin);
-      EXPECT_OFFSET(GridData, origin_x);
-      EXPECT_OFFSET(GridData, origin_y);
-      EXPECT_OFFSET(GridData, direction);
-      EXPECT_OFFSET(GridData, direction_x);
-      EXPECT_OFFSET(GridData, direction_y);
-      EXPECT_OFFSET(GridData, lo);
-      EXPECT_OFFSET(GridData, hi);
-      EXPECT_OFFSET(GridData, domain_lo);
-      EXPECT_OFFSET(GridData, domain_hi);
-      EXPECT_OFFSET(GridData, texel);
-      EXPECT_OFFSET(GridData, world_gradient);
-      EXPECT_OFFSET(GridData, value_offset);
-      EXPECT_OFFSET(GridData, value_scale);
-      EXPECT_OFFSET(GridData, value_table);
-      EXPECT_OFFSET(GridData, gradient_table);
-      EXPECT_OFFSET(GridData, bound_lo);
-      EXPECT_OFFSET(GridData, bound_per_code);
-      EXPECT_OFFSET(GridData, level);
-      EXPECT_OFFSET(GridData, opacity);
-      EXPECT_OFFSET(GridData, color);
-      EXPECT_OFFSET(GridData, is_clipped);
-      EXPECT_OFFSET(GridData, id);
-      EXPECT_OFFSET(GridData, nearest);
-      EXPECT_OFFSET(GridData, spread_labels);
-      EXPECT_EQ(found.at("[]"), sizeof(GridData));
-      EXPECT_EQ(found.size(), compared + 1);
-    }
     if (all.contains("TableData")) {
-      compared = 0;
-      const auto& found = all["TableData"];
-      EXPECT_OFFSET(TableData, start);
-      EXPECT_OFFSET(TableData, last);
-      EXPECT_OFFSET(TableData, control_points);
-      EXPECT_OFFSET(TableData, per_linear);
-      EXPECT_OFFSET(TableData, lo);
-      EXPECT_OFFSET(TableData, entries_per_unit);
-      EXPECT_OFFSET(TableData, first_value);
-      EXPECT_OFFSET(TableData, last_value);
-      EXPECT_EQ(found.size(), compared);
+      EXPECT_EQ(all["TableData"], table) << shader;
     }
-    compared = 0;
-    const auto& found = all["FrameData"];
-    EXPECT_OFFSET(FrameData, half_size);
-    EXPECT_OFFSET(FrameData, axis);
-    EXPECT_OFFSET(FrameData, clip_count);
-    EXPECT_OFFSET(FrameData, light_count);
-    EXPECT_OFFSET(FrameData, lights);
-    EXPECT_OFFSET(FrameData, fog);
-    EXPECT_OFFSET(FrameData, clips);
-    EXPECT_OFFSET(FrameData, slope);
-    EXPECT_OFFSET(FrameData, right);
-    EXPECT_OFFSET(FrameData, up);
-    EXPECT_OFFSET(FrameData, forward);
-    EXPECT_OFFSET(FrameData, reference_depth);
-    EXPECT_OFFSET(FrameData, front_depth);
-    EXPECT_OFFSET(FrameData, depth_near);
-    EXPECT_OFFSET(FrameData, depth_far);
-    EXPECT_OFFSET(FrameData, orthographic);
-    EXPECT_OFFSET(FrameData, spacing);
-    EXPECT_OFFSET(FrameData, first);
-    EXPECT_OFFSET(FrameData, step_world);
-    EXPECT_OFFSET(FrameData, termination);
-    EXPECT_OFFSET(FrameData, grids);
-    EXPECT_EQ(found.size(), compared);
   }
 }
 
 TEST(SharedStructs, Vignette) {
-  auto all = struct_offsets(shader_words("vignette.frag"));
-  const auto& found = all["VignetteData"];
-  std::size_t compared = 0;
-  EXPECT_OFFSET(VignetteData, first);
-  EXPECT_OFFSET(VignetteData, step);
-  EXPECT_OFFSET(VignetteData, strength);
-  EXPECT_OFFSET(VignetteData, inner);
-  EXPECT_OFFSET(VignetteData, outer);
-  EXPECT_EQ(compared, found.size());
+  expect_offsets({"vignette.frag"}, "VignetteData",
+                 {MEMBER(VignetteData, first), MEMBER(VignetteData, step), MEMBER(VignetteData, strength), MEMBER(VignetteData, inner),
+                  MEMBER(VignetteData, outer)});
 }
 
 TEST(SharedStructs, TubeRingData) {
-  auto all = struct_offsets(shader_words("tube.vert"));
-  const auto& found = all["TubeRingData"];
-  std::size_t compared = 0;
-  EXPECT_OFFSET(TubeRingData, center);
-  EXPECT_OFFSET(TubeRingData, radius);
-  EXPECT_OFFSET(TubeRingData, normal_tilt);
-  EXPECT_OFFSET(TubeRingData, tangent);
-  EXPECT_OFFSET(TubeRingData, normal);
-  EXPECT_OFFSET(TubeRingData, color);
-  EXPECT_OFFSET(TubeRingData, id);
-  EXPECT_EQ(found.at("[]"), sizeof(TubeRingData)) << "the stride of the array";
-  EXPECT_EQ(found.size(), compared + 1);
+  expect_offsets(
+      {"tube.vert"}, "TubeRingData",
+      {MEMBER(TubeRingData, center), MEMBER(TubeRingData, radius), MEMBER(TubeRingData, normal_tilt), MEMBER(TubeRingData, tangent),
+       MEMBER(TubeRingData, normal), MEMBER(TubeRingData, color), MEMBER(TubeRingData, id), STRIDE(TubeRingData)});
 }
 
 TEST(SharedStructs, MeshFrameData) {
-  auto all = struct_offsets(shader_words("mesh.vert"));
-  const auto& found = all["MeshFrameData"];
-  std::size_t compared = 0;
-  EXPECT_OFFSET(MeshFrameData, view_from_world);
-  EXPECT_OFFSET(MeshFrameData, offset);
-  EXPECT_OFFSET(MeshFrameData, offset_depth);
-  EXPECT_OFFSET(MeshFrameData, scale);
-  EXPECT_OFFSET(MeshFrameData, shift);
-  EXPECT_OFFSET(MeshFrameData, pixel);
-  EXPECT_OFFSET(MeshFrameData, clip_count);
-  EXPECT_OFFSET(MeshFrameData, light_count);
-  EXPECT_OFFSET(MeshFrameData, lights);
-  EXPECT_OFFSET(MeshFrameData, fog);
-  EXPECT_OFFSET(MeshFrameData, clips);
-  EXPECT_OFFSET(MeshFrameData, depth_near);
-  EXPECT_OFFSET(MeshFrameData, depth_far);
-  EXPECT_OFFSET(MeshFrameData, orthographic);
-  EXPECT_EQ(found.size(), compared);
+  expect_offsets(
+      {"mesh.vert"}, "MeshFrameData",
+      {MEMBER(MeshFrameData, view_from_world), MEMBER(MeshFrameData, offset), MEMBER(MeshFrameData, offset_depth),
+       MEMBER(MeshFrameData, scale), MEMBER(MeshFrameData, shift), MEMBER(MeshFrameData, pixel), MEMBER(MeshFrameData, clip_count),
+       MEMBER(MeshFrameData, light_count), MEMBER(MeshFrameData, lights), MEMBER(MeshFrameData, fog), MEMBER(MeshFrameData, clips),
+       MEMBER(MeshFrameData, depth_near), MEMBER(MeshFrameData, depth_far), MEMBER(MeshFrameData, orthographic)});
 }
 
 TEST(SharedStructs, StereoComposeAndAnaglyphData) {
-  auto pack = struct_offsets(shader_words("stereo_compose.frag"));
+  expect_offsets({"stereo_compose.frag"}, "StereoComposeData",
+                 {MEMBER(StereoComposeData, first), MEMBER(StereoComposeData, block_x), MEMBER(StereoComposeData, block_y),
+                  MEMBER(StereoComposeData, view), MEMBER(StereoComposeData, views)});
   auto anaglyph = struct_offsets(shader_words("anaglyph.frag"));
-  std::size_t compared = 0;
-  {
-    const auto& found = pack["StereoComposeData"];
-    EXPECT_OFFSET(StereoComposeData, first);
-    EXPECT_OFFSET(StereoComposeData, block_x);
-    EXPECT_OFFSET(StereoComposeData, block_y);
-    EXPECT_OFFSET(StereoComposeData, view);
-    EXPECT_OFFSET(StereoComposeData, views);
-    EXPECT_EQ(found.size(), compared);
-  }
   const auto& found = anaglyph["AnaglyphData"];
   EXPECT_EQ(found.at("left"), offsetof(AnaglyphData, left));
   EXPECT_EQ(found.at("right"), offsetof(AnaglyphData, right));
 }
 
-TEST(SharedStructs, UiData) {
-  auto all = struct_offsets(shader_words("ui.vert"));
-  EXPECT_EQ(all["UiData"].at("half_size"), offsetof(UiData, half_size));
-  EXPECT_EQ(all["UiData"].size(), 1u);
-}
+TEST(SharedStructs, UiData) { expect_offsets({"ui.vert"}, "UiData", {MEMBER(UiData, half_size)}); }
 
 TEST(SharedStructs, LayerData) {
-  for (const char* shader : {"layer_mesh.frag", "slice.frag"}) {
-    auto all = struct_offsets(shader_words(shader));
-    const auto& found = all["LayerData"];
-    std::size_t compared = 0;
-    EXPECT_OFFSET(LayerData, reference_depth);
-    EXPECT_OFFSET(LayerData, depth_near);
-    EXPECT_OFFSET(LayerData, depth_far);
-    EXPECT_OFFSET(LayerData, orthographic);
-    EXPECT_OFFSET(LayerData, opacity);
-    EXPECT_EQ(found.size(), compared);
-  }
+  expect_offsets({"layer_mesh.frag", "slice.frag"}, "LayerData",
+                 {MEMBER(LayerData, reference_depth), MEMBER(LayerData, depth_near), MEMBER(LayerData, depth_far),
+                  MEMBER(LayerData, orthographic), MEMBER(LayerData, opacity)});
 }
 
 TEST(SharedStructs, SliceData) {
-  auto all = struct_offsets(shader_words("slice.frag"));
-  const auto& found = all["SliceData"];
-  std::size_t compared = 0;
-  EXPECT_OFFSET(SliceData, plane);
-  EXPECT_OFFSET(SliceData, normal);
-  EXPECT_OFFSET(SliceData, clip_slack);
-  EXPECT_OFFSET(SliceData, is_lit);
-  EXPECT_OFFSET(SliceData, color_last);
-  EXPECT_OFFSET(SliceData, level_count);
-  EXPECT_OFFSET(SliceData, line_color);
-  EXPECT_OFFSET(SliceData, half_width);
-  EXPECT_OFFSET(SliceData, depth_bias);
-  EXPECT_OFFSET(SliceData, hidden_label);
-  EXPECT_EQ(found.size(), compared);
+  expect_offsets({"slice.frag"}, "SliceData",
+                 {MEMBER(SliceData, plane), MEMBER(SliceData, normal), MEMBER(SliceData, clip_slack), MEMBER(SliceData, is_lit),
+                  MEMBER(SliceData, color_last), MEMBER(SliceData, level_count), MEMBER(SliceData, line_color),
+                  MEMBER(SliceData, half_width), MEMBER(SliceData, depth_bias), MEMBER(SliceData, hidden_label)});
 }
 
 TEST(SharedStructs, ComposeData) {
@@ -206,41 +116,17 @@ TEST(SharedStructs, ComposeData) {
 }
 
 TEST(SharedStructs, Overlay) {
-  for (const char* shader : {"overlay.vert", "overlay.frag"}) {
-    auto all = struct_offsets(shader_words(shader));
-    const auto& found = all["OverlayShape"];
-    std::size_t compared = 0;
-    EXPECT_OFFSET(OverlayShape, origin);
-    EXPECT_OFFSET(OverlayShape, axis_x);
-    EXPECT_OFFSET(OverlayShape, axis_y);
-    EXPECT_OFFSET(OverlayShape, lo);
-    EXPECT_OFFSET(OverlayShape, hi);
-    EXPECT_OFFSET(OverlayShape, color);
-    EXPECT_OFFSET(OverlayShape, size);
-    EXPECT_OFFSET(OverlayShape, texel);
-    EXPECT_OFFSET(OverlayShape, first_stop);
-    EXPECT_OFFSET(OverlayShape, last_stop);
-    EXPECT_OFFSET(OverlayShape, kind);
-    EXPECT_OFFSET(OverlayShape, anchor);
-    EXPECT_OFFSET(OverlayShape, occlusion_depth);
-    EXPECT_EQ(found.at("[]"), sizeof(OverlayShape));
-    EXPECT_EQ(found.size(), compared + 1);
-  }
-  std::size_t compared = 0;
-  auto all = struct_offsets(shader_words("overlay.frag"));
-  {
-    const auto& found = all["OverlayStop"];
-    EXPECT_OFFSET(OverlayStop, position);
-    EXPECT_OFFSET(OverlayStop, color);
-    EXPECT_EQ(found.at("[]"), sizeof(OverlayStop));
-  }
-  all = struct_offsets(shader_words("overlay.vert"));
+  expect_offsets({"overlay.vert", "overlay.frag"}, "OverlayShape",
+                 {MEMBER(OverlayShape, origin), MEMBER(OverlayShape, axis_x), MEMBER(OverlayShape, axis_y), MEMBER(OverlayShape, lo),
+                  MEMBER(OverlayShape, hi), MEMBER(OverlayShape, color), MEMBER(OverlayShape, size), MEMBER(OverlayShape, texel),
+                  MEMBER(OverlayShape, first_stop), MEMBER(OverlayShape, last_stop), MEMBER(OverlayShape, kind),
+                  MEMBER(OverlayShape, anchor), MEMBER(OverlayShape, occlusion_depth), STRIDE(OverlayShape)});
+  expect_offsets({"overlay.frag"}, "OverlayStop", {MEMBER(OverlayStop, position), MEMBER(OverlayStop, color), STRIDE(OverlayStop)});
+  auto all = struct_offsets(shader_words("overlay.vert"));
   const auto& found = all["OverlayData"];
-  EXPECT_OFFSET(OverlayData, half_size);
-  EXPECT_OFFSET(OverlayData, depth_slack);
-  EXPECT_OFFSET(OverlayData, has_depth);
-  EXPECT_EQ(compared, 5u);
+  EXPECT_EQ(found.at("half_size"), offsetof(OverlayData, half_size));
+  EXPECT_EQ(found.at("depth_slack"), offsetof(OverlayData, depth_slack));
+  EXPECT_EQ(found.at("has_depth"), offsetof(OverlayData, has_depth));
 }
 
-}  // namespace shared_structs_test
-}  // namespace catena::test
+}  // namespace catena::test::shared_structs_test

@@ -8,16 +8,16 @@
 #include "render/frame/camera.h"
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace slice_test {
+namespace catena::test::slice_test {
 
 using namespace catena::render;
 
 class SliceImage : public ImageTest {};
 
-const std::vector<std::array<double, 4>> kTable{{-4, 0.1, 0.0, 0.9}, {-1, 0.9, 0.2, 0.1}, {0.5, 0.2, 1.0, 0.3}, {6, 1.0, 0.9, 0.0}};
+using Table = std::vector<std::array<double, 4>>;
+const Table kTable{{-4, 0.1, 0.0, 0.9}, {-1, 0.9, 0.2, 0.1}, {0.5, 0.2, 1.0, 0.3}, {6, 1.0, 0.9, 0.0}};
 
-std::array<double, 3> table_color(const std::vector<std::array<double, 4>>& table, double value) {
+std::array<double, 3> table_color(const Table& table, double value) {
   if (value <= table.front()[0]) return {table.front()[1], table.front()[2], table.front()[3]};
   for (std::size_t i = 1; i < table.size(); ++i)
     if (value <= table[i][0]) {
@@ -45,13 +45,16 @@ Vec3 centre_of(const field::ScalarGrid& grid) {
   return grid.mapping().world_from_index(0.5 * grid.index_box().lo + 0.5 * grid.index_box().hi);
 }
 
-SliceItem slice_of(GridPtr grid, const Vec3& point, const Vec3& normal) {
-  SliceItem item;
-  item.grid = std::move(grid);
-  item.point = point;
-  item.normal = normal;
-  item.colors = kTable;
-  return item;
+const Table kWhite{{0, 1, 1, 1}};
+
+SliceItem slice_of(GridPtr grid, const Vec3& point, const Vec3& normal, const Table& colors = kTable) {
+  return {std::move(grid), point, normal, colors};
+}
+
+/// An orthographic view with y upwards.
+void set_plan_view(FramePacket& packet, double height) {
+  packet.view.up = {0, 1, 0};
+  set_orthographic(packet, height);
 }
 
 /// Intersection of a pixel's ray with a plane in index space, and its distance in voxels inside the domain.
@@ -76,14 +79,12 @@ TEST_F(SliceImage, EveryPixelOfAShearedGridHasItsTableColorDepthAndId) {
   const auto grid = wavy_grid();
   for (const bool orthographic : {false, true}) {
     FramePacket packet = make_packet(centre_of(*grid) + Vec3(2.5, -4, 3), centre_of(*grid));
-    packet.view.orthographic = orthographic;
-    packet.view.height = 3;
+    if (orthographic) set_orthographic(packet, 3);
     packet.slices = {slice_of(grid, centre_of(*grid) + Vec3(0.1, 0, 0.05), {0.5, -0.6, 0.9})};
     packet.slices[0].id = 17;
     const Image8 image = draw(packet, {}, orthographic ? "orthographic" : "perspective");
-    const auto depth = renderer_->read_depth();
-    const auto ids = renderer_->read_ids();
-    ASSERT_TRUE(depth && ids);
+    const std::vector<float> depth = depths();
+    const std::vector<std::uint32_t> id = ids();
     const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
     int inside = 0, worst = 0;
     double worst_depth = 0;
@@ -94,7 +95,7 @@ TEST_F(SliceImage, EveryPixelOfAShearedGridHasItsTableColorDepthAndId) {
         const std::uint8_t* p = image.pixel(x, y);
         const std::size_t at = y * packet.width + x;
         ASSERT_EQ(p[3], met.inside > 0 ? 255 : 0) << x << " " << y;
-        ASSERT_EQ(ids->ids[at], met.inside > 0 ? 17u : 0u);
+        ASSERT_EQ(id[at], met.inside > 0 ? 17u : 0u);
         if (met.inside <= 0) continue;
         ++inside;
         field::Cursor cursor;
@@ -105,7 +106,7 @@ TEST_F(SliceImage, EveryPixelOfAShearedGridHasItsTableColorDepthAndId) {
           return std::fabs(meet(camera, packet.slices[0], x + 0.5 + dx, y + 0.5 + dy).view_depth - met.view_depth);
         };
         const double due = (1 - 8e-6) * met.view_depth - beside(1. / 128, 0) - beside(0, 1. / 128);
-        worst_depth = std::max(worst_depth, std::fabs(depth->depth[at] - due));
+        worst_depth = std::max(worst_depth, std::fabs(depth[at] - due));
       }
     EXPECT_GT(inside, 3000);
     EXPECT_LE(worst, 1);
@@ -130,12 +131,9 @@ double centroid(const Image8& image, std::uint32_t from, std::uint32_t to, std::
 TEST_F(SliceImage, ContoursOfALinearFieldHaveTheirPositionAndWidth) {
   const auto grid = make_grid({33, 33, 9}, [](const Vec3& p) { return p.x + 2 * p.y; });
   FramePacket packet = make_packet({16, 16, 40}, {16, 16, 0});
-  packet.view.up = {0, 1, 0};
-  packet.view.orthographic = true;
-  packet.view.height = 30;  // 0.25 per pixel
+  set_plan_view(packet, 30);  // 0.25 per pixel
   packet.background = {1, 1, 1, 1};
-  packet.slices = {slice_of(grid, {0, 0, 4}, {0, 0, 1})};
-  packet.slices[0].colors = {{0, 1, 1, 1}};
+  packet.slices = {slice_of(grid, {0, 0, 4}, {0, 0, 1}, kWhite)};
   packet.slices[0].contour_levels = {30.1, 48.33, 63};
   for (const double width : {1.0, 2.0, 5.0}) {
     packet.slices[0].line_width = float(width);
@@ -157,8 +155,7 @@ TEST_F(SliceImage, ContoursInPerspectiveAreWithinATenthOfAPixel) {
   const auto grid = make_grid({32, 32, 32}, [](const Vec3& p) { return p.x - 0.3 * p.y + 0.5 * p.z; });
   FramePacket packet = make_packet({-10, -45, 40}, {15.5, 15.5, 15.5}, 40);
   packet.background = {1, 1, 1, 1};
-  packet.slices = {slice_of(grid, {15.5, 15.5, 15.5}, {0.2, -0.5, 0.8})};
-  packet.slices[0].colors = {{0, 1, 1, 1}};
+  packet.slices = {slice_of(grid, {15.5, 15.5, 15.5}, {0.2, -0.5, 0.8}, kWhite)};
   packet.slices[0].contour_levels = {12.3, 18.9, 24};
   packet.slices[0].line_width = 2;
   const Image8 image = draw(packet, {}, "lines");
@@ -185,12 +182,9 @@ TEST_F(SliceImage, ContoursInPerspectiveAreWithinATenthOfAPixel) {
 TEST_F(SliceImage, ACurvedContourKeepsItsWidthAcrossCells) {
   const auto grid = make_grid({33, 33, 5}, [](const Vec3& p) { return norm(Vec3(p.x - 16.2, p.y - 15.7, 0)); });
   FramePacket packet = make_packet({16, 16, 40}, {16, 16, 0});
-  packet.view.up = {0, 1, 0};
-  packet.view.orthographic = true;
-  packet.view.height = 30;
+  set_plan_view(packet, 30);
   packet.background = {1, 1, 1, 1};
-  packet.slices = {slice_of(grid, {0, 0, 2}, {0, 0, 1})};
-  packet.slices[0].colors = {{0, 1, 1, 1}};
+  packet.slices = {slice_of(grid, {0, 0, 2}, {0, 0, 1}, kWhite)};
   packet.slices[0].contour_levels = {9};
   packet.slices[0].line_width = 2;
   const Image8 image = draw(packet, {}, "circle");
@@ -217,31 +211,22 @@ TEST_F(SliceImage, ACurvedContourKeepsItsWidthAcrossCells) {
 TEST_F(SliceImage, AContourIsAtTheCutOfTheIsosurface) {
   const auto grid = wavy_grid();
   FramePacket packet = make_packet(centre_of(*grid) + Vec3(0, 0, 8), centre_of(*grid));
-  packet.view.up = {0, 1, 0};
-  packet.view.orthographic = true;
-  packet.view.height = 3;
+  set_plan_view(packet, 3);
   const Vec3 point = centre_of(*grid) + Vec3(0, 0, 0.3);
-  SliceItem slice = slice_of(grid, point, {0, 0, 1});
-  slice.colors = {{0, 1, 1, 1}};
-  slice.contour_levels = {1.5};
-  packet.slices = {slice};
+  packet.slices = {slice_of(grid, point, {0, 0, 1}, kWhite)};
+  packet.slices[0].contour_levels = {1.5};
   const Image8 lines = draw(packet, {}, "line");
   packet.slices.clear();
-  IsosurfaceItem surface;
-  surface.grid = grid;
-  surface.level = 1.5;
-  surface.color = {1, 0, 0};
-  packet.isosurfaces = {surface};
+  packet.isosurfaces = {{grid, 1.5, {1, 0, 0}}};
   packet.clip_planes = {{point, {0, 0, -1}}};  // keeps the part below the plane
   draw(packet, {}, "cut");
-  const auto depth = renderer_->read_depth();
-  ASSERT_TRUE(depth);
+  const std::vector<float> depth = depths();
   // next to the line, on the surface's side, the depth is nearly the plane's
   const double plane = 8 - 0.3;
   int checked = 0;
   for (std::uint32_t y = 2; y + 2 < packet.height; ++y)
     for (std::uint32_t x = 2; x + 2 < packet.width; ++x) {
-      const float d = depth->depth[y * packet.width + x];
+      const float d = depth[y * packet.width + x];
       if (!(std::fabs(d - plane) < 0.001)) continue;
       double darkest = 0;
       for (std::uint32_t b = y - 1; b <= y + 1; ++b)
@@ -257,9 +242,7 @@ TEST_F(SliceImage, MaskedAndUndefinedCellsAreTransparent) {
       {16, 16, 16}, [](const Vec3& p) { return p.x; }, {}, [](const Vec3& p) { return p.x < 8; });
   const auto holed = make_grid({16, 16, 16}, [](const Vec3& p) { return p.x == 11 && p.y == 7 ? NAN : p.x; });
   FramePacket packet = make_packet({7.5, 7.5, 40}, {7.5, 7.5, 0});
-  packet.view.up = {0, 1, 0};
-  packet.view.orthographic = true;
-  packet.view.height = 24;  // 0.2 per pixel
+  set_plan_view(packet, 24);  // 0.2 per pixel
   const auto column = [](double x) { return std::uint32_t(80 + (x - 7.5) / 0.2); };
   const auto row = [](double y) { return std::uint32_t(60 - (y - 7.5) / 0.2); };
   for (const float opacity : {1.0f, 0.5f}) {
@@ -281,19 +264,13 @@ TEST_F(SliceImage, MaskedAndUndefinedCellsAreTransparent) {
 TEST_F(SliceImage, SlicesInTheDomainsFacesAreDrawnCompletely) {
   const auto grid = make_grid({9, 9, 9}, [](const Vec3& p) { return p.x; });
   FramePacket packet = make_packet({4, 4, 40}, {4, 4, 0});
-  packet.view.up = {0, 1, 0};
-  packet.view.orthographic = true;
-  packet.view.height = 12;  // 0.1 per pixel
+  set_plan_view(packet, 12);  // 0.1 per pixel
   for (const double z : {0.0, 8.0}) {
     packet.slices = {slice_of(grid, {0, 0, z}, {0, 0, z > 4 ? 1.0 : -1.0})};
-    const Image8 image = draw(packet, {}, "z" + std::to_string(int(z)));
-    int covered = 0;
-    for (std::size_t i = 3; i < image.rgba.size(); i += 4) covered += image.rgba[i] == 255;
-    EXPECT_EQ(covered, 80 * 80) << z;
+    EXPECT_EQ(covered(draw(packet, {}, "z" + std::to_string(int(z))), 255), 80 * 80) << z;
   }
   packet.slices = {slice_of(grid, {0, 0, 8.01}, {0, 0, 1})};
-  const Image8 beyond = draw(packet);
-  for (std::size_t i = 3; i < beyond.rgba.size(); i += 4) ASSERT_EQ(beyond.rgba[i], 0);
+  EXPECT_EQ(covered(draw(packet)), 0);
 }
 
 /// Clip planes cut a slice unless "clip" is false; a slice in a clip plane is kept.
@@ -301,34 +278,26 @@ TEST_F(SliceImage, ClipPlanesCutASliceAndKeepOneThatLiesInThem) {
   const auto grid = make_grid({17, 17, 17}, [](const Vec3& p) { return p.x; });
   FramePacket packet = make_packet({2, -14, 34}, {8, 8, 8}, 40);
   packet.slices = {slice_of(grid, {8, 8, 8}, {0.3, 0.2, 1})};
-  const auto covered = [](const Image8& image) {
-    int n = 0;
-    for (std::size_t i = 3; i < image.rgba.size(); i += 4) n += image.rgba[i] == 255;
-    return n;
-  };
-  const int whole = covered(draw(packet, {}, "whole"));
+  const auto drawn = [&](const char* name) { return covered(draw(packet, {}, name), 255); };
+  const int whole = drawn("whole");
   packet.clip_planes = {{{8, 8, 8}, {-0.3, -0.2, -1}}};
-  EXPECT_EQ(covered(draw(packet, {}, "in_plane")), whole);
+  EXPECT_EQ(drawn("in_plane"), whole);
   packet.clip_planes = {{{8, 8, 8}, {1, 0, 0}}};
-  const int half = covered(draw(packet, {}, "half"));
+  const int half = drawn("half");
   EXPECT_LT(half, 0.7 * whole);
   EXPECT_GT(half, 0.3 * whole);
   packet.slices[0].is_clipped = false;
-  EXPECT_EQ(covered(draw(packet, {}, "unclipped")), whole);
+  EXPECT_EQ(drawn("unclipped"), whole);
 }
 
 TEST_F(SliceImage, AShadedSliceUsesItsNormalAndSlicesHideEachOther) {
   const auto grid = make_grid({17, 17, 17}, [](const Vec3&) { return 0.5; });
   FramePacket packet = make_packet({8, -30, 8}, {8, 8, 8});
-  packet.view.orthographic = true;
-  packet.view.height = 24;
-  packet.slices = {slice_of(grid, {8, 8, 8}, {std::sqrt(3.0), 1, 0})};
-  packet.slices[0].colors = {{0, 0, 0, 1}};
+  set_orthographic(packet, 24);
+  packet.slices = {slice_of(grid, {8, 8, 8}, {std::sqrt(3.0), 1, 0}, {{0, 0, 0, 1}})};
   packet.slices[0].lit = true;
   EXPECT_NEAR(draw(packet, {}, "lit").pixel(80, 60)[2], 255 * (0.2 + 0.7 * 0.5), 1.5);
-  SliceItem red = slice_of(grid, {8, 8, 8}, {-std::sqrt(3.0), 1, 0});
-  red.colors = {{0, 1, 0, 0}};
-  packet.slices.push_back(red);
+  packet.slices.push_back(slice_of(grid, {8, 8, 8}, {-std::sqrt(3.0), 1, 0}, {{0, 1, 0, 0}}));
   for (const bool turned : {false, true}) {
     if (turned) std::swap(packet.slices[0], packet.slices[1]);
     const Image8 cross = draw(packet, {}, "cross");
@@ -344,11 +313,7 @@ MeshItem square_at_8() {
   auto geometry = std::make_shared<MeshGeometry>();
   geometry->vertices = {{-2.3, -2.1, 8}, {18.7, -2.2, 8}, {18.4, 18.9, 8}, {-2.6, 18.2, 8}};
   geometry->triangles = {0, 1, 2, 0, 2, 3};
-  MeshItem item;
-  item.geometry = geometry;
-  item.color = {0, 0.4f, 1};
-  item.id = 3;
-  return item;
+  return {geometry, {0, 0.4f, 1}, 3};
 }
 
 /// A slice is over a coplanar surface at every pixel, from both sides and for any opacity: the image equals the slice's image over the
@@ -367,11 +332,8 @@ TEST_F(SliceImage, ASliceIsDrawnOverCoplanarSurfaces) {
                               {"orthographic", {25, -31, 22}, {8, 8, 8}, 30, 22}};
   for (const Eye& eye : eyes) {
     FramePacket empty = make_packet(eye.position, eye.target, eye.fovy_deg);
-    empty.width = 96;
-    empty.height = 72;
-    empty.view.up = {0, 0, 1};
-    empty.view.orthographic = eye.height > 0;
-    empty.view.height = eye.height;
+    set_size(empty, 96, 72);
+    if (eye.height > 0) set_orthographic(empty, eye.height);
     empty.background = {0, 0, 0, 1};
     std::vector<FramePacket> surfaces;
     std::vector<Image8> under;
@@ -384,8 +346,7 @@ TEST_F(SliceImage, ASliceIsDrawnOverCoplanarSurfaces) {
     }
     for (const FramePacket& packet : surfaces) under.push_back(draw(packet));
     for (const float opacity : {1.f, 0.4f}) {
-      SliceItem slice = slice_of(even, {3, 4, 8}, {0, 0, 1});
-      slice.colors = {{0, 1, 0, 0}};
+      SliceItem slice = slice_of(even, {3, 4, 8}, {0, 0, 1}, {{0, 1, 0, 0}});
       slice.opacity = opacity;
       slice.id = 2;
       FramePacket packet = empty;
@@ -424,5 +385,4 @@ TEST_F(SliceImage, AtlasAndDenseStorageDrawTheSameImage) {
   EXPECT_LE(max_difference(draw(packet, dense, "dense"), draw(packet, atlas, "atlas")), 1);
 }
 
-}  // namespace slice_test
-}  // namespace catena::test
+}  // namespace catena::test::slice_test

@@ -9,8 +9,7 @@
 #include "render/frame/camera.h"
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace surface_depth_test {
+namespace catena::test::surface_depth_test {
 
 using namespace catena::render;
 
@@ -68,10 +67,6 @@ class Truth {
   }
 
   double value(const Vec3& p) const { return voxels_.value(cell_at(p), p) - level_; }
-  bool is_valid(const Vec3& p) const {
-    const field::Index3 c = cell_at(p);
-    return voxels_.valid[voxels_.at(c.x, c.y, c.z)] != 0;
-  }
 
  private:
   field::Index3 cell_at(const Vec3& p) const {
@@ -120,64 +115,54 @@ class SurfaceDepth : public ImageTest {
     const field::ScalarGrid& grid = *packet.isosurfaces[0].grid;
     const double level = packet.isosurfaces[0].level, tolerance = 1e-5 * (grid.max_value() - grid.min_value());
     draw(packet, settings, name);
-    const auto depth = renderer_->read_depth();
-    ASSERT_TRUE(depth);
+    const std::vector<float> depth = depths();
     const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
     const Truth truth(grid, float(level));
     int hits = 0, grazing = 0, wrong = 0;
     double worst = 0;
-    for (std::uint32_t y = 0; y < packet.height; ++y)
-      for (std::uint32_t x = 0; x < packet.width; ++x) {
-        const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
-        const Vec3 forward = -camera.back;
-        const double per_depth = 1 / dot(ray.direction, forward);
-        // index position by view depth
-        const Vec3 d = grid.mapping().index_from_world_linear * (per_depth * ray.direction);
-        const Vec3 o = grid.mapping().index_from_world(ray.origin) - dot(ray.origin - camera.position, forward) * d;
-        double from = 0, to = HUGE_VAL;
-        for (int axis = 0; axis < 3; ++axis) {
-          const double s = (grid.index_box().lo[axis] - o[axis]) / d[axis], t = (grid.index_box().hi[axis] - o[axis]) / d[axis];
-          from = std::max(from, std::min(s, t));
-          to = std::min(to, std::max(s, t));
-        }
-        const double found = depth->depth[y * packet.width + x];
-        std::vector<Crossing> all;
-        if (from < to) all = truth.crossings(o, d, from, to);
-        const double expected = all.empty() ? HUGE_VAL : all[0].t;
-        if (!std::isfinite(found) && !std::isfinite(expected)) continue;
-        const double off = std::isfinite(found) && std::isfinite(expected) ? std::fabs(found - expected) * norm(d) : HUGE_VAL;
-        if (off <= 1e-3) {
-          ++hits;
-          worst = std::max(worst, off);
-          continue;
-        }
-        // a tangential touch of the level was found or missed
-        bool touches = false;
-        if (std::isfinite(found)) {
-          const Vec3 p = o + found * d;
-          touches = (found < expected && std::fabs(truth.value(p)) <= tolerance) || (found > expected && all[0].swing <= tolerance);
-        } else {
-          touches = all[0].swing <= tolerance;
-        }
-        // or the ray leaves the domain next to the crossing
-        const double end = std::min(std::fabs(found - from), std::fabs(found - to)),
-                     other = std::min(std::fabs(expected - from), std::fabs(expected - to));
-        if (touches || std::min(end, other) * norm(d) <= 1e-4)
-          ++grazing;
-        else {
-          ++wrong;
-          if (wrong <= 5) ADD_FAILURE() << name << ": pixel " << x << " " << y << " found " << found << " expected " << expected;
-        }
+    for (const auto& [x, y] : pixels_of(packet)) {
+      const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
+      const Vec3 forward = -camera.back;
+      const double per_depth = 1 / dot(ray.direction, forward);
+      // index position by view depth
+      const Vec3 d = grid.mapping().index_from_world_linear * (per_depth * ray.direction);
+      const Vec3 o = grid.mapping().index_from_world(ray.origin) - dot(ray.origin - camera.position, forward) * d;
+      double from = 0, to = HUGE_VAL;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double s = (grid.index_box().lo[axis] - o[axis]) / d[axis], t = (grid.index_box().hi[axis] - o[axis]) / d[axis];
+        from = std::max(from, std::min(s, t));
+        to = std::min(to, std::max(s, t));
       }
+      const double found = depth[y * packet.width + x];
+      std::vector<Crossing> all;
+      if (from < to) all = truth.crossings(o, d, from, to);
+      const double expected = all.empty() ? HUGE_VAL : all[0].t;
+      if (!std::isfinite(found) && !std::isfinite(expected)) continue;
+      const double off = std::isfinite(found) && std::isfinite(expected) ? std::fabs(found - expected) * norm(d) : HUGE_VAL;
+      if (off <= 1e-3) {
+        ++hits;
+        worst = std::max(worst, off);
+        continue;
+      }
+      // a tangential touch of the level was found or missed
+      const bool touches =
+          found < expected ? std::fabs(truth.value(o + found * d)) <= tolerance : found > expected && all[0].swing <= tolerance;
+      // or the ray leaves the domain next to the crossing
+      const double end = std::min(std::fabs(found - from), std::fabs(found - to)),
+                   other = std::min(std::fabs(expected - from), std::fabs(expected - to));
+      if (touches || std::min(end, other) * norm(d) <= 1e-4)
+        ++grazing;
+      else {
+        ++wrong;
+        if (wrong <= 5) ADD_FAILURE() << name << ": pixel " << x << " " << y << " found " << found << " expected " << expected;
+      }
+    }
     EXPECT_GT(hits, min_hits) << name;
     EXPECT_EQ(wrong, 0) << name;
     EXPECT_LE(grazing, 10) << name;
     RecordProperty("worst_voxels_" + name, std::to_string(worst));
     std::printf("  %-28s hits %6d  grazing %2d  worst %.2e voxel\n", name.c_str(), hits, grazing, worst);
-    worst_ = std::max(worst_, worst);
   }
-
-  double worst_ = 0;
 };
 
 GridPtr random_grid(const field::Index3& n, unsigned seed, double smooth, const field::Mapping& mapping = {}, double masked = 0) {
@@ -198,11 +183,7 @@ GridPtr random_grid(const field::Index3& n, unsigned seed, double smooth, const 
 FramePacket packet_of_surface(GridPtr grid, double level, const Vec3& towards_eye, double distance, double fovy_deg = 30) {
   const Vec3 centre = grid->mapping().world_from_index(0.5 * (grid->index_box().lo + grid->index_box().hi));
   FramePacket packet = make_packet(centre + distance * direction(towards_eye), centre, fovy_deg);
-  IsosurfaceItem item;
-  item.grid = std::move(grid);
-  item.level = level;
-  item.color = {0.8f, 0.8f, 0.9f};
-  packet.isosurfaces = {item};
+  packet.isosurfaces = {{std::move(grid), level, {0.8f, 0.8f, 0.9f}}};
   return packet;
 }
 
@@ -210,16 +191,14 @@ TEST_F(SurfaceDepth, DepthOfWhiteNoise) {
   const auto grid = random_grid({64, 64, 64}, 1, 0);
   compare(packet_of_surface(grid, 0.5, {1, -0.7, 0.6}, 190), {}, "dense", 8000);
   compare(packet_of_surface(grid, 0.97, {-0.3, -1, 0.4}, 190), {}, "sparse level", 100);
-  RenderSettings atlas;
-  atlas.layout = GridLayout::atlas;
+  RenderSettings atlas{.layout = GridLayout::atlas, .fast = {}};
   compare(packet_of_surface(grid, 0.9, {1, 0.8, -0.5}, 190), atlas, "atlas", 2000);
 }
 
 TEST_F(SurfaceDepth, DepthWithoutTheCellMap) {
   const auto grid = random_grid({37, 21, 50}, 6, 0.9);
   for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas}) {
-    RenderSettings settings;
-    settings.skip_empty = false;
+    RenderSettings settings{.skip_empty = false, .fast = {}};
     settings.layout = layout;
     compare(packet_of_surface(grid, 0.85, {-1, -0.7, 0.3}, 110), settings, layout == GridLayout::dense ? "dense" : "atlas", 1000);
   }
@@ -237,8 +216,7 @@ TEST_F(SurfaceDepth, DepthOnRotatedAndShearedGrids) {
   const auto grid = random_grid({40, 32, 28}, 3, 0.8, field::Mapping::from_linear(linear, {-300, 40, 3}));
   compare(packet_of_surface(grid, 0.45, {1, -0.7, 0.6}, 120), {}, "perspective", 4000);
   FramePacket packet = packet_of_surface(grid, 0.45, {-1, -0.4, 0.8}, 120);
-  packet.view.orthographic = true;
-  packet.view.height = 50;
+  set_orthographic(packet, 50);
   compare(packet, {}, "orthographic", 4000);
 }
 
@@ -246,16 +224,14 @@ TEST_F(SurfaceDepth, DepthFromInside) {
   const auto grid = random_grid({64, 64, 64}, 4, 0.95);
   compare(packet_of_surface(grid, 0.5, {1, -0.3, 0.2}, 12, 70), {}, "inside", 15000);
   FramePacket packet = packet_of_surface(grid, 0.5, {1, -0.3, 0.2}, 5);
-  packet.view.orthographic = true;
-  packet.view.height = 40;
+  set_orthographic(packet, 40);
   compare(packet, {}, "inside, orthographic", 15000);
 }
 
 TEST_F(SurfaceDepth, DepthWithMaskedCells) {
   const auto grid = random_grid({48, 40, 44}, 5, 0.9, {}, 0.02);
   for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas}) {
-    RenderSettings settings;
-    settings.layout = layout;
+    RenderSettings settings{.layout = layout, .fast = {}};
     compare(packet_of_surface(grid, 0.5, {1, -0.7, 0.6}, 140), settings, layout == GridLayout::dense ? "dense" : "atlas", 4000);
   }
 }
@@ -267,41 +243,36 @@ TEST_F(SurfaceDepth, DepthOfSeveralSurfacesIsTheNearest) {
         {24, 24, 24}, [](const Vec3& p) { return norm(p - Vec3(11.5)); }, field::Mapping::from_linear(Mat3(1.0), at));
   };
   FramePacket packet = packet_of_surface(ball({0, 0, 0}), 9.3, {1, -0.7, 0.6}, 90, 40);
-  const std::vector<IsosurfaceItem> items = [&] {
-    std::vector<IsosurfaceItem> all(5, packet.isosurfaces[0]);
-    all[1].grid = ball({14, -6, 3});
-    all[1].color = {0.9f, 0.5f, 0.1f};
-    all[2].grid = ball({-20, 12, 8});
-    all[2].level = 4;
-    all[3].level = 50;
-    all[4].grid = ball(140.0 * direction(Vec3(1, -0.7, 0.6)));
-    return all;
-  }();
+  std::vector<IsosurfaceItem> items(5, packet.isosurfaces[0]);
+  items[1].grid = ball({14, -6, 3});
+  items[1].color = {0.9f, 0.5f, 0.1f};
+  items[2].grid = ball({-20, 12, 8});
+  items[2].level = 4;
+  items[3].level = 50;
+  items[4].grid = ball(140.0 * direction(Vec3(1, -0.7, 0.6)));
   std::vector<float> nearest(std::size_t(packet.width) * packet.height, HUGE_VALF);
   int seen = 0;
   for (const IsosurfaceItem& item : items) {
     packet.isosurfaces = {item};
     draw(packet);
-    const auto depth = renderer_->read_depth();
-    ASSERT_TRUE(depth);
+    const std::vector<float> depth = depths();
     bool any = false;
     for (std::size_t i = 0; i < nearest.size(); ++i) {
-      nearest[i] = std::min(nearest[i], depth->depth[i]);
-      any = any || std::isfinite(depth->depth[i]);
+      nearest[i] = std::min(nearest[i], depth[i]);
+      any = any || std::isfinite(depth[i]);
     }
     seen += any;
   }
   EXPECT_EQ(seen, 3);
   packet.isosurfaces = items;
   draw(packet, {}, "together");
-  const auto depth = renderer_->read_depth();
-  ASSERT_TRUE(depth);
+  const std::vector<float> depth = depths();
   int hits = 0;
   for (std::size_t i = 0; i < nearest.size(); ++i) {
-    ASSERT_EQ(std::isfinite(depth->depth[i]), std::isfinite(nearest[i])) << i;
+    ASSERT_EQ(std::isfinite(depth[i]), std::isfinite(nearest[i])) << i;
     if (!std::isfinite(nearest[i])) continue;
     ++hits;
-    ASSERT_NEAR(depth->depth[i], nearest[i], 1e-3) << i;
+    ASSERT_NEAR(depth[i], nearest[i], 1e-3) << i;
   }
   EXPECT_GT(hits, 1200);
 }
@@ -315,5 +286,4 @@ TEST_F(SurfaceDepth, DepthOfASurfaceAroundOneVoxel) {
   compare(packet, {}, "tent", 30);
 }
 
-}  // namespace surface_depth_test
-}  // namespace catena::test
+}  // namespace catena::test::surface_depth_test

@@ -6,45 +6,25 @@
 #include "tests/render/support/image_fixture.h"
 #include "tests/support/mesh_shapes.h"
 
-namespace catena::test {
-namespace translucent_test {
+namespace catena::test::translucent_test {
 
 using namespace catena::render;
 
 class Translucent : public ImageTest {};
 
-/// Orthographic view along y from -40; 0.25 units per pixel, centre (10, 10).
-FramePacket along_y() {
-  FramePacket packet;
-  packet.width = packet.height = 120;
-  packet.background = {0, 0, 0, 0};
-  packet.view.position = {10, -40, 10};
-  packet.view.target = {10, 10, 10};
-  packet.view.orthographic = true;
-  packet.view.height = 30;
-  return packet;
-}
+/// 0.25 units per pixel, centre (10, 10).
+FramePacket along_y() { return square_packet_along_y(120, 30); }
 
 GridPtr cube() {
   return make_grid({21, 21, 21}, [](const Vec3& p) { return p.y; });
 }
 
 MeshItem mesh_item(const mesh::TriangleSoup& soup, Color color, float opacity, std::uint32_t id = 1) {
-  auto geometry = std::make_shared<MeshGeometry>();
-  geometry->vertices = soup.vertices;
-  for (const mesh::Triangle& t : soup.triangles) geometry->triangles.insert(geometry->triangles.end(), t.begin(), t.end());
-  MeshItem item{geometry, color, id};
-  item.opacity = opacity;
-  return item;
+  return {geometry_of(soup), color, id, true, opacity};
 }
 
 SliceItem slice_at(GridPtr grid, double y, Color color, float opacity, std::uint32_t id = 1) {
-  SliceItem item;
-  item.grid = std::move(grid);
-  item.point = {0, y, 0};
-  item.normal = {0, 1, 0};
-  item.colors = {{0, color.r, color.g, color.b}};
-  item.opacity = opacity;
+  SliceItem item{std::move(grid), {0, y, 0}, {0, 1, 0}, {{0, color.r, color.g, color.b}}, opacity};
   item.id = id;
   return item;
 }
@@ -131,27 +111,19 @@ TEST_F(Translucent, AClosedMeshIsBlendedTwice) {
   expect_pixel(draw(packet, {}, "open"), 60, 60, once);
   packet.meshes[0].opacity = 1;
   const Image8 solid = draw(packet, {}, "solid");
-  const auto depth = renderer_->read_depth();
-  ASSERT_TRUE(depth);
-  EXPECT_NEAR(depth->depth[60 * 120 + 60], 55, 1e-4);
+  EXPECT_NEAR(depths()[60 * 120 + 60], 55, 1e-4);
   EXPECT_NEAR(solid.pixel(60, 60)[1], 255 * 0.65, 1);
   EXPECT_EQ(solid.pixel(60, 60)[3], 255);
   packet.meshes[0].is_clipped = false;
   draw(packet, {}, "unclipped");
-  const auto before = renderer_->read_depth();
-  ASSERT_TRUE(before);
-  EXPECT_NEAR(before->depth[60 * 120 + 60], 45, 1e-4);
+  EXPECT_NEAR(depths()[60 * 120 + 60], 45, 1e-4);
 }
 
 TEST_F(Translucent, AnOpaqueSurfaceHidesLayersBehindItAndIsVisibleThroughThoseInFront) {
   const auto red = lit_color({1, 0, 0}, light(1));
   for (const double at : {6.0, 14.0}) {
     FramePacket packet = along_y();
-    IsosurfaceItem surface;
-    surface.grid = cube();
-    surface.level = 10;
-    surface.color = {0.5f, 0.5f, 0.5f};
-    packet.isosurfaces = {surface};
+    packet.isosurfaces = {{cube(), 10, {0.5f, 0.5f, 0.5f}}};
     mesh::TriangleSoup soup;
     add_quad(soup, {0, at, 0}, {20, at, 0}, {20, at, 20}, {0, at, 20});
     packet.meshes = {mesh_item(soup, {1, 0, 0}, 0.5f)};
@@ -173,12 +145,7 @@ TEST_F(Translucent, AnOpaqueSurfaceHidesLayersBehindItAndIsVisibleThroughThoseIn
 
 TEST_F(Translucent, SlicesAndTranslucentIsosurfacesAreInOrder) {
   FramePacket packet = along_y();
-  IsosurfaceItem surface;
-  surface.grid = cube();
-  surface.level = 10;
-  surface.color = {1, 1, 1};
-  surface.opacity = 0.5f;
-  packet.isosurfaces = {surface};
+  packet.isosurfaces = {{cube(), 10, {1, 1, 1}, 0.5f}};
   packet.volumes = {volume_item(cube(), {{0, 0.02}, {20, 0.02}})};
   packet.slices = {slice_at(cube(), 15, {0, 0, 1}, 0.7f, 2), slice_at(cube(), 5, {1, 0, 0}, 0.4f, 1)};
   const auto white = lit_color({1, 1, 1}, light(1));
@@ -193,8 +160,7 @@ TEST_F(Translucent, SlicesAndTranslucentIsosurfacesAreInOrder) {
   expect_pixel(draw(packet, {}, "exact"), 60, 60, ray);
   // the fast raycast is replaced by exact rays if there are layers
   packet.isosurfaces.clear();
-  RenderSettings settings;
-  settings.fast = FastSettings{1, 1, -1, -1};
+  RenderSettings settings{.fast = FastSettings{1, 1, -1, -1}};
   Ray without;
   without.fog(0.02, 5);
   without.meet({1, 0, 0}, 0.4);
@@ -315,12 +281,7 @@ TEST_F(Translucent, AWindowShowsItsPartOfTheImage) {
   packet.height /= 2;
   packet.view.window = {0, 1, 0, 1};  // right and upper half
   const Image8 part = draw(packet, {}, "part");
-  int maximum = 0;
-  for (std::uint32_t y = 0; y < part.height; ++y)
-    for (std::uint32_t x = 0; x < part.width; ++x)
-      for (int c = 0; c < 4; ++c) maximum = std::max(maximum, std::abs(int(part.pixel(x, y)[c]) - int(whole.pixel(x + 80, y)[c])));
-  EXPECT_LE(maximum, 3);
+  EXPECT_LE(max_difference(part, whole, 80, 0), 3);
 }
 
-}  // namespace translucent_test
-}  // namespace catena::test
+}  // namespace catena::test::translucent_test

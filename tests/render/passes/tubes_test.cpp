@@ -7,15 +7,13 @@
 
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace tubes_test {
+namespace catena::test::tubes_test {
 
 using namespace catena::render;
 
 class TubesTest : public ImageTest {};
 
 TubeItem bent(double radius, const Vec3& middle, double turns, int count) {
-  TubeItem tube;
   std::vector<Vec3> points;
   std::vector<Color> colors;
   for (int k = 0; k <= count; ++k) {
@@ -23,22 +21,13 @@ TubeItem bent(double radius, const Vec3& middle, double turns, int count) {
     points.push_back(middle + 4.0 * Vec3(std::cos(angle), 0.3 * std::sin(2 * angle), std::sin(angle)));
     colors.push_back({float(0.5 + 0.5 * std::cos(angle)), 0.6f, float(0.5 + 0.5 * std::sin(angle))});
   }
-  tube.points = std::move(points);
-  tube.colors = std::move(colors);
-  tube.radius = radius;
-  tube.id = 7;
-  return tube;
+  return {std::move(points), radius, {}, std::move(colors), 7};
 }
 
 /// An open and a closed tube, a ball, two consecutive tubes and a corner, with 8, 12 and 16 sides.
 std::vector<TubeItem> some_tubes() {
-  TubeItem ball, corner;
-  ball.points = {{9, 2, 9}};
-  ball.radius = 1.5;
-  ball.color = {1, 0.5f, 0.2f};
-  corner.points = {{-9, 0, -9}, {-4, 0, -9}, {-4, 0, -4}, {-9, 0, -8}};
-  corner.radius = 0.2;
-  corner.color = {0.3f, 0.9f, 0.4f};
+  const TubeItem ball{std::vector<Vec3>{{9, 2, 9}}, 1.5, {1, 0.5f, 0.2f}},
+      corner{{{-9, 0, -9}, {-4, 0, -9}, {-4, 0, -4}, {-9, 0, -8}}, 0.2, {0.3f, 0.9f, 0.4f}};
   return {bent(0.6, {-6, 0, 5}, 0.8, 40), bent(0.4, {5, 0, -5}, 1, 60), bent(0.1, {5, 1, 5}, 1, 30), ball, corner,
           bent(0.05, {0, 0, 0}, 0.7, 30)};
 }
@@ -69,11 +58,8 @@ std::vector<MeshItem> as_meshes(const std::vector<TubeItem>& tubes) {
 TEST_F(TubesTest, MatchesTheImageOfTriangulatedTubes) {
   for (const std::uint32_t width : {192u, 1536u})
     for (const bool clipped : {false, true}) {
-      FramePacket packet;
-      packet.width = width;
-      packet.height = width * 3 / 4;
-      packet.view.position = {3, -30, 12};
-      packet.view.target = {0, 0, 0};
+      FramePacket packet = make_packet({3, -30, 12}, {0, 0, 0});
+      set_size(packet, width, width * 3 / 4);
       packet.background = {0.1f, 0.1f, 0.15f, 1};
       // clipped open, with light from the side
       if (clipped) {
@@ -87,14 +73,13 @@ TEST_F(TubesTest, MatchesTheImageOfTriangulatedTubes) {
       const Image8 a = draw(packet, {}, name), b = draw(meshes, {}, name + "-triangles");
       double sum = 0;
       int other = 0, drawn = 0;
-      for (std::uint32_t y = 0; y < a.height; ++y)
-        for (std::uint32_t x = 0; x < a.width; ++x) {
-          int maximum = 0;
-          for (int c = 0; c < 3; ++c) maximum = std::max(maximum, std::abs(a.pixel(x, y)[c] - b.pixel(x, y)[c]));
-          sum += maximum;
-          other += maximum > 50;
-          drawn += std::abs(b.pixel(x, y)[0] - 26) > 3;
-        }
+      for (const auto& [x, y] : pixels_of(a)) {
+        int maximum = 0;
+        for (int c = 0; c < 3; ++c) maximum = std::max(maximum, std::abs(a.pixel(x, y)[c] - b.pixel(x, y)[c]));
+        sum += maximum;
+        other += maximum > 50;
+        drawn += std::abs(b.pixel(x, y)[0] - 26) > 3;
+      }
       EXPECT_GT(drawn, width * width / 40) << name;
       EXPECT_LE(other, drawn / 50) << name << ": at outlines a pixel may fall to the other side";
       EXPECT_LE(sum / drawn, width < 1000 ? 4 : 2) << name;
@@ -102,10 +87,8 @@ TEST_F(TubesTest, MatchesTheImageOfTriangulatedTubes) {
 }
 
 TEST_F(TubesTest, APointTakesLessThanAHundredBytesOfDeviceMemory) {
-  FramePacket packet;
-  packet.width = 32;
-  packet.height = 24;
-  packet.view.position = {0, -60, 0};
+  FramePacket packet = make_packet({0, -60, 0}, {0, 0, 0});
+  set_size(packet, 32, 24);
   const auto bytes = [&](int tubes) {
     packet.tubes.clear();
     for (int k = 0; k < tubes; ++k) packet.tubes.push_back(bent(0.01, {0.01 * k, 0, 0}, 0.9, 1000));
@@ -117,5 +100,4 @@ TEST_F(TubesTest, APointTakesLessThanAHundredBytesOfDeviceMemory) {
   EXPECT_LT(double(more - some) / (200 * 1000), 100) << "triangles take more than 500";
 }
 
-}  // namespace tubes_test
-}  // namespace catena::test
+}  // namespace catena::test::tubes_test

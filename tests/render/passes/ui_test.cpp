@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // UI items over a window's image, against known pixels within 1/255.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 
@@ -11,8 +9,7 @@
 #include "tests/support/resident.h"
 #include "tests/support/support.h"
 
-namespace catena::test {
-namespace ui_test {
+namespace catena::test::ui_test {
 
 using namespace catena::render;
 using Color = std::array<int, 3>;
@@ -34,6 +31,11 @@ void add_rectangle(UiItems& ui, std::array<float, 4> box, std::uint32_t color, s
   ui.indices.insert(ui.indices.end(), {0, 1, 2, 0, 2, 3});
 }
 
+/// A texture whose bytes are all `value`.
+std::shared_ptr<UiTexture> even_texture(std::uint32_t side, std::uint8_t value) {
+  return std::make_shared<UiTexture>(UiTexture{side, side, std::vector<std::uint8_t>(4 * side * side, value)});
+}
+
 void expect_pixel(const Image8& p, std::uint32_t x, std::uint32_t y, const Color& want) {
   for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(p.pixel(x, y)[c], want[c], 1) << "channel " << c << " at " << x << " " << y;
   EXPECT_EQ(p.pixel(x, y)[3], 255) << x << " " << y;
@@ -44,20 +46,16 @@ class Ui : public ImageTest {
   /// Draws an image of one colour.
   void draw_plain(std::uint32_t width, std::uint32_t height, const Color& color) {
     FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
-    packet.width = width;
-    packet.height = height;
+    set_size(packet, width, height);
     packet.background = {float(color[0]) / 255, float(color[1]) / 255, float(color[2]) / 255, 1};
     ASSERT_TRUE(renderer_->draw(packet));
   }
   /// A ball on a dark background.
   Image8 draw_ball(std::uint32_t width, std::uint32_t height) {
     FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
-    packet.width = width;
-    packet.height = height;
+    set_size(packet, width, height);
     packet.background = {0.1f, 0.1f, 0.2f, 1};
-    CursorItem cursor;
-    cursor.radius = 1;
-    packet.cursors = {cursor};
+    packet.cursors = {cursor_item({0, 0, 0}, 1)};
     return draw(packet);
   }
   Image8 paint(std::uint32_t width, std::uint32_t height, const UiItems& ui, const std::string& name = "") {
@@ -65,12 +63,7 @@ class Ui : public ImageTest {
     EXPECT_TRUE(painted) << (painted ? "" : painted.error().message);
     auto image = renderer_->read_back_window();
     EXPECT_TRUE(image);
-    if (!name.empty()) {
-      const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-      const std::string folder = test::binary_dir() + "/pictures";
-      std::filesystem::create_directories(folder);
-      EXPECT_TRUE(write_png(folder + "/Ui." + test->name() + "." + name + ".png", *image, false));
-    }
+    if (!name.empty()) save_picture(*image, name, false);
     return *image;
   }
 };
@@ -262,31 +255,27 @@ TEST_F(Ui, WindowsOfEverySizeArePainted) {
 
 TEST_F(Ui, PaintsOverPackedEyesAndFloatImages) {
   FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
-  packet.width = 20;
-  packet.height = 16;
+  set_size(packet, 20, 16);
   packet.background = {0.2f, 0.4f, 0.6f, 1};
   packet.eyes = {packet.view, packet.view};
   packet.packing = Packing::side_by_side;
   ASSERT_TRUE(renderer_->draw(packet));
   UiItems ui;
   add_rectangle(ui, {30, 2, 38, 10}, rgba(255, 0, 255));
-  Image8 p = paint(40, 16, ui);
-  expect_pixel(p, 35, 5, {255, 0, 255});
-  expect_pixel(p, 5, 5, {51, 102, 153});
+  const auto expect_painted = [&] {
+    const Image8 p = paint(40, 16, ui);
+    expect_pixel(p, 35, 5, {255, 0, 255});
+    expect_pixel(p, 5, 5, {51, 102, 153});
+  };
+  expect_painted();
   packet.eyes.clear();
-  RenderSettings settings;
-  settings.float_image = true;
+  RenderSettings settings{.float_image = true, .fast = {}};
   ASSERT_TRUE(renderer_->draw(packet, settings));
-  p = paint(40, 16, ui);
-  expect_pixel(p, 35, 5, {255, 0, 255});
-  expect_pixel(p, 5, 5, {51, 102, 153});
+  expect_painted();
 }
 
 TEST_F(Ui, ATextureIsUploadedOnceAndFreedWhenIdle) {
   draw_plain(32, 32, {0, 0, 0});
-  const auto made = [](std::uint8_t grey) {
-    return std::make_shared<UiTexture>(UiTexture{64, 64, std::vector<std::uint8_t>(64 * 64 * 4, grey)});
-  };
   const auto with = [](const std::shared_ptr<const UiTexture>& texture) {
     UiItems ui;
     add_rectangle(ui, {0, 0, 32, 32}, rgba(255, 255, 255), kAll, texture);
@@ -294,7 +283,7 @@ TEST_F(Ui, ATextureIsUploadedOnceAndFreedWhenIdle) {
   };
   const auto uploads = [&] { return renderer_->stats().uploads; };
   const auto held = [&] { return renderer_->device().counters().allocated_bytes; };
-  auto reused = made(255);
+  auto reused = even_texture(64, 255);
   paint(32, 32, with(reused));
   const std::uint64_t uploads_before = uploads(), bytes_before = held();
   for (int k = 0; k < 20; ++k) paint(32, 32, with(reused));
@@ -303,7 +292,7 @@ TEST_F(Ui, ATextureIsUploadedOnceAndFreedWhenIdle) {
   // other textures are created and freed, possibly at the same address
   for (int k = 0; k < 40; ++k) {
     UiItems ui = with(reused);
-    add_rectangle(ui, {0, 0, 16, 16}, rgba(255, 0, 0), kAll, made(std::uint8_t(100 + k)));
+    add_rectangle(ui, {0, 0, 16, 16}, rgba(255, 0, 0), kAll, even_texture(64, std::uint8_t(100 + k)));
     const Image8 p = paint(32, 32, ui);
     const double alpha = (100 + k) / 255.0;
     EXPECT_NEAR(p.pixel(4, 4)[0], 255 * (alpha * alpha + 1 - alpha), 1.5);
@@ -315,32 +304,28 @@ TEST_F(Ui, ATextureIsUploadedOnceAndFreedWhenIdle) {
 }
 
 TEST_F(Ui, AThousandPaintsHoldNoMoreMemory) {
-  vk::DeviceOptions options;  // without the validation layer, which allocates memory of its own
-  options.device_filter = test_device();
-  auto renderer = Renderer::create(options);
-  ASSERT_TRUE(renderer) << renderer.error().message;
+  const auto renderer = make_renderer(0, false);  // the validation layer allocates memory of its own
+  ASSERT_TRUE(renderer);
   FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
   packet.width = packet.height = 16;
-  ASSERT_TRUE((*renderer)->draw(packet));
+  ASSERT_TRUE(renderer->draw(packet));
   const auto paint_frames = [&](int from, int to) {
     for (int k = from; k < to; ++k) {
       UiItems ui;
       for (int q = 0; q < 20 + k % 50; ++q) add_rectangle(ui, {0, 0, float(q % 30), 20}, rgba(1, 2, 3, 100));
-      if (k % 10 == 0)
-        add_rectangle(ui, {0, 0, 9, 9}, rgba(9, 9, 9), kAll,
-                      std::make_shared<UiTexture>(UiTexture{32, 32, std::vector<std::uint8_t>(32 * 32 * 4, 9)}));
+      if (k % 10 == 0) add_rectangle(ui, {0, 0, 9, 9}, rgba(9, 9, 9), kAll, even_texture(32, 9));
       const auto size = std::uint32_t(k % 100 < 5 ? 48 : 32);
-      ASSERT_TRUE((*renderer)->paint_window(size, size, ui));
+      ASSERT_TRUE(renderer->paint_window(size, size, ui));
     }
   };
   const auto settled = [&] { paint_frames(41, 50); };
   paint_frames(0, 200);
   settled();
-  const std::uint64_t device_before = (*renderer)->device().counters().allocated_bytes, host_before = resident_bytes();
+  const std::uint64_t device_before = renderer->device().counters().allocated_bytes, host_before = resident_bytes();
   paint_frames(200, 1200);
   settled();
-  EXPECT_EQ((*renderer)->device().counters().allocated_bytes, device_before);
-  EXPECT_EQ((*renderer)->device().retired_count(), 0u);
+  EXPECT_EQ(renderer->device().counters().allocated_bytes, device_before);
+  EXPECT_EQ(renderer->device().retired_count(), 0u);
   if (kResidentIsReliable) {
     EXPECT_LT(resident_bytes(), host_before + 4'000'000);
   }
@@ -353,8 +338,7 @@ TEST(UiFailures, OutOfMemoryAndALostDeviceAreReportedAndTheImageIsKept) {
   packet.width = packet.height = 16;
   packet.background = {1, 1, 1, 1};
   UiItems ui;
-  add_rectangle(ui, {0, 0, 9, 9}, rgba(9, 9, 9), kAll,
-                std::make_shared<UiTexture>(UiTexture{8, 8, std::vector<std::uint8_t>(8 * 8 * 4, 255)}));
+  add_rectangle(ui, {0, 0, 9, 9}, rgba(9, 9, 9), kAll, even_texture(8, 255));
   const auto start = [&] {
     auto renderer = Renderer::create(failing_options(failing));
     EXPECT_TRUE(renderer);
@@ -398,33 +382,26 @@ TEST(UiFailures, OutOfMemoryAndALostDeviceAreReportedAndTheImageIsKept) {
 }
 
 TEST(UiFailures, GridsAreFreedToMakeRoomForTheWindow) {
-  use_lavapipe();
-  vk::DeviceOptions options;
-  options.validation = true;
-  options.device_filter = test_device();
-  options.memory_budget_bytes = 4'000'000;
-  auto renderer = Renderer::create(options);
+  const auto renderer = make_renderer(4'000'000);
   ASSERT_TRUE(renderer);
   FramePacket packet = make_packet({200, -250, 200}, {48, 48, 48});
-  packet.width = 64;
-  packet.height = 48;
+  set_size(packet, 64, 48);
   const auto grid = make_grid({96, 96, 96}, [](const Vec3& p) { return norm(p - Vec3(48.0)) / 84; });
   packet.volumes = {volume_item(grid, {{0, 0.05}, {1, 0}})};
-  ASSERT_TRUE((*renderer)->draw(packet));
-  const std::uint64_t left = (*renderer)->device().memory_available();
-  ASSERT_EQ((*renderer)->stats().resident_grids, 1u);
+  ASSERT_TRUE(renderer->draw(packet));
+  const std::uint64_t left = renderer->device().memory_available();
+  ASSERT_EQ(renderer->stats().resident_grids, 1u);
   ASSERT_LT(left, 2'500'000u);
   UiItems ui;
   add_rectangle(ui, {0, 0, 9, 9}, rgba(9, 99, 9));
-  const Outcome painted = (*renderer)->paint_window(900, 800, ui);  // 2.9 MB
+  const Outcome painted = renderer->paint_window(900, 800, ui);  // 2.9 MB
   ASSERT_TRUE(painted) << painted.error().message;
-  EXPECT_EQ((*renderer)->stats().resident_grids, 0u);
+  EXPECT_EQ(renderer->stats().resident_grids, 0u);
   // the image is kept, and the next image and window are drawn
-  ASSERT_TRUE((*renderer)->read_back());
-  ASSERT_TRUE((*renderer)->draw(packet));
-  ASSERT_TRUE((*renderer)->paint_window(900, 800, ui));
-  for (const std::string& text : (*renderer)->validation_texts()) ADD_FAILURE() << text;
+  ASSERT_TRUE(renderer->read_back());
+  ASSERT_TRUE(renderer->draw(packet));
+  ASSERT_TRUE(renderer->paint_window(900, 800, ui));
+  for (const std::string& text : renderer->validation_texts()) ADD_FAILURE() << text;
 }
 
-}  // namespace ui_test
-}  // namespace catena::test
+}  // namespace catena::test::ui_test

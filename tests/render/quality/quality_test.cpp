@@ -14,8 +14,7 @@
 #include "render/vk/timestamp_query.h"
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace quality_test {
+namespace catena::test::quality_test {
 
 using namespace catena::render;
 
@@ -35,8 +34,7 @@ class Quality : public ImageTest {
   /// A few threads one voxel wide.
   static FramePacket threads() {
     FramePacket packet = scene();
-    packet.width = 320;
-    packet.height = 240;
+    set_size(packet, 320, 240);
     const auto grid = make_grid({96, 96, 96}, [](const Vec3& p) {
       const double a = std::hypot(p.x - 40 - 0.2 * p.z, p.y - 30 - 0.1 * p.z), b = std::hypot(p.y - 70 + 0.3 * p.x, p.z - 60 + 0.1 * p.x);
       return 0.2 + 0.8 * std::max(std::exp(-0.5 * a * a), std::exp(-0.5 * b * b));
@@ -44,6 +42,14 @@ class Quality : public ImageTest {
     packet.volumes = {volume_item(grid, {{0, 0}, {0.3, 0}, {1, 0.8}})};
     packet.view = View{{250, -170, 140}, {47.5, 47.5, 47.5}, {0, 0, 1}, 32};
     return packet;
+  }
+  QualityChoice chosen(const FramePacket& packet, const QualityGoal& goal, const RenderTimeFn& timer = nullptr) {
+    const auto choice = choose_quality(*renderer_, packet, goal, nullptr, timer);
+    EXPECT_TRUE(choice);
+    return choice.value();
+  }
+  QualityChoice for_error(const FramePacket& packet, double error, bool once = false) {
+    return chosen(packet, {QualityGoal::Kind::error, error, once});
   }
   /// True RMS error over covered pixels; both images are drawn without a background.
   double true_rmse(FramePacket packet, const RenderSettings& settings) {
@@ -64,8 +70,7 @@ TEST_F(Quality, TheEstimateIsAtOrSlightlyAboveTheTrueError) {
       FramePacket packet = scene(shade);
       const double turn = in(0, 6.28), height = in(-90, 90), distance = in(110, 400);
       packet.view.position = packet.view.target + Vec3(distance * std::cos(turn), distance * std::sin(turn), height);
-      RenderSettings settings;
-      settings.fast = FastSettings{in(1, 5), k % 2 == 0 ? 2u : 4u, -1, -1};
+      RenderSettings settings{.fast = FastSettings{in(1, 5), k % 2 == 0 ? 2u : 4u, -1, -1}};
       settings.fast->smooth_gradients = shade;
       const auto estimated = estimate_rmse(*renderer_, packet, settings);
       ASSERT_TRUE(estimated);
@@ -82,14 +87,13 @@ TEST_F(Quality, AnErrorGoalIsReachedAndALooserOneIsCoarser) {
   const FramePacket packet = scene();
   double last_step = 0;
   for (const double e : {0.7, 1.5, 5.0}) {
-    const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, e});
-    ASSERT_TRUE(choice);
-    EXPECT_TRUE(choice->goal_reached);
-    EXPECT_LE(choice->estimated_rmse, e);
-    EXPECT_LT(true_rmse(packet, choice->settings), 1.05 * e) << describe(choice->settings);
-    ASSERT_TRUE(choice->settings.fast);
-    EXPECT_GE(choice->settings.fast->step_voxels, last_step);
-    last_step = choice->settings.fast->step_voxels;
+    const QualityChoice choice = for_error(packet, e);
+    EXPECT_TRUE(choice.goal_reached);
+    EXPECT_LE(choice.estimated_rmse, e);
+    EXPECT_LT(true_rmse(packet, choice.settings), 1.05 * e) << describe(choice.settings);
+    ASSERT_TRUE(choice.settings.fast);
+    EXPECT_GE(choice.settings.fast->step_voxels, last_step);
+    last_step = choice.settings.fast->step_voxels;
   }
   EXPECT_GT(last_step, 1);
 }
@@ -117,16 +121,14 @@ TEST_F(Quality, TheGpuClockTimesOnlyTheGpusWork) {
 /// A thin shell in a small image: all error is in a few pixels, which a sparse lattice misses.
 TEST_F(Quality, SmallImagesOfThinFeaturesAreMeasured) {
   FramePacket packet = scene();
-  packet.width = 64;
-  packet.height = 48;
+  set_size(packet, 64, 48);
   packet.background = {0.9f, 0.5f, 0.2f, 1};
   packet.volumes[0].transfer.extinctions = {{0.60, 0}, {0.65, 0.4}, {0.70, 0}};
   for (const auto& [e, once] : {std::pair{0.5, false}, {1.0, false}, {0.5, true}, {1.0, true}}) {
-    const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, e, once});
-    ASSERT_TRUE(choice);
-    const double truth = true_rmse(packet, choice->settings);
-    EXPECT_LT(truth, e) << describe(choice->settings);
-    EXPECT_NEAR(choice->estimated_rmse, truth, 0.3 * e) << describe(choice->settings);
+    const QualityChoice choice = for_error(packet, e, once);
+    const double truth = true_rmse(packet, choice.settings);
+    EXPECT_LT(truth, e) << describe(choice.settings);
+    EXPECT_NEAR(choice.estimated_rmse, truth, 0.3 * e) << describe(choice.settings);
   }
 }
 
@@ -136,23 +138,20 @@ TEST_F(Quality, ThinFeaturesAreKept) {
   FramePacket alone = packet;
   alone.background[3] = 0;
   const Image8 converged = draw(alone, reference_settings(), "converged");
-  const auto once = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2, true});
-  const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2});
-  for (const auto* one : {&choice, &once}) {
-    ASSERT_TRUE(*one);
-    const ImageError error = measure_error(draw(alone, (*one)->settings, "chosen"), converged);
+  const QualityChoice once = for_error(packet, 2, true);
+  const QualityChoice choice = for_error(packet, 2);
+  for (const QualityChoice& one : {choice, once}) {
+    const ImageError error = measure_error(draw(alone, one.settings, "chosen"), converged);
     EXPECT_GE(error.thin_feature_count, 1);
-    EXPECT_GT(error.min_thin_retained, 0.6) << describe((*one)->settings);
+    EXPECT_GT(error.min_thin_retained, 0.6) << describe(one.settings);
     EXPECT_LE(error.rmse, 2.2);
   }
-  RenderSettings coarse;
-  coarse.fast = FastSettings{1, 4, -1, -1};
+  RenderSettings coarse{.fast = FastSettings{1, 4, -1, -1}};
   EXPECT_LT(measure_error(draw(alone, coarse, "coarse"), converged).min_thin_retained, 0.5);  // coarse settings lose the threads
   // a stricter goal does not cost less
-  const auto stricter = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 1});
-  ASSERT_TRUE(stricter);
-  EXPECT_LE(relative_cost(choice->settings, false), 1.01 * relative_cost(stricter->settings, false))
-      << describe(choice->settings) << "; " << describe(stricter->settings);
+  const QualityChoice stricter = for_error(packet, 1);
+  EXPECT_LE(relative_cost(choice.settings, false), 1.01 * relative_cost(stricter.settings, false))
+      << describe(choice.settings) << "; " << describe(stricter.settings);
 }
 
 /// Black smoke over black hides errors of its opacity.
@@ -161,15 +160,14 @@ TEST_F(Quality, TransparentImagesAreMeasuredOverAnyBackground) {
   packet.background = {0, 0, 0, 0};
   packet.volumes[0].transfer.colors = {{0, 0, 0, 0}, {1, 0, 0, 0}};
   packet.volumes[0].transfer.extinctions = {{0, 0}, {0.60, 0}, {0.65, 0.4}, {0.70, 0}};
-  const auto once = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2, true});
-  const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2});
+  const QualityChoice once = for_error(packet, 2, true);
+  const QualityChoice choice = for_error(packet, 2);
   const Image8 converged = draw(packet, reference_settings());
   const auto over_white = [&](const RenderSettings& settings) { return measure_error(draw(packet, settings), converged, {1, 1, 1}).rmse; };
   EXPECT_GT(over_white(fast_level(8, 4, -1, -1)), 4);  // coarse settings have a large error over white
-  for (const auto* one : {&choice, &once}) {
-    ASSERT_TRUE(*one);
-    EXPECT_LT(over_white((*one)->settings), 2.1) << describe((*one)->settings);
-    EXPECT_GE(1.05 * (*one)->estimated_rmse, over_white((*one)->settings)) << describe((*one)->settings);
+  for (const QualityChoice& one : {choice, once}) {
+    EXPECT_LT(over_white(one.settings), 2.1) << describe(one.settings);
+    EXPECT_GE(1.05 * one.estimated_rmse, over_white(one.settings)) << describe(one.settings);
   }
 }
 
@@ -178,14 +176,13 @@ TEST_F(Quality, ASingleImageNeedsNoSearch) {
   for (const bool shaded : {false, true}) {
     const FramePacket packet = scene(shaded);
     for (const double e : {0.7, 2.0, 5.0}) {
-      const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, e, true});
-      ASSERT_TRUE(choice);
-      EXPECT_TRUE(choice->goal_reached);
-      EXPECT_LE(choice->images_rendered, 1);
-      EXPECT_LE(choice->estimated_rmse, e);
-      const double truth = true_rmse(packet, choice->settings);
-      EXPECT_LT(truth, 1.05 * choice->estimated_rmse + 0.05) << describe(choice->settings);
-      EXPECT_GT(truth, 0.4 * choice->estimated_rmse - kMinReportedRmse) << describe(choice->settings);
+      const QualityChoice choice = for_error(packet, e, true);
+      EXPECT_TRUE(choice.goal_reached);
+      EXPECT_LE(choice.images_rendered, 1);
+      EXPECT_LE(choice.estimated_rmse, e);
+      const double truth = true_rmse(packet, choice.settings);
+      EXPECT_LT(truth, 1.05 * choice.estimated_rmse + 0.05) << describe(choice.settings);
+      EXPECT_GT(truth, 0.4 * choice.estimated_rmse - kMinReportedRmse) << describe(choice.settings);
     }
   }
 }
@@ -220,17 +217,15 @@ TEST_F(Quality, SearchesReportTheirProgress) {
 TEST_F(Quality, SteepTransferFunctionsAreMeasuredAgainstConvergedRays) {
   FramePacket packet = scene(true);
   packet.volumes[0].transfer.extinctions = {{0, 0}, {0.5, 0}, {0.51, 3}, {1, 4}};
-  const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2});
-  const auto once = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2, true});
-  ASSERT_TRUE(choice);
-  ASSERT_TRUE(once);
-  EXPECT_TRUE(choice->settings.fast) << describe(choice->settings);
+  const QualityChoice choice = for_error(packet, 2);
+  const QualityChoice once = for_error(packet, 2, true);
+  EXPECT_TRUE(choice.settings.fast) << describe(choice.settings);
   packet.background[3] = 0;
   RenderSettings converged = reference_settings();
   converged.step_voxels = 0.02;
   const Image8 truth = draw(packet, converged);
-  EXPECT_LE(measure_error(draw(packet, choice->settings), truth).rmse, 2.2) << describe(choice->settings);
-  EXPECT_LE(measure_error(draw(packet, once->settings), truth).rmse, 2.2) << describe(once->settings);
+  EXPECT_LE(measure_error(draw(packet, choice.settings), truth).rmse, 2.2) << describe(choice.settings);
+  EXPECT_LE(measure_error(draw(packet, once.settings), truth).rmse, 2.2) << describe(once.settings);
 }
 
 /// The gradient of the cell costs half of central differences and is as accurate where the field is smooth.
@@ -242,31 +237,28 @@ TEST_F(Quality, CellGradientsAreUsedWhereTheyAreAccurateEnough) {
       {64, 60, 56}, [&](const Vec3& p) { return 1 - length(p - Vec3(31.5, 29.5, 27.5)) / 40 + 0.03 * double(random()) / 4294967296.0; });
   rough.volumes[0].transfer.extinctions = {{0, 0}, {0.5, 0}, {0.6, 0.5}, {1, 0.5}};
   for (const FramePacket& packet : {smooth, rough}) {
-    const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 3});
-    ASSERT_TRUE(choice);
-    ASSERT_TRUE(choice->settings.fast);
-    EXPECT_EQ(choice->settings.fast->smooth_gradients, packet.volumes[0].grid == rough.volumes[0].grid) << describe(choice->settings);
-    EXPECT_LT(true_rmse(packet, choice->settings), 1.05 * 3) << describe(choice->settings);
+    const QualityChoice choice = for_error(packet, 3);
+    ASSERT_TRUE(choice.settings.fast);
+    EXPECT_EQ(choice.settings.fast->smooth_gradients, packet.volumes[0].grid == rough.volumes[0].grid) << describe(choice.settings);
+    EXPECT_LT(true_rmse(packet, choice.settings), 1.05 * 3) << describe(choice.settings);
   }
 }
 
 TEST_F(Quality, ATinyErrorFallsBackToExactRays) {
-  const auto choice = choose_quality(*renderer_, scene(true), {QualityGoal::Kind::error, 0.02});
-  ASSERT_TRUE(choice);
-  EXPECT_FALSE(choice->settings.fast);
-  EXPECT_LT(choice->settings.step_voxels, 1);
+  const QualityChoice choice = for_error(scene(true), 0.02);
+  EXPECT_FALSE(choice.settings.fast);
+  EXPECT_LT(choice.settings.step_voxels, 1);
 }
 
 TEST_F(Quality, ATimeGoalTakesTheBestSettingsWithinIt) {
   const FramePacket packet = scene();
-  const auto plenty = choose_quality(*renderer_, packet, {QualityGoal::Kind::time, 1e6});
-  const auto none = choose_quality(*renderer_, packet, {QualityGoal::Kind::time, 1e-6});
-  ASSERT_TRUE(plenty && none);
-  EXPECT_TRUE(plenty->goal_reached);
-  EXPECT_FALSE(none->goal_reached);
-  EXPECT_EQ(none->images_rendered, 1);
-  EXPECT_LT(plenty->estimated_rmse, 0.6);
-  EXPECT_LT(plenty->estimated_rmse, none->estimated_rmse);
+  const QualityChoice plenty = chosen(packet, {QualityGoal::Kind::time, 1e6});
+  const QualityChoice none = chosen(packet, {QualityGoal::Kind::time, 1e-6});
+  EXPECT_TRUE(plenty.goal_reached);
+  EXPECT_FALSE(none.goal_reached);
+  EXPECT_EQ(none.images_rendered, 1);
+  EXPECT_LT(plenty.estimated_rmse, 0.6);
+  EXPECT_LT(plenty.estimated_rmse, none.estimated_rmse);
 }
 
 TEST_F(Quality, ALongerTimeGoalIsNeverWorse) {
@@ -276,13 +268,12 @@ TEST_F(Quality, ALongerTimeGoalIsNeverWorse) {
     const RenderTimeFn timer = [&](const RenderSettings& s) -> Result<double> { return 100 * relative_cost(s, shade); };
     double last = 1e9;
     for (const double ms : {8.0, 14.0, 30.0, 400.0}) {
-      const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::time, ms}, nullptr, timer);
-      ASSERT_TRUE(choice);
-      EXPECT_TRUE(choice->goal_reached) << ms;
-      EXPECT_LE(choice->expected_ms, ms);
-      EXPECT_DOUBLE_EQ(choice->expected_ms, 100 * relative_cost(choice->settings, shade));
-      EXPECT_LE(choice->estimated_rmse, last) << ms;
-      last = choice->estimated_rmse;
+      const QualityChoice choice = chosen(packet, {QualityGoal::Kind::time, ms}, timer);
+      EXPECT_TRUE(choice.goal_reached) << ms;
+      EXPECT_LE(choice.expected_ms, ms);
+      EXPECT_DOUBLE_EQ(choice.expected_ms, 100 * relative_cost(choice.settings, shade));
+      EXPECT_LE(choice.estimated_rmse, last) << ms;
+      last = choice.estimated_rmse;
     }
     EXPECT_LT(last, 0.8);
   }
@@ -295,14 +286,13 @@ TEST_F(Quality, RemainingTimeIsSpentOnRaysPerPixel) {
     if (s.fast->spacing == 1) return 30 + 20 / s.fast->step_voxels;
     return s.fast->refine_full_255 >= 0 ? 200.0 : 20.0;
   };
-  const auto choice = choose_quality(*renderer_, threads(), {QualityGoal::Kind::time, 55}, nullptr, timer);
-  ASSERT_TRUE(choice);
-  ASSERT_TRUE(choice->settings.fast);
-  EXPECT_EQ(choice->settings.fast->spacing, 1U) << describe(choice->settings);
-  EXPECT_EQ(choice->settings.fast->step_voxels, 1) << describe(choice->settings);
+  const QualityChoice choice = chosen(threads(), {QualityGoal::Kind::time, 55}, timer);
+  ASSERT_TRUE(choice.settings.fast);
+  EXPECT_EQ(choice.settings.fast->spacing, 1U) << describe(choice.settings);
+  EXPECT_EQ(choice.settings.fast->step_voxels, 1) << describe(choice.settings);
   const auto coarse = estimate_rmse(*renderer_, threads(), fast_level(1, 2, 0, -1));
   ASSERT_TRUE(coarse);
-  EXPECT_LT(choice->estimated_rmse, 0.5 * *coarse);
+  EXPECT_LT(choice.estimated_rmse, 0.5 * *coarse);
 }
 
 TEST(QualityWithin, TheSmallestErrorWithinTheTimeElseTheFastest) {
@@ -316,10 +306,8 @@ TEST(QualityWithin, TheSmallestErrorWithinTheTimeElseTheFastest) {
 TEST_F(Quality, ScenesWithoutVolumesHaveZeroError) {
   FramePacket packet = make_packet({20, -20, 20}, {4, 4, 4});
   packet.isosurfaces = {{make_grid({8, 8, 8}, [](const Vec3& p) { return p.x; }), 3.5, {1, 1, 1}, 1}};
-  const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 0.5});
-  ASSERT_TRUE(choice);
-  EXPECT_EQ(choice->estimated_rmse, 0);
+  const QualityChoice choice = for_error(packet, 0.5);
+  EXPECT_EQ(choice.estimated_rmse, 0);
 }
 
-}  // namespace quality_test
-}  // namespace catena::test
+}  // namespace catena::test::quality_test

@@ -4,8 +4,7 @@
 
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::render {
-namespace ray_length_test {
+namespace catena::render::ray_length_test {
 
 constexpr int kEdge = 64;
 
@@ -15,9 +14,8 @@ RayPathLength path_length_of(const std::vector<std::array<double, 2>>& extinctio
   const auto grid = test::make_grid(
       {n, n, n}, [](const Vec3& index) { return index.y; }, field::Mapping::from_linear(Mat3(0.5), Vec3(0)));
   FramePacket packet = test::make_packet({16, -100, 16}, {16, 16, 16});
-  packet.width = packet.height = 256;
-  packet.view.orthographic = true;
-  packet.view.height = 31;
+  test::set_size(packet, 256, 256);
+  test::set_orthographic(packet, 31);
   packet.clip_planes = std::move(clip);
   packet.volumes.push_back(test::volume_item(grid, extinctions));
   return measure_ray_path_length(packet);
@@ -37,5 +35,4 @@ TEST(RayLength, MatchesTheMarchedLength) {
   EXPECT_NEAR(path_length_of({{0, 0.001}, {64, 0.001}}, {{{0, 24, 0}, {0, 1, 0}}}).marched / kRays, kEdge / 4., 3);
 }
 
-}  // namespace ray_length_test
-}  // namespace catena::render
+}  // namespace catena::render::ray_length_test

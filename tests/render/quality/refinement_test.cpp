@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <map>
 
-namespace catena::test {
-namespace refinement_test {
+namespace catena::test::refinement_test {
 
 using namespace catena::render;
 
@@ -163,5 +162,4 @@ TEST(Refinement, WithoutTheFastRaycastStepsAreRefined) {
   EXPECT_EQ(steps, (std::vector<double>{2, 1, 0.5}));
 }
 
-}  // namespace refinement_test
-}  // namespace catena::test
+}  // namespace catena::test::refinement_test

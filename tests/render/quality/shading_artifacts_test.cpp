@@ -6,8 +6,7 @@
 #include "render/quality/refinement.h"
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace shading_artifacts_test {
+namespace catena::test::shading_artifacts_test {
 
 using namespace catena::render;
 
@@ -19,8 +18,7 @@ class ShadingArtifacts : public ImageTest {
     const int n = int(nodes);
     const auto grid = make_grid({n, n, n}, [&](const Vec3& p) { return 0.5 + (radius - norm(p - Vec3(middle, middle, middle))) / nodes; });
     FramePacket packet = make_packet(Vec3(2.1, -1.7, 1.3) * double(nodes), {middle, middle, middle}, 32);
-    packet.width = 320;
-    packet.height = 240;
+    set_size(packet, 320, 240);
     packet.background = {0, 0, 0, 1};
     VolumeItem item = volume_item(grid, {{0, 0}, {0.47, 0}, {0.53, 40. / nodes}, {1, 40. / nodes}});
     item.is_shaded = shade;
@@ -59,5 +57,4 @@ TEST_F(ShadingArtifacts, OfUnshadedStepsAtEqualCostTheShortestIsTaken) {
   EXPECT_LE(choice.settings.fast->step_voxels, 3) << describe(choice.settings);
 }
 
-}  // namespace shading_artifacts_test
-}  // namespace catena::test
+}  // namespace catena::test::shading_artifacts_test

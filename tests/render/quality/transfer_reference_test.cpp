@@ -13,8 +13,7 @@
 #include "render/quality/quality.h"
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace transfer_reference_test {
+namespace catena::test::transfer_reference_test {
 
 using namespace catena::render;
 using Rows2 = std::vector<std::array<double, 2>>;
@@ -61,31 +60,25 @@ double trilinear(const Case& c, const Vec3& p) {
 
 /// Image with straight alpha and 8 bits per channel, as the renderer's.
 Image8 marched(const Case& c, const FramePacket& packet) {
-  Bounds none;
-  const Camera camera = make_camera(packet.view, packet.width, packet.height, none);
+  const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
   Image8 rendered{packet.width, packet.height, {}};
-  for (std::uint32_t y = 0; y < packet.height; ++y)
-    for (std::uint32_t x = 0; x < packet.width; ++x) {
-      const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
-      const Vec3 way = (1 / norm(ray.direction)) * ray.direction;
-      double enter = 0, leave = HUGE_VAL, through = 1;
-      for (int a = 0; a < 3; ++a) {
-        const double s = (0 - ray.origin[a]) / way[a], t = (kNodes - 1 - ray.origin[a]) / way[a];
-        enter = std::max(enter, std::min(s, t));
-        leave = std::min(leave, std::max(s, t));
-      }
-      const int count = leave > enter ? int(std::ceil((leave - enter) / kStep)) : 0;
-      double sum[3] = {};
-      for (int k = 0; k < count && through > 1e-6; ++k) {
-        const double h = (leave - enter) / count, v = trilinear(c, ray.origin + (enter + (k + 0.5) * h) * way);
-        const double after = through * std::exp(-h * between(c.extinctions, v, 1, c.log));
-        for (std::size_t b = 0; b < 3; ++b) sum[b] += (through - after) * between(c.colors, v, b + 1, c.log);
-        through = after;
-      }
-      for (const double component : sum)
-        rendered.rgba.push_back(through < 1 ? std::uint8_t(std::lround(255 * component / (1 - through))) : std::uint8_t(0));
-      rendered.rgba.push_back(std::uint8_t(std::lround(255 * (1 - through))));
+  for (const auto& [x, y] : pixels_of(packet)) {
+    const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
+    const Vec3 way = (1 / norm(ray.direction)) * ray.direction;
+    const auto [enter, leave] = ray_interval(*packet.volumes[0].grid, ray.origin, way);
+    double through = 1;
+    const int count = leave > enter ? int(std::ceil((leave - enter) / kStep)) : 0;
+    double sum[3] = {};
+    for (int k = 0; k < count && through > 1e-6; ++k) {
+      const double h = (leave - enter) / count, v = trilinear(c, ray.origin + (enter + (k + 0.5) * h) * way);
+      const double after = through * std::exp(-h * between(c.extinctions, v, 1, c.log));
+      for (std::size_t b = 0; b < 3; ++b) sum[b] += (through - after) * between(c.colors, v, b + 1, c.log);
+      through = after;
     }
+    for (const double component : sum)
+      rendered.rgba.push_back(through < 1 ? std::uint8_t(std::lround(255 * component / (1 - through))) : std::uint8_t(0));
+    rendered.rgba.push_back(std::uint8_t(std::lround(255 * (1 - through))));
+  }
   return rendered;
 }
 
@@ -121,8 +114,7 @@ class TransferReference : public ImageTest {
   }
   static FramePacket packet_for(const Case& c) {
     FramePacket packet = make_packet({34, -22, 20}, Vec3(0.5 * (kNodes - 1)), 26);
-    packet.width = 96;
-    packet.height = 72;
+    set_size(packet, 96, 72);
     const field::Index3 size{kNodes, kNodes, kNodes};
     VolumeItem item;
     item.grid = field::make_scalar_grid("f", {}, size, c.voxels, {});
@@ -169,5 +161,4 @@ TEST_F(TransferReference, StatedErrorsMatchAnIndependentMarcher) {
   }
 }
 
-}  // namespace transfer_reference_test
-}  // namespace catena::test
+}  // namespace catena::test::transfer_reference_test

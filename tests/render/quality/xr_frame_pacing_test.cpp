@@ -9,8 +9,7 @@
 #include <random>
 #include <string>
 
-namespace catena::test {
-namespace xr_frame_pacing_test {
+namespace catena::test::xr_frame_pacing_test {
 
 using namespace catena::render;
 
@@ -193,5 +192,4 @@ TEST(XrFramePacing, WithoutTheFastRaycastPixelsAreReduced) {
   EXPECT_LE(h.pace.late_after_warmup(), 4);
 }
 
-}  // namespace xr_frame_pacing_test
-}  // namespace catena::test
+}  // namespace catena::test::xr_frame_pacing_test

@@ -4,8 +4,7 @@
 
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace still_tiles_test {
+namespace catena::test::still_tiles_test {
 
 using namespace catena::render;
 
@@ -13,25 +12,20 @@ class DirtyTileImages : public ImageTest {
  protected:
   void SetUp() override {
     ImageTest::SetUp();
-    auto other = Renderer::create({true, test_device(), {}});
-    ASSERT_TRUE(other) << other.error().message;
-    other_ = std::move(*other);
+    other_ = make_renderer();
+    ASSERT_TRUE(other_);
     const auto grid =
         make_grid({48, 40, 44}, [](const Vec3& p) { return 0.5 + 0.5 * std::sin(0.9 * p.x) * std::cos(0.7 * p.y + 0.8 * p.z); });
     packet_ = make_packet({130, -100, 90}, {23.5, 19.5, 21.5});
-    packet_.width = 480;
-    packet_.height = 360;
+    set_size(packet_, 480, 360);
     packet_.volumes = {volume_item(grid, {{0, 0}, {0.5, 0}, {1, 0.3}})};
     packet_.volumes[0].transfer.colors = {{0, 0.1, 0.1, 0.9}, {0.6, 0.9, 0.8, 0.1}, {1, 1, 0, 0}};
     packet_.volumes[0].is_shaded = true;
-    CursorItem cursor;
-    cursor.radius = 1.5;
-    packet_.cursors = {cursor};
+    packet_.cursors = {cursor_item({0, 0, 0}, 1.5)};
+    exact_.reuse_rays = true;
   }
   static RenderSettings keeping(std::uint32_t spacing, double half, double full) {
-    RenderSettings settings;
-    settings.fast = FastSettings{1, spacing, half, full};
-    settings.reuse_rays = true;
+    RenderSettings settings{.fast = FastSettings{1, spacing, half, full}, .reuse_rays = true};
     return settings;
   }
   /// Image of the packet by a new renderer.
@@ -40,19 +34,27 @@ class DirtyTileImages : public ImageTest {
     EXPECT_TRUE(other_->draw(packet_, settings));
     return other_->read_back().value();
   }
+  /// Moves the cursor to its k-th place and draws; the image is that of a new renderer.
+  void draw_step(int k, const RenderSettings& settings, const std::string& name = "") {
+    packet_.cursors[0].probe = Vec3(5 + 7 * k, 5.3 * k - 3, 40 - 4.1 * k);
+    expect_fresh(settings, name);
+  }
+  /// Draws; the image is that of a new renderer.
+  void expect_fresh(const RenderSettings& settings, const std::string& name = "") {
+    const Image8 found = draw(packet_, settings, name);
+    ASSERT_EQ(max_difference(found, fresh(settings)), 0) << name;
+  }
   std::unique_ptr<Renderer> other_;
   FramePacket packet_;
+  RenderSettings exact_;
 };
 
 TEST_F(DirtyTileImages, AMovingCursorLeavesOtherTilesUnchangedBitForBit) {
   for (const auto& settings : {keeping(1, 0, -1), keeping(2, 0, -1), keeping(2, 0, 3), keeping(4, 1, 3), keeping(4, -1, -1)}) {
-    Vec3 at(5, -3, 40);
     for (int k = 0; k < 6; ++k) {
-      packet_.cursors[0].probe = at;
-      const Image8 found = draw(packet_, settings, k == 5 && settings.fast->spacing == 4 ? "last" : "");
-      EXPECT_EQ(renderer_->stats().rays_reused, k > 0) << settings.fast->spacing << " " << k;
-      ASSERT_EQ(max_difference(found, fresh(settings)), 0) << settings.fast->spacing << " " << settings.fast->refine_full_255 << " " << k;
-      at = at + Vec3(7, 5.3, -4.1);
+      SCOPED_TRACE(testing::Message() << settings.fast->spacing << " " << settings.fast->refine_full_255 << " " << k);
+      draw_step(k, settings, k == 5 && settings.fast->spacing == 4 ? "last" : "");
+      EXPECT_EQ(renderer_->stats().rays_reused, k > 0);
     }
   }
 }
@@ -61,10 +63,9 @@ TEST_F(DirtyTileImages, AMovingCursorLeavesOtherTilesUnchangedBitForBit) {
 std::uint32_t tiles_near(const IdImage& a, const IdImage& b, int reach) {
   const int across = int(a.width + 15) / 16, down = int(a.height + 15) / 16;
   std::vector<std::uint8_t> changed(std::size_t(across) * std::size_t(down));
-  for (std::uint32_t y = 0; y < a.height; ++y)
-    for (std::uint32_t x = 0; x < a.width; ++x)
-      if (a.ids[std::size_t(y) * a.width + x] != 0 || b.ids[std::size_t(y) * a.width + x] != 0)
-        changed[std::size_t(y / 16) * std::size_t(across) + x / 16] = 1;
+  for (const auto& [x, y] : pixels_of(a))
+    if (a.ids[std::size_t(y) * a.width + x] != 0 || b.ids[std::size_t(y) * a.width + x] != 0)
+      changed[std::size_t(y / 16) * std::size_t(across) + x / 16] = 1;
   std::uint32_t count = 0;
   for (int y = 0; y < down; ++y)
     for (int x = 0; x < across; ++x) {
@@ -79,63 +80,48 @@ std::uint32_t tiles_near(const IdImage& a, const IdImage& b, int reach) {
 
 TEST_F(DirtyTileImages, ExactRaysAreMarchedOnlyUnderTheCursorsOldAndNewOutline) {
   packet_.cursors[0].id = 1;
-  packet_.width = 240;
-  packet_.height = 180;
+  set_size(packet_, 240, 180);
   const auto other = make_grid({24, 24, 24}, [](const Vec3& p) { return 0.04 * p.x; });
   for (const bool several : {false, true}) {
     if (several) {
       packet_.volumes.push_back(volume_item(other, {{0, 0}, {1, 0.05}}));
-      IsosurfaceItem surface;
-      surface.grid = packet_.volumes[0].grid;
-      surface.level = 0.7;
-      surface.opacity = 0.4f;
-      packet_.isosurfaces = {surface};
+      packet_.isosurfaces = {{packet_.volumes[0].grid, 0.7, {}, 0.4f}};
       packet_.lights = {{{1, 1, 1}, {1, 1, 1}, false}};
       packet_.fog = FogItem{{0.5f, 0.5f, 0.5f}, 100, 300, 0.5};
     }
-    RenderSettings settings;
-    settings.reuse_rays = true;
     IdImage before;
     for (int k = 0; k < 3; ++k) {
-      packet_.cursors[0].probe = Vec3(5 + 7 * k, 5.3 * k - 3, 40 - 4.1 * k);
-      const Image8 found = draw(packet_, settings);
-      ASSERT_EQ(max_difference(found, fresh(settings)), 0) << several << k;
+      SCOPED_TRACE(testing::Message() << several << k);
+      draw_step(k, exact_);
       const MarchedTiles tiles = renderer_->marched_tiles().value();
       const IdImage now = renderer_->read_ids().value();
       EXPECT_EQ(tiles.total, 15u * 12);
       if (k == 0)
         EXPECT_EQ(tiles.marched, tiles.total);
       else
-        EXPECT_LE(tiles.marched, tiles_near(before, now, 0)) << several << k;
+        EXPECT_LE(tiles.marched, tiles_near(before, now, 0));
       EXPECT_GT(tiles.marched, 0u);
       before = now;
     }
-    draw(packet_, settings);
+    draw(packet_, exact_);
     EXPECT_EQ(renderer_->marched_tiles().value().marched, 0u) << "nothing has moved";
     packet_.cursors[0].probe.z += 0.01;
     packet_.lights.push_back({{0, 1, 1}, {0.5f, 0.5f, 0.5f}, false});
-    EXPECT_EQ(max_difference(draw(packet_, settings), fresh(settings)), 0);
+    expect_fresh(exact_);
     EXPECT_FALSE(renderer_->stats().rays_reused) << "the light";
   }
 }
 
 TEST_F(DirtyTileImages, EveryEyeKeepsItsOwnTiles) {
-  packet_.width = 160;
-  packet_.height = 120;
+  set_size(packet_, 160, 120);
   packet_.packing = Packing::side_by_side;
   packet_.eyes = {packet_.view, packet_.view};
   packet_.eyes[1].position.x += 6;
-  IsosurfaceItem surface;
-  surface.grid = packet_.volumes[0].grid;
-  surface.level = 0.9;
-  surface.color = {0.9f, 0.5f, 0.2f};
-  RenderSettings exact;
-  exact.reuse_rays = true;
-  for (const RenderSettings& settings : {keeping(1, 0, -1), keeping(2, 0, 3), exact}) {
+  const IsosurfaceItem surface{packet_.volumes[0].grid, 0.9, {0.9f, 0.5f, 0.2f}};
+  for (const RenderSettings& settings : {keeping(1, 0, -1), keeping(2, 0, 3), exact_}) {
     packet_.isosurfaces.resize(settings.fast ? 0 : 1, surface);
     for (int k = 0; k < 4; ++k) {
-      packet_.cursors[0].probe = Vec3(5 + 7 * k, 5.3 * k - 3, 40 - 4.1 * k);
-      ASSERT_EQ(max_difference(draw(packet_, settings), fresh(settings)), 0) << k;
+      draw_step(k, settings);
       EXPECT_EQ(renderer_->stats().rays_reused, k > 0) << k;
       EXPECT_EQ(renderer_->stats().surfaces_reused, k > 0 && !settings.fast) << k;
       const MarchedTiles tiles = renderer_->marched_tiles().value();
@@ -143,39 +129,29 @@ TEST_F(DirtyTileImages, EveryEyeKeepsItsOwnTiles) {
     }
     // only one eye has moved
     packet_.eyes[1].position.x += 1;
-    ASSERT_EQ(max_difference(draw(packet_, settings), fresh(settings)), 0);
+    expect_fresh(settings);
     EXPECT_TRUE(renderer_->stats().rays_reused) << "the first eye's";
   }
 }
 
 TEST_F(DirtyTileImages, TranslucentMeshesAndSlicesAreMarchedOnlyUnderTheCursor) {
-  packet_.width = 160;
-  packet_.height = 120;
-  SliceItem slice;
-  slice.grid = packet_.volumes[0].grid;
-  slice.point = {23, 19, 22};
-  slice.colors = {{0, 0.2, 0.3, 0.9}, {1, 0.9, 0.8, 0.1}};
-  slice.opacity = 0.5f;
-  MeshItem mesh;
+  set_size(packet_, 160, 120);
+  const SliceItem slice{packet_.volumes[0].grid, {23, 19, 22}, {0, 0, 1}, {{0, 0.2, 0.3, 0.9}, {1, 0.9, 0.8, 0.1}}, 0.5f};
   auto triangle = std::make_shared<MeshGeometry>();
   triangle->vertices = {{0, 0, 10}, {47, 0, 30}, {20, 39, 20}};
   triangle->triangles = {0, 1, 2};
-  mesh.geometry = triangle;
-  mesh.opacity = 0.4f;
   packet_.slices = {slice};
-  packet_.meshes = {mesh};
-  RenderSettings settings;
-  settings.reuse_rays = true;
+  packet_.meshes = {{triangle, {}, 0, true, 0.4f}};
   for (int k = 0; k < 3; ++k) {
-    packet_.cursors[0].probe = Vec3(5 + 7 * k, 5.3 * k - 3, 40 - 4.1 * k);
-    ASSERT_EQ(max_difference(draw(packet_, settings, k == 2 ? "last" : ""), fresh(settings)), 0) << k;
+    draw_step(k, exact_, k == 2 ? "last" : "");
     EXPECT_EQ(renderer_->stats().rays_reused, k > 0) << k;
     const MarchedTiles tiles = renderer_->marched_tiles().value();
     EXPECT_EQ(tiles.marched<0.5 * tiles.total, k> 0) << k;
   }
   const auto expect_whole = [&](const char* what) {
-    ASSERT_EQ(max_difference(draw(packet_, settings), fresh(settings)), 0) << what;
-    EXPECT_FALSE(renderer_->stats().rays_reused) << what;
+    SCOPED_TRACE(what);
+    expect_fresh(exact_);
+    EXPECT_FALSE(renderer_->stats().rays_reused);
   };
   packet_.slices[0].point.z += 1;
   expect_whole("the slice");
@@ -192,38 +168,28 @@ TEST_F(DirtyTileImages, TranslucentMeshesAndSlicesAreMarchedOnlyUnderTheCursor) 
 }
 
 TEST_F(DirtyTileImages, OpaqueSurfacesAreFoundOnceAndDrawnAmongMovingObjects) {
-  packet_.width = 240;
-  packet_.height = 180;
-  IsosurfaceItem surface;
-  surface.grid = packet_.volumes[0].grid;
-  surface.level = 0.9;
-  surface.color = {0.9f, 0.5f, 0.2f};
-  surface.id = 3;
-  packet_.isosurfaces = {surface, surface};
-  packet_.isosurfaces[1].level = 0.2;
-  packet_.isosurfaces[1].color = {0.2f, 0.5f, 0.9f};
+  set_size(packet_, 240, 180);
+  const GridPtr grid = packet_.volumes[0].grid;
+  packet_.isosurfaces = {{grid, 0.9, {0.9f, 0.5f, 0.2f}, 1, 3}, {grid, 0.2, {0.2f, 0.5f, 0.9f}, 1, 3}};
   packet_.cursors[0].radius = 8;
   packet_.cursors[0].id = 4;
-  RenderSettings settings;
-  settings.reuse_rays = true;
   for (const bool alone : {true, false}) {
     if (alone) packet_.volumes.clear();
     for (int k = 0; k < 4; ++k) {
       // in front, between and behind
       packet_.cursors[0].probe = Vec3(60 - 15 * k, 20, 22);
-      const Image8 found = draw(packet_, settings, k == 3 ? "last" : "");
+      expect_fresh(exact_, k == 3 ? "last" : "");
       EXPECT_EQ(renderer_->stats().surfaces_reused, k > 0) << alone << k;
-      ASSERT_EQ(max_difference(found, fresh(settings)), 0) << alone << k;
       EXPECT_EQ(renderer_->read_ids().value().ids, other_->read_ids().value().ids);
       EXPECT_EQ(renderer_->read_depth().value().depth, other_->read_depth().value().depth);
     }
     packet_.isosurfaces[0].level -= 0.1;
-    EXPECT_EQ(max_difference(draw(packet_, settings), fresh(settings)), 0);
+    expect_fresh(exact_);
     EXPECT_FALSE(renderer_->stats().surfaces_reused) << "another level";
     packet_.view.position.x += 1;
-    EXPECT_EQ(max_difference(draw(packet_, settings), fresh(settings)), 0);
+    expect_fresh(exact_);
     EXPECT_FALSE(renderer_->stats().surfaces_reused) << "another eye";
-    packet_.volumes = {volume_item(surface.grid, {{0, 0}, {0.5, 0}, {1, 0.3}})};
+    packet_.volumes = {volume_item(grid, {{0, 0}, {0.5, 0}, {1, 0.3}})};
     packet_.lights = {{{1, 1, 1}, {1, 1, 1}, false}};
   }
 }
@@ -232,11 +198,7 @@ TEST(RaysMatch, IgnoreOpaqueObjectsAndDetectOtherChanges) {
   const auto grid = make_grid({8, 8, 8}, [](const Vec3& p) { return 0.1 * p.x; });
   FramePacket first = make_packet({30, -20, 10}, {4, 4, 4});
   first.volumes = {volume_item(grid, {{0, 0}, {1, 0.1}})};
-  IsosurfaceItem surface;
-  surface.grid = grid;
-  surface.level = 0.3;
-  first.isosurfaces = {surface, surface};
-  first.isosurfaces[1].opacity = 0.5f;
+  first.isosurfaces = {{grid, 0.3, {}}, {grid, 0.3, {}, 0.5f}};
   const auto same = [&](const std::function<void(FramePacket&)>& change) {
     FramePacket other = first;
     change(other);
@@ -280,11 +242,11 @@ TEST_F(DirtyTileImages, OtherChangesRedrawTheWholeImage) {
   const RenderSettings settings = keeping(2, 0, 3);
   draw(packet_, settings);
   const auto expect_whole = [&](const char* what) {
-    const Image8 found = draw(packet_, settings);
-    EXPECT_FALSE(renderer_->stats().rays_reused) << what;
-    EXPECT_EQ(max_difference(found, fresh(settings)), 0) << what;
+    SCOPED_TRACE(what);
+    expect_fresh(settings);
+    EXPECT_FALSE(renderer_->stats().rays_reused);
     draw(packet_, settings);
-    EXPECT_TRUE(renderer_->stats().rays_reused) << what;
+    EXPECT_TRUE(renderer_->stats().rays_reused);
   };
   packet_.view.position.x += 0.5;
   expect_whole("the eye");
@@ -301,5 +263,4 @@ TEST_F(DirtyTileImages, OtherChangesRedrawTheWholeImage) {
   expect_whole("exact rays between");
 }
 
-}  // namespace still_tiles_test
-}  // namespace catena::test
+}  // namespace catena::test::still_tiles_test

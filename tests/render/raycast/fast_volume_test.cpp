@@ -3,47 +3,25 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/frame/camera.h"
 #include "render/image/image_error.h"
-#include "tests/render/support/image_fixture.h"
+#include "tests/render/support/ray_alpha.h"
 
-namespace catena::test {
-namespace fast_volume_test {
+namespace catena::test::fast_volume_test {
 
 using namespace catena::render;
 
 class FastVolume : public ImageTest {
  protected:
   static RenderSettings fast(double step, std::uint32_t spacing, double refine_half = 0.2, double refine_full = 0.2) {
-    RenderSettings settings;
-    settings.fast = FastSettings{step, spacing, refine_half, refine_full};
+    RenderSettings settings{.fast = FastSettings{step, spacing, refine_half, refine_full}};
     return settings;
   }
 };
-
-/// Maximum difference between alpha and 1 - exp(-tau(ray)) over the pixels.
-double worst_alpha(const Image8& rendered, const FramePacket& packet, const std::function<double(const Ray&)>& depth) {
-  Bounds none;
-  const Camera camera = make_camera(packet.view, packet.width, packet.height, none);
-  double worst = 0;
-  for (std::uint32_t y = 0; y < rendered.height; ++y)
-    for (std::uint32_t x = 0; x < rendered.width; ++x) {
-      const double expected = 255 * (1 - std::exp(-depth(pixel_ray(camera, x + 0.5, y + 0.5))));
-      worst = std::max(worst, std::fabs(rendered.pixel(x, y)[3] - expected));
-    }
-  return worst;
-}
 
 double rmse(const Image8& a, const Image8& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.rgba.size(); ++i) sum += (double(a.rgba[i]) - b.rgba[i]) * (double(a.rgba[i]) - b.rgba[i]);
   return std::sqrt(sum / double(a.rgba.size()));
-}
-
-int covered(const Image8& rendered) {
-  int count = 0;
-  for (std::size_t i = 3; i < rendered.rgba.size(); i += 4) count += rendered.rgba[i] > 0;
-  return count;
 }
 
 GridPtr waves() {
@@ -58,27 +36,26 @@ VolumeItem coloured(GridPtr grid, bool shade = false) {
 }
 
 TEST_F(FastVolume, AHomogeneousBoxIsExactForAnyStep) {
-  const auto grid = make_grid({20, 33, 12}, [](const Vec3&) { return 0.5; });
+  const auto grid = even_grid({20, 33, 12});
   FramePacket packet = make_packet({52, -41, 37}, {9.5, 16, 5.5}, 40);
   for (const double sigma : {0.02, 0.1, 1.0}) {
     packet.volumes = {volume_item(grid, {{0, sigma}, {1, sigma}}, {0.2f, 0.5f, 0.9f})};
     for (const double step : {0.5, 4.0}) {
       const Image8 rendered = draw(packet, fast(step, 1), step == 4 && sigma == 0.1 ? "box" : "");
-      EXPECT_LE(worst_alpha(rendered, packet, [&](const Ray& ray) { return sigma * chord_length(*grid, ray.origin, ray.direction); }), 1);
+      EXPECT_LE(worst_alpha(rendered, packet, even_depth(grid, sigma)), 1);
       EXPECT_GT(covered(rendered), 2500);
-      for (std::uint32_t y = 0; y < rendered.height; ++y)
-        for (std::uint32_t x = 0; x < rendered.width; ++x)
-          if (rendered.pixel(x, y)[3] > 8) {
-            ASSERT_NEAR(rendered.pixel(x, y)[0], 51, 1);
-            ASSERT_NEAR(rendered.pixel(x, y)[2], 229.5, 1.5);
-          }
+      for (const auto& [x, y] : pixels_of(rendered))
+        if (rendered.pixel(x, y)[3] > 8) {
+          ASSERT_NEAR(rendered.pixel(x, y)[0], 51, 1);
+          ASSERT_NEAR(rendered.pixel(x, y)[2], 229.5, 1.5);
+        }
     }
   }
 }
 
 /// A ray that ends early extrapolates the rest: a homogeneous body has the full alpha, without an edge where early termination starts.
 TEST_F(FastVolume, AnEndedRayExtrapolatesTheRest) {
-  const auto grid = make_grid({20, 33, 12}, [](const Vec3&) { return 0.5; });
+  const auto grid = even_grid({20, 33, 12});
   FramePacket packet = make_packet({52, -41, 37}, {9.5, 16, 5.5}, 40);
   for (const bool shade : {false, true})
     for (const double sigma : {0.2, 0.4, 1.0}) {
@@ -87,12 +64,8 @@ TEST_F(FastVolume, AnEndedRayExtrapolatesTheRest) {
       RenderSettings settings = fast(0.5, 1);
       settings.fast->termination = 1.0 / 16;
       const Image8 rendered = draw(packet, settings);
-      EXPECT_LE(worst_alpha(rendered, packet, [&](const Ray& ray) { return sigma * chord_length(*grid, ray.origin, ray.direction); }), 1)
-          << sigma;
-      const Image8 whole = draw(packet, fast(0.5, 1));
-      int maximum = 0;
-      for (std::size_t i = 0; i < whole.rgba.size(); ++i) maximum = std::max(maximum, std::abs(int(whole.rgba[i]) - int(rendered.rgba[i])));
-      EXPECT_LE(maximum, 2) << sigma;
+      EXPECT_LE(worst_alpha(rendered, packet, even_depth(grid, sigma)), 1) << sigma;
+      EXPECT_LE(max_difference(draw(packet, fast(0.5, 1)), rendered), 2) << sigma;
     }
   // in an inhomogeneous volume the error is below a part of the remaining transmittance
   packet = make_packet({120, -90, 80}, {23.5, 19.5, 21.5}, 30);
@@ -105,10 +78,10 @@ TEST_F(FastVolume, AnEndedRayExtrapolatesTheRest) {
 }
 
 TEST_F(FastVolume, ABoxByCoarseRaysIsRefinedAtItsEdges) {
-  const auto grid = make_grid({40, 33, 32}, [](const Vec3&) { return 0.5; });
+  const auto grid = even_grid({40, 33, 32});
   FramePacket packet = make_packet({92, -71, 67}, {19.5, 16, 15.5}, 35);
   packet.volumes = {volume_item(grid, {{0, 0.05}, {1, 0.05}})};
-  const auto depth = [&](const Ray& ray) { return 0.05 * chord_length(*grid, ray.origin, ray.direction); };
+  const auto depth = even_depth(grid, 0.05);
   for (const std::uint32_t spacing : {2u, 4u}) {
     const Image8 rendered = draw(packet, fast(4, spacing, 0, 0), "box");
     EXPECT_LE(worst_alpha(rendered, packet, depth), 1);  // threshold 0: every block that is not uniform is marched
@@ -121,22 +94,7 @@ TEST_F(FastVolume, LinearSigmaIsExact) {
   const auto grid = make_grid({17, 17, 17}, [](const Vec3& p) { return (p.x + 2 * p.y + 3 * p.z) / 96; });
   FramePacket packet = make_packet({40, -30, 35}, {8, 8, 8});
   packet.volumes = {volume_item(grid, {{0, 0}, {1, 0.2}})};
-  for (const double step : {0.5, 2.0, 7.0})
-    EXPECT_LE(worst_alpha(draw(packet, fast(step, 1)), packet,
-                          [&](const Ray& ray) {
-                            const double length = chord_length(*grid, ray.origin, ray.direction);
-                            if (!(length > 0)) return 0.0;
-                            double enter = 0, leave = 1000;
-                            for (int k = 0; k < 3; ++k) {
-                              const double s = -ray.origin[k] / ray.direction[k], t = (16 - ray.origin[k]) / ray.direction[k];
-                              enter = std::max(enter, std::min(s, t));
-                              leave = std::min(leave, std::max(s, t));
-                            }
-                            const Vec3 middle = ray.origin + 0.5 * (enter + leave) * ray.direction;
-                            return length * 0.2 * (middle.x + 2 * middle.y + 3 * middle.z) / 96;
-                          }),
-              2)
-        << step;
+  for (const double step : {0.5, 2.0, 7.0}) EXPECT_LE(worst_alpha(draw(packet, fast(step, 1)), packet, linear_depth(grid)), 2) << step;
 }
 
 TEST_F(FastVolume, AGaussianMatchesItsIntegralAtEverySpacing) {
@@ -156,26 +114,24 @@ TEST_F(FastVolume, AGaussianMatchesItsIntegralAtEverySpacing) {
 }
 
 TEST_F(FastVolume, CameraInsideTheVolume) {
-  const auto grid = make_grid({24, 24, 24}, [](const Vec3&) { return 0.5; });
+  const auto grid = even_grid({24, 24, 24});
   FramePacket packet = make_packet({11.3, 9.7, 12.1}, {20, 14, 9}, 90);
   packet.volumes = {volume_item(grid, {{0, 0.07}, {1, 0.07}})};
-  const auto depth = [&](const Ray& ray) { return 0.07 * chord_length(*grid, ray.origin, ray.direction); };
+  const auto depth = even_depth(grid, 0.07);
   EXPECT_LE(worst_alpha(draw(packet, fast(2, 1)), packet, depth), 1);
   EXPECT_LE(worst_alpha(draw(packet, fast(2, 4), "box"), packet, depth), 2);
 }
 
 TEST_F(FastVolume, OrthographicOfARotatedAnisotropicGrid) {
-  const double a = 0.4;
-  const Mat3 linear = Mat3(std::cos(a), std::sin(a), 0, -std::sin(a), std::cos(a), 0, 0, 0, 1) * Mat3(0.5, 0, 0, 0, 1.25, 0, 0.3, 0, 3);
+  const Mat3 linear = turned(0.4, 0) * Mat3(0.5, 0, 0, 0, 1.25, 0, 0.3, 0, 3);
   const auto grid = make_grid(
       {30, 14, 9}, [](const Vec3&) { return 1.0; }, field::Mapping::from_linear(linear, {-820.5, 100, 77.25}));
   const Vec3 centre = grid->mapping().world_from_index({14.5, 6.5, 4});
   FramePacket packet = make_packet(centre + Vec3(31, -44, 25), centre, 35);
-  packet.view.orthographic = true;
-  packet.view.height = 45;
+  set_orthographic(packet, 45);
   packet.volumes = {volume_item(grid, {{0, 0.08}, {1, 0.08}})};
   const Image8 rendered = draw(packet, fast(1, 1), "box");
-  EXPECT_LE(worst_alpha(rendered, packet, [&](const Ray& ray) { return 0.08 * chord_length(*grid, ray.origin, ray.direction); }), 1);
+  EXPECT_LE(worst_alpha(rendered, packet, even_depth(grid, 0.08)), 1);
   EXPECT_GT(covered(rendered), 2000);
 }
 
@@ -205,7 +161,7 @@ TEST_F(FastVolume, SmoothGradientsMatchTheExactShading) {
   EXPECT_LT(smooth, 0.5);
   EXPECT_LT(smooth, 0.7 * by_cell);
   // in homogeneous regions only the ambient light remains
-  packet.volumes = {volume_item(make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; }), {{0, 0.5}, {1, 0.5}})};
+  packet.volumes = {volume_item(even_grid({16, 16, 16}), {{0, 0.5}, {1, 0.5}})};
   packet.volumes[0].is_shaded = true;
   EXPECT_LE(max_difference(draw(packet, settings), draw(packet)), 1);
 }
@@ -275,11 +231,10 @@ TEST_F(FastVolume, EmptySpaceSkippingChangesLittle) {
 
 TEST_F(FastVolume, RaysEndAtTheOpaqueDepth) {
   // a plane of value 20 inside a haze hides everything behind it, also in interpolated pixels
-  const auto haze = make_grid({40, 40, 40}, [](const Vec3&) { return 0.5; });
+  const auto haze = even_grid({40, 40, 40});
   const auto plane = make_grid({40, 40, 40}, [](const Vec3& p) { return p.x > 12 && p.x < 27 ? p.y : 0.0; });
   FramePacket packet = make_packet({19.5, -70, 19.5}, {19.5, 19.5, 19.5});
-  packet.view.orthographic = true;
-  packet.view.height = 50;
+  set_orthographic(packet, 50);
   packet.background = {0, 0, 0, 1};
   packet.volumes = {volume_item(haze, {{0, 0.04}, {1, 0.04}})};
   packet.isosurfaces = {{plane, 19.5, {0, 0, 0}, 1}};
@@ -296,7 +251,7 @@ TEST_F(FastVolume, RaysEndAtTheOpaqueDepth) {
 
 TEST_F(FastVolume, UnsupportedVolumesAreDrawnByExactRays) {
   FramePacket packet = make_packet({55, -40, 35}, {10, 8, 8});
-  const auto plain = make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; });
+  const auto plain = even_grid({16, 16, 16});
   packet.volumes = {volume_item(plain, {{0, 0.2}, {1, 0.2}}), volume_item(plain, {{0, 0.1}, {1, 0.1}})};
   EXPECT_EQ(max_difference(draw(packet, fast(4, 4)), draw(packet)), 0);
 }
@@ -361,8 +316,7 @@ TEST_F(FastVolume, ShadingUsesTheDerivativeAlongTheRay) {
   packet.background = {0, 0, 0, 1};
   packet.volumes = {volume_item(grid, {{0, 0.5}, {1, 0.5}})};  // opaque
   packet.volumes[0].is_shaded = true;
-  Bounds none;
-  const Camera camera = make_camera(packet.view, packet.width, packet.height, none);
+  const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
   for (const bool smooth : {false, true}) {
     RenderSettings settings = fast(3, 1);
     settings.fast->smooth_gradients = smooth;
@@ -388,5 +342,4 @@ TEST_F(FastVolume, TransferFunctionsAndGridsMayChange) {
   EXPECT_EQ(max_difference(draw(packet, fast(2, 2)), first), 0);
 }
 
-}  // namespace fast_volume_test
-}  // namespace catena::test
+}  // namespace catena::test::fast_volume_test

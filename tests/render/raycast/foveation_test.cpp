@@ -5,8 +5,7 @@
 #include "render/frame/camera.h"
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace foveation_test {
+namespace catena::test::foveation_test {
 
 using namespace catena::render;
 
@@ -16,15 +15,12 @@ class Foveation : public ImageTest {
     ImageTest::SetUp();
     const auto grid =
         make_grid({48, 40, 44}, [](const Vec3& p) { return 0.5 + 0.5 * std::sin(1.1 * p.x) * std::cos(0.9 * p.y + 0.8 * p.z); });
-    packet_ = make_packet({40, -6, 30}, {23.5, 19.5, 21.5});
-    packet_.view.fovy_deg = 80;
-    packet_.width = 192;
-    packet_.height = 144;
+    packet_ = make_packet({40, -6, 30}, {23.5, 19.5, 21.5}, 80);
+    set_size(packet_, 192, 144);
     packet_.volumes = {volume_item(grid, {{0, 0}, {0.5, 0}, {1, 0.3}})};
   }
   static RenderSettings settings(std::uint32_t spacing, double half, double full) {
-    RenderSettings out;
-    out.fast = FastSettings{1, spacing, half, full};
+    RenderSettings out{.fast = FastSettings{1, spacing, half, full}};
     return out;
   }
   FramePacket packet_;
@@ -52,21 +48,20 @@ TEST_F(Foveation, RefinesTheFoveaAndNotFarFromIt) {
       const Image8 image = draw(packet_, some, right > 0 ? "gaze" : "middle");
       const Camera camera = make_camera(packet_.view, packet_.width, packet_.height, {});
       Counts c;
-      for (std::uint32_t y = 0; y < packet_.height; ++y)
-        for (std::uint32_t x = 0; x < packet_.width; ++x) {
-          const Vec3 d = pixel_ray(camera, x + 0.5, y + 0.5).direction;
-          const double ahead = -dot(d, camera.back);
-          const double off = std::hypot(dot(d, camera.right) / ahead - right, dot(d, camera.up) / ahead - up) / some.fast->fovea_tangent;
-          // the block's centre decides for the whole block, on both lattices
-          if (off < 0.6) {
-            ++c.inside;
-            c.inside_other += same(image, refined, x, y) ? 0 : 1;
-          } else if (off > 2 && !same(refined, rough, x, y)) {
-            ++c.outside;
-            c.outside_refined += same(image, refined, x, y) ? 1 : 0;
-            c.outside_interpolated += same(image, rough, x, y) ? 1 : 0;
-          }
+      for (const auto& [x, y] : pixels_of(packet_)) {
+        const Vec3 d = pixel_ray(camera, x + 0.5, y + 0.5).direction;
+        const double ahead = -dot(d, camera.back);
+        const double off = std::hypot(dot(d, camera.right) / ahead - right, dot(d, camera.up) / ahead - up) / some.fast->fovea_tangent;
+        // the block's centre decides for the whole block, on both lattices
+        if (off < 0.6) {
+          ++c.inside;
+          c.inside_other += same(image, refined, x, y) ? 0 : 1;
+        } else if (off > 2 && !same(refined, rough, x, y)) {
+          ++c.outside;
+          c.outside_refined += same(image, refined, x, y) ? 1 : 0;
+          c.outside_interpolated += same(image, rough, x, y) ? 1 : 0;
         }
+      }
       EXPECT_GT(c.inside, 300) << spacing << " " << right;
       EXPECT_EQ(c.inside_other, 0) << spacing << " " << right;
       EXPECT_GT(c.outside, 2000);
@@ -77,13 +72,11 @@ TEST_F(Foveation, RefinesTheFoveaAndNotFarFromIt) {
 }
 
 TEST_F(Foveation, WithoutAFoveaOrAnglesTheImageIsUnchanged) {
-  packet_.view.orthographic = true;
-  packet_.view.height = 40;
+  set_orthographic(packet_, 40);
   const Image8 plain = draw(packet_, settings(2, 0, 0.3), "flat");
   RenderSettings some = settings(2, 0, 0.3);
   some.fast->fovea_tangent = 0.1;
   EXPECT_EQ(max_difference(draw(packet_, some, "flat_fovea"), plain), 0);
 }
 
-}  // namespace foveation_test
-}  // namespace catena::test
+}  // namespace catena::test::foveation_test

@@ -4,8 +4,7 @@
 
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace raycast_outliers_test {
+namespace catena::test::raycast_outliers_test {
 
 using namespace catena::render;
 
@@ -13,16 +12,14 @@ class RaycastOutliers : public ImageTest {};
 
 int different_pixels(const Image8& a, const Image8& b) {
   int count = 0;
-  for (std::uint32_t y = 0; y < a.height; ++y)
-    for (std::uint32_t x = 0; x < a.width; ++x) count += std::abs(a.pixel(x, y)[3] - b.pixel(x, y)[3]) > 8;
+  for (const auto& [x, y] : pixels_of(a)) count += std::abs(a.pixel(x, y)[3] - b.pixel(x, y)[3]) > 8;
   return count;
 }
 
 TEST_F(RaycastOutliers, AnOutlierChangesOnlyItsOwnCells) {
   const auto wave = [](const Vec3& p) { return 0.5 + 0.4 * std::sin(0.5 * p.x) * std::cos(0.4 * p.y + 0.3 * p.z); };
   const auto clean = make_grid({24, 24, 24}, wave);
-  RenderSettings fast;
-  fast.fast = FastSettings{1, 1, -1, -1};
+  RenderSettings fast{.fast = FastSettings{1, 1, -1, -1}};
   for (const double outlier : {1e20, -9999.0}) {
     const auto spoiled = make_grid({24, 24, 24}, [&](const Vec3& p) { return p.x == 4 && p.y == 5 && p.z == 20 ? outlier : wave(p); });
     for (const bool shade : {false, true})
@@ -39,5 +36,4 @@ TEST_F(RaycastOutliers, AnOutlierChangesOnlyItsOwnCells) {
   }
 }
 
-}  // namespace raycast_outliers_test
-}  // namespace catena::test
+}  // namespace catena::test::raycast_outliers_test

@@ -2,18 +2,15 @@
 /// Packed formats of the fast raycast: grids with invalid cells, and large grids as bricks. Known images, and agreement with exact rays.
 #include <cmath>
 
-#include "render/frame/camera.h"
 #include "render/image/image_error.h"
-#include "tests/render/support/image_fixture.h"
+#include "tests/render/support/ray_alpha.h"
 
-namespace catena::test {
-namespace packed_formats_test {
+namespace catena::test::packed_formats_test {
 
 using namespace catena::render;
 
 RenderSettings fast(double step, bool smooth = false) {
-  RenderSettings settings;
-  settings.fast = FastSettings{step, 1, 0, -1};
+  RenderSettings settings{.fast = FastSettings{step, 1, 0, -1}};
   settings.fast->smooth_gradients = smooth;
   return settings;
 }
@@ -26,7 +23,7 @@ TEST_F(PackedFormats, AHomogeneousBoxEndsAtItsInvalidCells) {
   const auto valid = [](const Vec3& p) { return p.x <= 15; };
   const auto masked = make_grid(
       {32, 16, 16}, [](const Vec3& p) { return p.x <= 15 ? 0.5 : std::nan(""); }, {}, valid);
-  const auto half = make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; });
+  const auto half = even_grid({16, 16, 16});
   FramePacket packet = make_packet({55, -40, 35}, {10, 8, 8});
   packet.volumes = {volume_item(masked, {{0, 0.2}, {1, 0.2}})};
   ASSERT_TRUE(renderer_->can_draw_fast(packet));
@@ -67,11 +64,7 @@ class Bricks : public PackedFormats {
     return 0.5 + 0.5 * std::sin(0.31 * p.x) * std::cos(0.27 * p.y + 0.2 * p.z) * std::exp(-1e-3 * (p.x - 44) * (p.x - 44));
   }
   GridPtr long_grid() const { return make_grid({std::int32_t(renderer_->device().info().limits.maxImageDimension3D) + 60, 40, 36}, wave); }
-  static FramePacket looking() {
-    FramePacket packet = make_packet({134, -90, 80}, {44, 19.5, 17.5}, 40);
-    packet.background = {0, 0, 0, 0};
-    return packet;
-  }
+  static FramePacket looking() { return make_packet({134, -90, 80}, {44, 19.5, 17.5}, 40); }
 };
 
 TEST_F(Bricks, MatchTheExactRaycast) {
@@ -130,18 +123,12 @@ TEST_F(Bricks, HaveGradientsAsFineAsTheMemoryAllows) {
   const std::uint64_t fine_bytes = renderer_->stats().gpu_bytes;
   EXPECT_LT(covered_rmse(fine, exact), 2.0);
 
-  vk::DeviceOptions options;
-  options.validation = true;
-  options.device_filter = test_device();
-  options.memory_budget_bytes = fine_bytes * 3 / 4;
-  auto renderer = Renderer::create(options);
-  ASSERT_TRUE(renderer) << renderer.error().message;
-  renderer_ = std::move(*renderer);
+  renderer_ = make_renderer(fine_bytes * 3 / 4);
+  ASSERT_TRUE(renderer_);
   const Image8 coarse = draw(packet, fast(0.5, true), "coarse");
   EXPECT_TRUE(renderer_->can_draw_fast(packet)) << renderer_->stats().warnings[0];
-  EXPECT_LE(renderer_->device().counters().peak_bytes, options.memory_budget_bytes);
+  EXPECT_LE(renderer_->device().counters().peak_bytes, fine_bytes * 3 / 4);
   EXPECT_GT(covered_rmse(coarse, exact), covered_rmse(fine, exact));
 }
 
-}  // namespace packed_formats_test
-}  // namespace catena::test
+}  // namespace catena::test::packed_formats_test

@@ -6,8 +6,7 @@
 #include <bit>
 #include <cmath>
 
-namespace catena::test {
-namespace preintegrated_test {
+namespace catena::test::preintegrated_test {
 
 using namespace catena::render;
 
@@ -85,5 +84,4 @@ TEST(Preintegrated, VisibleCodesOfShadedVolumesHaveDistinctAppearances) {
   EXPECT_NEAR(active_interval(grey, {0, 1}, true).min, 0.3, 1e-3);
 }
 
-}  // namespace preintegrated_test
-}  // namespace catena::test
+}  // namespace catena::test::preintegrated_test

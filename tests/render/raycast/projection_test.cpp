@@ -5,8 +5,7 @@
 #include "render/frame/camera.h"
 #include "tests/render/support/image_fixture.h"
 
-namespace catena::test {
-namespace projection_test {
+namespace catena::test::projection_test {
 
 using namespace catena::render;
 
@@ -15,15 +14,9 @@ struct Found {
   bool any = false;
 };
 
-/// Values along the ray within the domain, in valid cells, up to `end`.
-Found along(const field::ScalarGrid& grid, const Ray& ray, double from = 0, double end = 1e9) {
-  const Vec3 o = grid.mapping().index_from_world(ray.origin), d = grid.mapping().index_from_world_linear * ray.direction;
-  double enter = from, leave = end;
-  for (int a = 0; a < 3; ++a) {
-    const double s = (grid.index_box().lo[a] - o[a]) / d[a], t = (grid.index_box().hi[a] - o[a]) / d[a];
-    enter = std::max(enter, std::min(s, t));
-    leave = std::min(leave, std::max(s, t));
-  }
+/// Values along the ray within the domain, in valid cells.
+Found along(const field::ScalarGrid& grid, const Ray& ray) {
+  const auto [enter, leave] = ray_interval(grid, ray.origin, ray.direction);
   Found found;
   if (!(enter < leave)) return found;
   const int steps = 3000;
@@ -66,26 +59,37 @@ const char* name_of(Projection projection) {
   return projection == Projection::maximum ? "maximum" : projection == Projection::minimum ? "minimum" : "average";
 }
 
+/// A view of the rough grid.
+FramePacket packet_of(const field::ScalarGrid& grid) {
+  const Vec3 centre = grid.mapping().world_from_index({19.5, 17.5, 15.5});
+  return make_packet(centre + Vec3(70, -60, 50), centre, 32);
+}
+
+RenderSettings fine(double step) {
+  RenderSettings settings{.texel_format = TexelFormat::r32f, .fast = {}};
+  settings.step_voxels = step;
+  return settings;
+}
+
 class ProjectionTest : public ImageTest {
  protected:
   /// Maximum difference of colours over rays that hit the volume; alpha is checked for all rays.
-  double worst(const Image8& image, const FramePacket& packet, Projection projection, const std::function<Found(const Ray&)>& found) {
+  double worst(const Image8& image, const FramePacket& packet, Projection projection, const field::ScalarGrid& grid) {
     const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
     double worst = 0;
     int hits = 0, disagree = 0;
-    for (std::uint32_t y = 0; y < packet.height; y += 2)
-      for (std::uint32_t x = 0; x < packet.width; x += 2) {
-        const Found f = found(pixel_ray(camera, x + 0.5, y + 0.5));
-        const int alpha = image.pixel(x, y)[3];
-        if (f.any != (alpha > 0)) {
-          ++disagree;  // grazing rays
-          continue;
-        }
-        if (!f.any) continue;
-        EXPECT_NEAR(alpha, 127.5, 1);
-        ++hits;
-        worst = std::max(worst, std::fabs(image.pixel(x, y)[0] - 255 * of(f, projection)));
+    for (const auto& [x, y] : pixels_of(packet, 2)) {
+      const Found f = along(grid, pixel_ray(camera, x + 0.5, y + 0.5));
+      const int alpha = image.pixel(x, y)[3];
+      if (f.any != (alpha > 0)) {
+        ++disagree;  // grazing rays
+        continue;
       }
+      if (!f.any) continue;
+      EXPECT_NEAR(alpha, 127.5, 1);
+      ++hits;
+      worst = std::max(worst, std::fabs(image.pixel(x, y)[0] - 255 * of(f, projection)));
+    }
     EXPECT_GT(hits, 500);
     EXPECT_LE(disagree, 2);
     return worst;
@@ -94,65 +98,43 @@ class ProjectionTest : public ImageTest {
 
 TEST_F(ProjectionTest, ExtremesAreExactForAnyStep) {
   const auto grid = rough_grid();
-  const Vec3 centre = grid->mapping().world_from_index({19.5, 17.5, 15.5});
-  FramePacket packet = make_packet(centre + Vec3(70, -60, 50), centre, 32);
-  RenderSettings settings;
-  settings.texel_format = TexelFormat::r32f;
-  settings.step_voxels = 4;
+  FramePacket packet = packet_of(*grid);
+  RenderSettings settings = fine(4);
   for (const Projection projection : {Projection::maximum, Projection::minimum})
     for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas}) {
       settings.layout = layout;
       packet.volumes = {grey_item(grid, projection)};
       const Image8 image = draw(packet, settings, name_of(projection));
-      EXPECT_LE(worst(image, packet, projection, [&](const Ray& ray) { return along(*grid, ray); }), 1.01) << name_of(projection);
+      EXPECT_LE(worst(image, packet, projection, *grid), 1.01) << name_of(projection);
     }
 }
 
 TEST_F(ProjectionTest, TheMeanMatchesTheMeanAlongTheRay) {
   const auto grid = rough_grid();
-  const Vec3 centre = grid->mapping().world_from_index({19.5, 17.5, 15.5});
-  FramePacket packet = make_packet(centre + Vec3(70, -60, 50), centre, 32);
-  packet.view.orthographic = true;
-  packet.view.height = 60;
-  RenderSettings settings;
-  settings.texel_format = TexelFormat::r32f;
-  settings.step_voxels = 0.25;
+  FramePacket packet = packet_of(*grid);
+  set_orthographic(packet, 60);
   packet.volumes = {grey_item(grid, Projection::average)};
-  const Image8 image = draw(packet, settings, "average");
-  EXPECT_LE(worst(image, packet, Projection::average, [&](const Ray& ray) { return along(*grid, ray); }), 1.01);
+  const Image8 image = draw(packet, fine(0.25), "average");
+  EXPECT_LE(worst(image, packet, Projection::average, *grid), 1.01);
 }
 
 TEST_F(ProjectionTest, InvalidCellsAreIgnored) {
   const auto grid = rough_grid([](const Vec3& p) { return p.x < 26 || p.y < 12; });
-  const Vec3 centre = grid->mapping().world_from_index({19.5, 17.5, 15.5});
-  FramePacket packet = make_packet(centre + Vec3(70, -60, 50), centre, 32);
-  RenderSettings settings;
-  settings.texel_format = TexelFormat::r32f;
-  settings.step_voxels = 0.05;
+  FramePacket packet = packet_of(*grid);
   for (const Projection projection : {Projection::maximum, Projection::average}) {
     packet.volumes = {grey_item(grid, projection)};
-    const Image8 image = draw(packet, settings, name_of(projection));
-    EXPECT_LE(worst(image, packet, projection, [&](const Ray& ray) { return along(*grid, ray); }), 2.01) << name_of(projection);
+    const Image8 image = draw(packet, fine(0.05), name_of(projection));
+    EXPECT_LE(worst(image, packet, projection, *grid), 2.01) << name_of(projection);
   }
 }
 
 TEST_F(ProjectionTest, EndsAtOpaqueObjectsAndClipPlanes) {
   // value y / 20 seen along y: maximum at the end of the ray, minimum at its start
   const auto grid = make_grid({21, 21, 21}, [](const Vec3& p) { return p.y / 20; });
-  FramePacket packet;
-  packet.width = packet.height = 64;
-  packet.background = {0, 0, 0, 0};
-  packet.view.position = {10, -40, 10};
-  packet.view.target = {10, 10, 10};
-  packet.view.orthographic = true;
-  packet.view.height = 16;
+  FramePacket packet = square_packet_along_y(64, 16);
   packet.clip_planes = {{{0, 3, 0}, {0, 1, 0}}};
   const auto blocker = make_grid({21, 21, 21}, [](const Vec3& p) { return p.y + 0.2 * (p.x - 10); });
-  IsosurfaceItem wall;
-  wall.grid = blocker;
-  wall.level = 14;
-  wall.color = {0, 0, 0};
-  packet.isosurfaces = {wall};
+  packet.isosurfaces = {{blocker, 14, {0, 0, 0}}};
   const double lambert = 1 / std::sqrt(1.04), mirrored = 2 * lambert * lambert - 1, behind = 0.2 * std::pow(mirrored, 20);
   for (const Projection projection : {Projection::maximum, Projection::minimum, Projection::average}) {
     packet.volumes = {grey_item(grid, projection)};
@@ -169,10 +151,7 @@ TEST_F(ProjectionTest, IsRefusedTogetherWithOtherVolumes) {
   const auto grid = make_grid({8, 8, 8}, [](const Vec3& p) { return p.x / 8; });
   FramePacket packet = make_packet({20, -20, 20}, {4, 4, 4});
   packet.volumes = {grey_item(grid, Projection::maximum), grey_item(grid, Projection::composite)};
-  const auto drawn = renderer_->draw(packet);
-  ASSERT_FALSE(drawn);
-  EXPECT_NE(drawn.error().message.find("expected alone"), std::string::npos);
+  expect_refused(packet, "expected alone");
 }
 
-}  // namespace projection_test
-}  // namespace catena::test
+}  // namespace catena::test::projection_test

@@ -11,15 +11,12 @@
 #include "tests/render/support/image_fixture.h"
 #include "tests/render/support/spirv.h"
 
-namespace catena::test {
-namespace sampling_test {
+namespace catena::test::sampling_test {
 
 using namespace catena::render;
 
 class Sampling : public DeviceFixture {
  protected:
-  void TearDown() override { expect_no_validation_messages(); }
-
   std::vector<float> sample(const ResidentGrid& mirror, const std::vector<glm::vec3>& local) {
     const auto words = shader_words("sample.comp");
     EXPECT_FALSE(words.empty());
@@ -220,5 +217,4 @@ TEST_F(Sampling, RangesOfCubicBricksIncludeOvershoots) {
   }
 }
 
-}  // namespace sampling_test
-}  // namespace catena::test
+}  // namespace catena::test::sampling_test

@@ -9,8 +9,7 @@
 
 #include "engine/base/symlog_scale.h"
 
-namespace catena::test {
-namespace transfer_tables_test {
+namespace catena::test::transfer_tables_test {
 
 using namespace catena::render;
 
@@ -183,5 +182,4 @@ TEST(TransferLut, FactorsAreConstantBeyondTheirEndsAndKeepNarrowFeatures) {
     EXPECT_NEAR(read(rise, g, 0), factor, 1e-3) << g;
 }
 
-}  // namespace transfer_tables_test
-}  // namespace catena::test
+}  // namespace catena::test::transfer_tables_test

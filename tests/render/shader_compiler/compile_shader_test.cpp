@@ -2,8 +2,6 @@
 /// Shaders compiled at run time, and their file watch.
 #include "render/shader_compiler/compile_shader.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <filesystem>
 
@@ -11,8 +9,7 @@
 #include "tests/render/support/image_fixture.h"
 #include "tests/support/support.h"
 
-namespace catena::test {
-namespace compile_shader_test {
+namespace catena::test::compile_shader_test {
 
 namespace fs = std::filesystem;
 using namespace catena::render;
@@ -141,5 +138,4 @@ void main() { out_color = u.color; }
   EXPECT_GT(max_difference(before, green), 100);
 }
 
-}  // namespace compile_shader_test
-}  // namespace catena::test
+}  // namespace catena::test::compile_shader_test

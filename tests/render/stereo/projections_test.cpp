@@ -6,8 +6,7 @@
 
 #include "render/frame/camera.h"
 
-namespace catena::render {
-namespace projections_test {
+namespace catena::render::projections_test {
 
 TEST(ScreenView, ScreenCornersAreImageCornersFromAnyEye) {
   // a tilted screen, with eyes off its centre and beyond its edge
@@ -101,5 +100,4 @@ TEST(HeadsetView, RefusesEdgesOutOfOrder) {
   EXPECT_FALSE(make_headset_view(Vec3(0.0), Mat3(1.0), {-1, NAN, 1, -1}));
 }
 
-}  // namespace projections_test
-}  // namespace catena::render
+}  // namespace catena::render::projections_test

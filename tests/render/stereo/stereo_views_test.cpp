@@ -10,8 +10,7 @@
 #include "render/frame/camera.h"
 #include "render/stereo/xr_views.h"
 
-namespace catena::render {
-namespace stereo_views_test {
+namespace catena::render::stereo_views_test {
 
 constexpr double kWidth = 800, kHeight = 600;
 
@@ -146,5 +145,4 @@ TEST(Eyes, TheRoomPlacesTheWorldAsInTheView) {
   }
 }
 
-}  // namespace stereo_views_test
-}  // namespace catena::render
+}  // namespace catena::render::stereo_views_test

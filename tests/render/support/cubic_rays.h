@@ -41,13 +41,7 @@ inline render::FramePacket packet_of_grid(const field::ScalarGrid& grid, double 
   return make_packet(grid_center(grid) + distance * direction(Vec3(1, -0.7, 0.6)), grid_center(grid), fovy_deg);
 }
 
-inline render::IsosurfaceItem make_isosurface_item(GridPtr grid, double level) {
-  render::IsosurfaceItem item;
-  item.grid = std::move(grid);
-  item.level = level;
-  item.color = {0.8f, 0.6f, 0.4f};
-  return item;
-}
+inline render::IsosurfaceItem make_isosurface_item(GridPtr grid, double level) { return {std::move(grid), level, {0.8f, 0.6f, 0.4f}}; }
 
 /// A pixel's world ray, parametrized by depth, and its range in a grid's box.
 struct PixelRay {
@@ -58,13 +52,10 @@ struct PixelRay {
     const render::Ray ray = render::pixel_ray(camera, x + 0.5, y + 0.5);
     direction = ray.direction / dot(ray.direction, -camera.back);
     origin = ray.origin - dot(ray.origin - camera.position, -camera.back) * direction;
-    const Vec3 d = grid.mapping().index_from_world_linear * direction, o = grid.mapping().index_from_world(origin);
-    voxels = norm(d);
-    for (int a = 0; a < 3; ++a) {
-      const double s = (grid.index_box().lo[a] - o[a]) / d[a], t = (grid.index_box().hi[a] - o[a]) / d[a];
-      from = std::max(from, std::min(s, t));
-      to = std::min(to, std::max(s, t));
-    }
+    voxels = norm(grid.mapping().index_from_world_linear * direction);
+    const auto [enter, leave] = ray_interval(grid, origin, direction);
+    from = enter;
+    to = leave;
   }
   Vec3 at(double t) const { return origin + t * direction; }
 };

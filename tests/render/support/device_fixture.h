@@ -18,10 +18,12 @@ class DeviceFixture : public testing::Test {
     ASSERT_TRUE(device) << device.error().message;
     device_ = std::move(*device);
   }
-  void expect_no_validation_messages() const {
+  void TearDown() override {
+    if (!device_ || messages_expected_) return;
     EXPECT_EQ(device_->messages().count(), 0u);
     for (const std::string& text : device_->messages().texts()) ADD_FAILURE() << text;
   }
+  bool messages_expected_ = false;
   std::unique_ptr<render::vk::Device> device_;
 };
 

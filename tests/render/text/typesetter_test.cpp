@@ -8,8 +8,7 @@
 
 #include "tests/support/support.h"
 
-namespace catena::test {
-namespace typesetter_test {
+namespace catena::test::typesetter_test {
 
 using namespace catena::render;
 
@@ -154,5 +153,4 @@ TEST(Typesetter, AnUnknownFamilyFallsBackAndAChangeResetsTheAtlas) {
   EXPECT_EQ(typesetter.measure("Hamburg", {20, false, 0}).width, width);
 }
 
-}  // namespace typesetter_test
-}  // namespace catena::test
+}  // namespace catena::test::typesetter_test

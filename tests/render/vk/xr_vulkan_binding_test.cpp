@@ -10,8 +10,7 @@
 #include "render/vk/commands.h"
 #include "render/vk/device.h"
 
-namespace catena::test {
-namespace xr_vulkan_binding_test {
+namespace catena::test::xr_vulkan_binding_test {
 
 using namespace catena::render;
 
@@ -116,5 +115,4 @@ TEST(VulkanBinding, AFailedCreationIsAnErrorInOneLine) {
   }
 }
 
-}  // namespace xr_vulkan_binding_test
-}  // namespace catena::test
+}  // namespace catena::test::xr_vulkan_binding_test

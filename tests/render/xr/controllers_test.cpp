@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// Controllers: poses and buttons by interaction profile, vibration, tracking loss and recovery.
-#include <gtest/gtest.h>
-
 #include "tests/render/xr/xr_fixture.h"
 
-namespace catena::test {
-namespace controllers_test {
+namespace catena::test::controllers_test {
 
 using namespace xr_rig;
 
@@ -14,7 +11,7 @@ class HeadsetControllers : public HeadsetFixture {
   void SetUp() override {
     HeadsetFixture::SetUp();
     if (!runtime_.found()) return;
-    runtime_.script().width = runtime_.script().height = 16;
+    set_image_size(16, 16);
     auto& right = runtime_.script().hands[1];
     right.grip = {{0.0f, 0.0f, 0.70710678f, 0.70710678f}, {0.2f, -0.1f, -0.4f}};
     right.aim = {{0, 0, 0, 1}, {0.2f, -0.1f, -0.45f}};
@@ -33,18 +30,11 @@ class HeadsetControllers : public HeadsetFixture {
 };
 
 TEST_F(HeadsetControllers, EveryKnownControllerIsBound) {
-  struct Expected {
-    const char* profile;
-    double select, grab, stick_x;
-  };
-  // the simple controller has only a click
-  for (const Expected& due : {Expected{"/interaction_profiles/khr/simple_controller", 0.25, 0, 0},
-                              Expected{"/interaction_profiles/oculus/touch_controller", 0.25, 1, -0.5},
-                              Expected{"/interaction_profiles/valve/index_controller", 0.25, 1, -0.5},
-                              Expected{"/interaction_profiles/htc/vive_controller", 0.25, 1, -0.5},
-                              Expected{"/interaction_profiles/microsoft/motion_controller", 0.25, 1, -0.5}}) {
-    SCOPED_TRACE(due.profile);
-    runtime_.script().profile = due.profile;
+  for (const std::string name : {"khr/simple", "oculus/touch", "valve/index", "htc/vive", "microsoft/motion"}) {
+    SCOPED_TRACE(name);
+    const std::string profile_path = "/interaction_profiles/" + name + "_controller";
+    const bool is_simple = name == "khr/simple";  // it has only a click
+    runtime_.script().profile = profile_path;
     ASSERT_TRUE(open());
     ASSERT_TRUE(run_frames(packet_, {}, 3));
     const xr::ControllerState state = hand(1);
@@ -52,16 +42,14 @@ TEST_F(HeadsetControllers, EveryKnownControllerIsBound) {
     EXPECT_NEAR(norm(state.grip.position - Vec3(0.2, -0.1, -0.4)), 0, 1e-7);
     EXPECT_NEAR(norm(rotate(state.grip.orientation, Vec3(1.0, 0.0, 0.0)) - Vec3(0.0, 1.0, 0.0)), 0, 1e-6);
     EXPECT_NEAR(state.aim.position.z, -0.45, 1e-7);
-    EXPECT_EQ(state.select, due.select);
-    EXPECT_EQ(state.grab, due.grab);
-    EXPECT_EQ(state.stick_x, due.stick_x);
+    EXPECT_EQ(state.select, 0.25);
+    EXPECT_EQ(state.grab, is_simple ? 0 : 1);
+    EXPECT_EQ(state.stick_x, is_simple ? 0 : -0.5);
     EXPECT_TRUE(state.menu);
     const auto profile = headset_->actions().interaction_profile(1);
     ASSERT_TRUE(profile);
-    EXPECT_EQ(*profile, due.profile);
-    headset_->stop();
-    renderer_.reset();
-    headset_.reset();
+    EXPECT_EQ(*profile, profile_path);
+    close();
   }
 }
 
@@ -92,14 +80,14 @@ TEST_F(HeadsetControllers, VibrationsReachTheRuntimeAndNoneWithoutFocus) {
   ASSERT_TRUE(actions.stop_vibration(0));
   const auto& vibrations_received = runtime_.record().vibrations;
   ASSERT_EQ(vibrations_received.size(), 3u);
-  EXPECT_EQ(vibrations_received[0].hand, 0);
-  EXPECT_EQ(vibrations_received[0].amplitude, 0.25f);
-  EXPECT_EQ(vibrations_received[0].frequency, 160.0f);
-  EXPECT_EQ(vibrations_received[0].duration, 30'000'000);
-  EXPECT_EQ(vibrations_received[1].hand, 1);
-  EXPECT_EQ(vibrations_received[1].amplitude, 1.0f);
-  EXPECT_EQ(vibrations_received[1].frequency, 0.0f);
-  EXPECT_EQ(vibrations_received[1].duration, std::int64_t(XR_MIN_HAPTIC_DURATION));
+  const auto expect_vibration = [](const xr_runtime::Vibration& v, int hand, float amplitude, float frequency, std::int64_t duration) {
+    EXPECT_EQ(v.hand, hand);
+    EXPECT_EQ(v.amplitude, amplitude);
+    EXPECT_EQ(v.frequency, frequency);
+    EXPECT_EQ(v.duration, duration);
+  };
+  expect_vibration(vibrations_received[0], 0, 0.25f, 160.0f, 30'000'000);
+  expect_vibration(vibrations_received[1], 1, 1.0f, 0.0f, std::int64_t(XR_MIN_HAPTIC_DURATION));
   EXPECT_TRUE(vibrations_received[2].stop);
   runtime_.script().states.emplace(runtime_.record().calls.at("xrWaitFrame"), XR_SESSION_STATE_VISIBLE);
   ASSERT_TRUE(run_frames(packet_, {}, 2));
@@ -113,7 +101,7 @@ TEST_F(HeadsetControllers, TheGazeIsThePoseOfTheEyes) {
   for (const int lack : {0, 1, 2}) {
     SCOPED_TRACE(lack);
     runtime_.reset();
-    runtime_.script().width = runtime_.script().height = 16;
+    set_image_size(16, 16);
     runtime_.script().gaze = XrPosef{{0, s, 0, c}, {0.01f, 0.02f, 0.03f}};
     if (lack == 1) runtime_.script().unsupported.insert(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
     if (lack == 2) runtime_.script().supports_gaze = false;
@@ -131,22 +119,17 @@ TEST_F(HeadsetControllers, TheGazeIsThePoseOfTheEyes) {
       ASSERT_TRUE(shut);
       EXPECT_FALSE(shut->has_value());
     }
-    headset_->stop();
-    renderer_.reset();
-    headset_.reset();
+    close();
   }
 }
 
 TEST_F(HeadsetControllers, SteadyClockTimesConvertToXrTimes) {
   ASSERT_TRUE(open());
   EXPECT_EQ(xr::to_xr_time(headset_->instance(), 12'345'678'901), std::optional<XrTime>(12'345'678'901));
-  headset_->stop();
-  renderer_.reset();
-  headset_.reset();
+  close();
   runtime_.script().unsupported.insert(XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME);
   ASSERT_TRUE(open());
   EXPECT_FALSE(xr::to_xr_time(headset_->instance(), 12'345'678'901));
 }
 
-}  // namespace controllers_test
-}  // namespace catena::test
+}  // namespace catena::test::controllers_test

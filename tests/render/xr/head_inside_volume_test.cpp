@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// The head enters a volume in small steps through its face, and stands exactly on the face. Every image matches the rays of that eye, so
 /// that there are neither flashes nor holes.
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "tests/render/support/image_fixture.h"
 #include "tests/render/xr/xr_fixture.h"
 
-namespace catena::test {
-namespace head_inside_volume_test {
+namespace catena::test::head_inside_volume_test {
 
 using namespace xr_rig;
 using xr_runtime::CapturedImage;
@@ -17,26 +14,13 @@ using xr_runtime::CapturedImage;
 constexpr double kScale = 0.05;  // metres per unit
 constexpr int kNodes = 17;       // nodes of the box per axis, one unit apart
 
-Vec3 turned_by(const XrQuaternionf& q, const Vec3& v) {
-  const Vec3 u(q.x, q.y, q.z);
-  return v + 2 * double(q.w) * cross(u, v) + 2.0 * cross(u, cross(u, v));
-}
-
-/// Ray from the eye through a pixel's centre in room coordinates, by OpenXR's definition.
-Vec3 ray_of(const XrView& view, int i, int j, int width, int height) {
-  const double l = std::tan(view.fov.angleLeft), r = std::tan(view.fov.angleRight), t = std::tan(view.fov.angleUp),
-               b = std::tan(view.fov.angleDown);
-  return direction(turned_by(view.pose.orientation, Vec3(l + (r - l) * (i + 0.5) / width, t + (b - t) * (j + 0.5) / height, -1.0)));
-}
-
 class HeadInsideVolume : public HeadsetFixture {
  protected:
   void SetUp() override {
     HeadsetFixture::SetUp();
     if (!runtime_.found()) return;
     runtime_.script().capture_images = true;
-    runtime_.script().width = 48;
-    runtime_.script().height = 40;
+    set_image_size(48, 40);
     views_ = runtime_.script().views;
     // the near face of the box is the room's plane z = 0, around the head's path
     placement_.meters_per_unit = kScale;
@@ -52,13 +36,9 @@ class HeadInsideVolume : public HeadsetFixture {
   /// Images of both eyes at that position.
   const std::vector<CapturedImage>& seen(FramePacket& packet, const RenderSettings& settings) {
     for (bool shown = false; !shown;) {
-      EXPECT_TRUE(headset_->poll());
-      const auto frame = headset_->begin();
-      EXPECT_TRUE(frame);
-      if (!frame) break;
-      const Outcome drawn = headset_->show(*frame, *renderer_, packet, settings, placement_);
-      EXPECT_TRUE(drawn) << drawn.error().message;
-      shown = frame->should_render || !drawn;
+      const xr::Frame frame = begin_frame();
+      show(frame, packet, settings, placement_);
+      shown = frame.should_render || HasFailure();
     }
     return runtime_.record().last_images;
   }
@@ -75,8 +55,7 @@ std::vector<double> steps_through() {
 }
 
 RenderSettings fast_settings(std::uint32_t spacing) {
-  RenderSettings settings;
-  settings.fast = FastSettings{.step_voxels = 1, .spacing = spacing, .refine_half_255 = 1, .refine_full_255 = 1};
+  RenderSettings settings{.fast = FastSettings{.step_voxels = 1, .spacing = spacing, .refine_half_255 = 1, .refine_full_255 = 1}};
   return settings;
 }
 
@@ -99,7 +78,8 @@ TEST_F(HeadInsideVolume, AHomogeneousVolumeHasTheAlphaOfThePathLength) {
         const Vec3 eye(view.pose.position.x, view.pose.position.y, view.pose.position.z);
         for (int j = 0; j < 40; ++j)
           for (int i = 0; i < 48; ++i) {
-            const double through = std::exp(-kSigma * chord_length(*grid, placement_.to_world(eye), ray_of(view, i, j, 48, 40)));
+            const double through =
+                std::exp(-kSigma * chord_length(*grid, placement_.to_world(eye), ray_of(view, i + 0.5, j + 0.5, 48, 40)));
             const int due = int(std::lround(255 * (1 - through))), is = images[k].rgba[4 * std::size_t(j * 48 + i)];
             worst = std::max(worst, std::abs(is - due));
           }
@@ -138,5 +118,4 @@ TEST_F(HeadInsideVolume, ImagesChangeContinuouslyOnTheWayIn) {
   }
 }
 
-}  // namespace head_inside_volume_test
-}  // namespace catena::test
+}  // namespace catena::test::head_inside_volume_test

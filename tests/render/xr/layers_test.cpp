@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// Data submitted to the runtime besides images: depth, visibility mask, panel layer.
-#include <gtest/gtest.h>
-
 #include "render/vk/commands.h"
 #include "tests/render/support/image_fixture.h"
 #include "tests/render/xr/xr_fixture.h"
 
-namespace catena::test {
-namespace layers_test {
+namespace catena::test::layers_test {
 
 using namespace xr_rig;
 
@@ -19,12 +16,18 @@ class HeadsetLayers : public HeadsetFixture {
   }
 };
 
+/// Depth of a submitted image in metres along the eye's axis; infinite for the background.
+double metres_at(const xr_runtime::CapturedImage& image, int i, int j) {
+  const double n = image.near_z, f = image.far_z, d = image.depth[std::size_t(j) * image.width + std::size_t(i)];
+  return d >= 1 ? HUGE_VAL : n * f / (f - d * (f - n));
+}
+
 /// The submitted depth at the eye's centre is the nearest point of a ball, in metres.
 TEST_F(HeadsetLayers, DepthsAreInMetresForAnyWorldUnit) {
   XrView& view = runtime_.script().views[0];
   view.pose = {{0, 0, 0, 1}, {0, 0, 0}};
   view.fov = {-0.5f, 0.5f, 0.5f, -0.5f};
-  runtime_.script().width = runtime_.script().height = 65;
+  set_image_size(65, 65);
   ASSERT_TRUE(open());
   Placement placement;
   placement.meters_per_unit = 0.01;
@@ -34,19 +37,11 @@ TEST_F(HeadsetLayers, DepthsAreInMetresForAnyWorldUnit) {
     ASSERT_GT(runtime_.record().depths, 0u);
     const xr_runtime::CapturedImage& image = runtime_.record().last_images[0];
     ASSERT_EQ(image.depth.size(), 65u * 65u);
-    const double n = image.near_z, f = image.far_z, d = image.depth[32 * 65 + 32];
     EXPECT_EQ(image.min_depth, 0.0f);
     EXPECT_EQ(image.max_depth, 1.0f);
-    const double z = n * f / (f - d * (f - n));
-    EXPECT_NEAR(z / (0.8 * metres), 1, 2e-3);
+    EXPECT_NEAR(metres_at(image, 32, 32) / (0.8 * metres), 1, 2e-3);
     EXPECT_EQ(image.depth[0], 1.0f);  // background
   }
-}
-
-/// Depth of a submitted image in metres along the eye's axis; infinite for the background.
-double metres_at(const xr_runtime::CapturedImage& image, int i, int j) {
-  const double n = image.near_z, f = image.far_z, d = image.depth[std::size_t(j) * image.width + std::size_t(i)];
-  return d >= 1 ? HUGE_VAL : n * f / (f - d * (f - n));
 }
 
 /// A volume's depth is where alpha exceeds 0.5, by exact and by fast rays: from outside and inside, in front of and behind opaque objects;
@@ -58,7 +53,7 @@ TEST_F(HeadsetLayers, AVolumesDepthIsAtHalfAlpha) {
     view.pose = {{0, 0, 0, 1}, {0, 0, 0}};
     view.fov = {-0.4f, 0.4f, 0.4f, -0.4f};
   }
-  runtime_.script().width = runtime_.script().height = kSize;
+  set_image_size(kSize, kSize);
   ASSERT_TRUE(open());
   const auto even = make_grid({17, 17, 17}, [](const Vec3&) { return 1.0; });
   const auto ramp = make_grid({17, 17, 17}, [](const Vec3& at) { return at.z; });
@@ -88,13 +83,7 @@ TEST_F(HeadsetLayers, AVolumesDepthIsAtHalfAlpha) {
       packet.volumes.push_back(volume_item(due.grid, {{0, 0}, {16, 16 * due.sigma}}));
       RenderSettings settings;
       if (fast) settings.fast = FastSettings{.step_voxels = 1};
-      for (int k = 0; k < 3; ++k) {
-        ASSERT_TRUE(headset_->poll());
-        const auto frame = headset_->begin();
-        ASSERT_TRUE(frame);
-        const Outcome shown = headset_->show(*frame, *renderer_, packet, settings, placement);
-        ASSERT_TRUE(shown) << shown.error().message;
-      }
+      for (int k = 0; k < 3; ++k) show(begin_frame(), packet, settings, placement);
       const xr_runtime::CapturedImage& image = runtime_.record().last_images[0];
       ASSERT_EQ(image.depth.size(), std::size_t(kSize) * kSize);
       for (const int place : {24, 32, 40}) {  // pixels whose rays are marched
@@ -127,8 +116,7 @@ TEST_F(HeadsetLayers, AProjectionHasNoDepth) {
   Placement placement;
   placement.meters_per_unit = 0.05;
   placement.world_origin = {8.0, 8.0, 30.0};
-  const Outcome turned = run_frames(packet, placement, 3);
-  ASSERT_TRUE(turned) << turned.error().message;
+  ASSERT_TRUE(shows(packet, placement, 3));
   EXPECT_GT(runtime_.record().projection_frames, 0u);
   EXPECT_EQ(runtime_.record().depths, 0u);
 }
@@ -143,9 +131,7 @@ TEST_F(HeadsetLayers, WithoutTheExtensionOrItsFormatThereAreNoDepths) {
     ASSERT_TRUE(run_frames(packet, {}, 3));
     EXPECT_EQ(runtime_.record().depths, 0u);
     EXPECT_GT(runtime_.record().projection_frames, 0u);
-    headset_->stop();
-    renderer_.reset();
-    headset_.reset();
+    close();
   }
 }
 
@@ -158,9 +144,7 @@ TEST_F(HeadsetLayers, PixelsHiddenByTheLensesAreNotDrawn) {
     FramePacket packet = ball_packet({0.0, 0.0, -1.0}, 0.5);
     ASSERT_TRUE(run_frames(packet, {}, 3));
     images.push_back(runtime_.record().last_images[0].rgba);
-    headset_->stop();
-    renderer_.reset();
-    headset_.reset();
+    close();
   }
   ASSERT_EQ(images[0].size(), images[1].size());
   const int width = 96, height = 80;
@@ -201,5 +185,4 @@ TEST_F(HeadsetLayers, APanelIsAQuadLayer) {
   EXPECT_EQ(runtime_.record().quads, 1u);
 }
 
-}  // namespace layers_test
-}  // namespace catena::test
+}  // namespace catena::test::layers_test

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// Life cycle of a session: every edge of the state graph, a failure of every call, many frames, and OpenXR's validation layer.
-#include <gtest/gtest.h>
-
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -11,8 +9,7 @@
 #include "tests/render/xr/xr_fixture.h"
 #include "tests/support/resident.h"
 
-namespace catena::test {
-namespace session_test {
+namespace catena::test::session_test {
 
 using namespace xr_rig;
 
@@ -59,7 +56,7 @@ class HeadsetSession : public HeadsetFixture {
 };
 
 TEST_F(HeadsetSession, FollowsEveryEdgeUntilTheUserExits) {
-  runtime_.script().width = runtime_.script().height = 16;
+  set_image_size(16, 16);
   play({{4, kVisible}, {6, kSynchronized}, {9, kVisible}, {11, kFocused}, {13, kVisible}, {14, kSynchronized}, {15, kStopping}});
   runtime_.script().after_end = {kReady};
   ASSERT_TRUE(open());
@@ -83,7 +80,7 @@ TEST_F(HeadsetSession, FollowsEveryEdgeUntilTheUserExits) {
 }
 
 TEST_F(HeadsetSession, ARepeatedStopEndsTheSessionOnce) {
-  runtime_.script().width = runtime_.script().height = 16;
+  set_image_size(16, 16);
   play({{4, kStopping}, {4, kStopping}});
   ASSERT_TRUE(open());
   ASSERT_TRUE(run_frames(packet_, {}, 8));
@@ -92,7 +89,7 @@ TEST_F(HeadsetSession, ARepeatedStopEndsTheSessionOnce) {
 }
 
 TEST_F(HeadsetSession, ALossIsDetectedInEveryState) {
-  runtime_.script().width = runtime_.script().height = 16;
+  set_image_size(16, 16);
   ASSERT_TRUE(open());
   for (const XrSessionState state : {kSynchronized, kVisible, kFocused}) {
     ASSERT_TRUE(headset_->start(renderer_->device()));
@@ -156,9 +153,7 @@ TEST_F(HeadsetSession, EveryCallsFailureIsReportedAndRecoveredFrom) {
   validation_ = false;
   ASSERT_TRUE(open());
   ASSERT_TRUE(use());
-  headset_->stop();
-  renderer_.reset();
-  headset_.reset();
+  close();
   std::vector<std::string> functions;
   for (const auto& [name, calls] : r.record().calls) functions.push_back(name);
   EXPECT_GE(functions.size(), 40u);
@@ -184,13 +179,10 @@ TEST_F(HeadsetSession, EveryCallsFailureIsReportedAndRecoveredFrom) {
       if (!outcome && lost && headset_->loss() == xr::Loss::session && renderer_) {
         const Outcome again = headset_->start(renderer_->device());
         ASSERT_TRUE(again) << again.error().message;
-        const Outcome after = run_frames(packet_, {}, 5);
-        ASSERT_TRUE(after) << after.error().message;
+        ASSERT_TRUE(shows(packet_, {}, 5));
         EXPECT_GT(r.record().projection_frames, 0u);
       }
-      if (headset_) headset_->stop();
-      renderer_.reset();
-      headset_.reset();
+      close();
       EXPECT_EQ(r.record().objects, 0u);
       EXPECT_TRUE(r.record().illegal.empty()) << r.record().illegal.front();
     }
@@ -201,7 +193,7 @@ TEST_F(HeadsetSession, EveryCallsFailureIsReportedAndRecoveredFrom) {
 TEST_F(HeadsetSession, ManyFramesTakeNoMoreMemory) {
   const char* asked = std::getenv("CATENA_XR_FRAMES");
   const int frames = asked ? std::atoi(asked) : 300;
-  runtime_.script().width = runtime_.script().height = 8;
+  set_image_size(8, 8);
   runtime_.script().period_ns = 1'000'000;
   validation_ = asked != nullptr;  // validation takes most of the time
   ASSERT_TRUE(open());
@@ -225,15 +217,13 @@ TEST_F(HeadsetSession, AnyNamedRuntimeShowsImages) {
   if (!opened) GTEST_SKIP() << opened.error().message;
   for (int i = 0; i < 2000 && headset_->counts().rendered < 60; ++i) {
     if (!headset_->is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    const Outcome turned = run_frames(packet_, {}, 1);
-    ASSERT_TRUE(turned) << turned.error().message;
+    ASSERT_TRUE(shows(packet_, {}, 1));
   }
   EXPECT_GE(headset_->counts().rendered, 60u);
   ASSERT_TRUE(headset_->session().request_exit());
   for (int i = 0; i < 2000 && !headset_->session().has_exited(); ++i) {
     if (!headset_->is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    const Outcome turned = run_frames(packet_, {}, 1);
-    ASSERT_TRUE(turned) << turned.error().message;
+    ASSERT_TRUE(shows(packet_, {}, 1));
   }
   EXPECT_TRUE(headset_->session().has_exited());
   EXPECT_EQ(headset_->session().invalid_transitions(), 0u);
@@ -253,8 +243,7 @@ TEST_F(HeadsetSession, TheOpenXrValidationLayerFindsNoError) {
   ::setenv("XR_CORE_VALIDATION_EXPORT_TYPE", "text", 1);
   ::setenv("XR_CORE_VALIDATION_FILE_NAME", file.c_str(), 1);
   runtime_.script().unsupported.clear();
-  const Outcome opened = open();
-  ASSERT_TRUE(opened) << opened.error().message;
+  ASSERT_TRUE(opens());
   const Outcome used = use();
   EXPECT_TRUE(used) << used.error().message;
   headset_->stop();
@@ -272,5 +261,4 @@ TEST_F(HeadsetSession, TheOpenXrValidationLayerFindsNoError) {
   EXPECT_TRUE(exists(file) && read_file(file).find("VUID") != std::string::npos);
 }
 
-}  // namespace session_test
-}  // namespace catena::test
+}  // namespace catena::test::session_test

@@ -2,7 +2,6 @@
 /// Images of both eyes of example scenes. CATENA_XR_PICTURES=DIR writes them. CATENA_XR_EYES=1 measures the cost of the second eye:
 /// processor time of images with one and with two views, of the same scene and settings, alternating, so that other load affects both.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -15,8 +14,7 @@
 #include "render/image/image.h"
 #include "tests/render/xr/xr_fixture.h"
 
-namespace catena::test {
-namespace stereo_views_test {
+namespace catena::test::stereo_views_test {
 
 using namespace xr_rig;
 
@@ -47,19 +45,13 @@ class HeadsetStereoViews : public HeadsetFixture {
     }
   }
   double packet_s_ = 0;  ///< time of the work that both eyes share
-  void close() {
-    headset_->stop();
-    renderer_.reset();
-    headset_.reset();
-  }
 };
 
 TEST_F(HeadsetStereoViews, ImagesOfBothEyes) {
   const char* folder = std::getenv("CATENA_XR_PICTURES");
   if (!folder) GTEST_SKIP() << "writes pictures only where CATENA_XR_PICTURES names a folder";
   validation_ = false;
-  runtime_.script().width = 640;
-  runtime_.script().height = 560;
+  set_image_size(640, 560);
   runtime_.script().capture_images = true;
   for (const char* name : {"atlas", "left-ventricle", "hand"}) {
     auto scene = scene::read_scene(source_dir() + "/assets/scenes/" + name + ".json");
@@ -78,8 +70,7 @@ TEST_F(HeadsetStereoViews, ImagesOfBothEyes) {
 TEST_F(HeadsetStereoViews, CostOfTheSecondEye) {
   if (!std::getenv("CATENA_XR_EYES")) GTEST_SKIP() << "measures only where CATENA_XR_EYES is set";
   validation_ = false;
-  runtime_.script().width = 320;
-  runtime_.script().height = 240;
+  set_image_size(320, 240);
   runtime_.script().unsupported.insert(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
   const std::vector<XrView> both = runtime_.script().views;
   const std::string folder = source_dir() + "/assets/scenes/";
@@ -127,5 +118,4 @@ TEST_F(HeadsetStereoViews, CostOfTheSecondEye) {
   }
 }
 
-}  // namespace stereo_views_test
-}  // namespace catena::test
+}  // namespace catena::test::stereo_views_test

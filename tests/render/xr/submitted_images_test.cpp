@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// Images submitted to the headset: position of a ball for canted and asymmetric eyes at every depth, and bytes equal to a window's.
-#include <gtest/gtest.h>
-
 #include <array>
 #include <cstdlib>
 
 #include "render/image/image.h"
 #include "tests/render/xr/xr_fixture.h"
 
-namespace catena::test {
-namespace submitted_images_test {
+namespace catena::test::submitted_images_test {
 
 using namespace xr_rig;
 using xr_runtime::CapturedImage;
@@ -30,22 +27,15 @@ Place centroid(const CapturedImage& rendered) {
   return {x / count, y / count};
 }
 
-Vec3 turned(const XrQuaternionf& q, const Vec3& v) {
-  const Vec3 u(q.x, q.y, q.z);
-  return v + 2 * double(q.w) * cross(u, v) + 2.0 * cross(u, cross(u, v));
-}
-
 /// Expected position of a ball in the room, by rays from the eye as OpenXR defines it, without Catena's cameras.
 Place expected_centroid(const XrView& view, const Vec3& centre, double radius, double width, double height) {
   constexpr int kFine = 4;
-  const double l = std::tan(view.fov.angleLeft), r = std::tan(view.fov.angleRight), t = std::tan(view.fov.angleUp),
-               b = std::tan(view.fov.angleDown);
   const Vec3 eye(view.pose.position.x, view.pose.position.y, view.pose.position.z), to = centre - eye;
   double x = 0, y = 0, count = 0;
   for (int j = 0; j < kFine * int(height); ++j)
     for (int i = 0; i < kFine * int(width); ++i) {
       const double px = (i + 0.5) / kFine, py = (j + 0.5) / kFine;
-      const Vec3 ray = direction(turned(view.pose.orientation, Vec3(l + (r - l) * px / width, t + (b - t) * py / height, -1.0)));
+      const Vec3 ray = ray_of(view, px, py, width, height);
       const double along = dot(ray, to);
       if (along <= 0 || dot(to, to) - along * along > radius * radius) continue;
       x += px;
@@ -59,12 +49,10 @@ class HeadsetImages : public HeadsetFixture {};
 
 TEST_F(HeadsetImages, ABallIsAtItsPositionInBothEyes) {
   runtime_.script().capture_images = true;
-  runtime_.script().width = 200;
-  runtime_.script().height = 180;
+  set_image_size(200, 180);
   // eyes canted about two axes, head rotated
   runtime_.script().views[1].pose.orientation = {0.05f, -0.09f, 0.02f, 0.994f};
-  const Outcome opened = open();
-  ASSERT_TRUE(opened) << opened.error().message;
+  ASSERT_TRUE(opens());
   Placement placement;
   placement.world_origin = {3.0, -2.0, 1.0};
   placement.world_from_room = Mat3(Vec3(0.0, 1.0, 0.0), Vec3(0.0, 0.0, 1.0), Vec3(1.0, 0.0, 0.0));
@@ -73,8 +61,7 @@ TEST_F(HeadsetImages, ABallIsAtItsPositionInBothEyes) {
     const Vec3 room(0.1 * depth, -0.06 * depth, -depth);
     const double radius = 0.16 * depth;
     FramePacket packet = ball_packet(placement.to_world(room), radius / placement.meters_per_unit);
-    const Outcome turned = run_frames(packet, placement, 4);
-    ASSERT_TRUE(turned) << turned.error().message;
+    ASSERT_TRUE(shows(packet, placement, 4));
     ASSERT_EQ(runtime_.record().last_images.size(), 2u);
     for (std::size_t k = 0; k < 2; ++k) {
       const CapturedImage& rendered = runtime_.record().last_images[k];
@@ -93,7 +80,7 @@ TEST_F(HeadsetImages, ABallIsAtItsPositionInBothEyes) {
 /// The cursor at the hand while the head moves: drawn with the frame's poses it covers the hand in both eyes.
 TEST_F(HeadsetImages, TheCursorIsAtTheHandWhileTheHeadMoves) {
   runtime_.script().capture_images = true;
-  runtime_.script().width = runtime_.script().height = 160;
+  set_image_size(160, 160);
   const std::vector<XrView> still = runtime_.script().views;
   runtime_.script().on_frame = [still](std::uint64_t frame, xr_runtime::Script& script) {
     const float t = float(frame);
@@ -114,16 +101,14 @@ TEST_F(HeadsetImages, TheCursorIsAtTheHandWhileTheHeadMoves) {
   placement.world_origin = {1.0, 2.0, 3.0};
   double maximum = 0;
   for (int i = 0; i < 12; ++i) {
-    ASSERT_TRUE(headset_->poll());
-    const auto frame = headset_->begin();
-    ASSERT_TRUE(frame);
+    const xr::Frame frame = begin_frame();
     ASSERT_TRUE(headset_->actions().sync());
-    const auto hand = headset_->actions().controller(1, frame->display_time);
+    const auto hand = headset_->actions().controller(1, frame.display_time);
     ASSERT_TRUE(hand);
     const Vec3 room = hand->grip.position;
     FramePacket packet = ball_packet(placement.to_world(room), 0.05 / placement.meters_per_unit);
-    ASSERT_TRUE(headset_->show(*frame, *renderer_, packet, {}, placement));
-    if (!frame->should_render || !hand->is_tracked) continue;
+    show(frame, packet, {}, placement);
+    if (!frame.should_render || !hand->is_tracked) continue;
     for (std::size_t k = 0; k < 2; ++k) {
       const Place seen = centroid(runtime_.record().last_images[k]),
                   due = expected_centroid(runtime_.script().views[k], room, 0.05, 160, 160);
@@ -140,8 +125,7 @@ TEST_F(HeadsetImages, SubmittedImagesEqualImageFiles) {
   for (const std::int64_t format : {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM}) {
     runtime_.script().capture_images = true;
     runtime_.script().formats = {VK_FORMAT_B8G8R8A8_SRGB, format};
-    const Outcome opened = open();
-    ASSERT_TRUE(opened) << opened.error().message;
+    ASSERT_TRUE(opens());
     const Placement placement;
     FramePacket packet = ball_packet({0.0, 0.0, -1.0}, 0.3);
     ASSERT_TRUE(run_frames(packet, placement, 3));
@@ -162,9 +146,7 @@ TEST_F(HeadsetImages, SubmittedImagesEqualImageFiles) {
       for (std::size_t i = 0; i < shown.size(); ++i) maximum = std::max(maximum, std::abs(int(shown[i]) - int(rendered->rgba[i])));
       EXPECT_LE(maximum, 2);
     }
-    headset_->stop();
-    renderer_.reset();
-    headset_.reset();
+    close();
   }
 }
 
@@ -182,5 +164,4 @@ TEST_F(HeadsetImages, ReducedPixelsUseAPartOfTheImage) {
   EXPECT_NEAR(seen[1], due[1], 0.1);
 }
 
-}  // namespace submitted_images_test
-}  // namespace catena::test
+}  // namespace catena::test::submitted_images_test

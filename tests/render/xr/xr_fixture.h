@@ -64,13 +64,23 @@ inline FramePacket ball_packet(const Vec3& centre, double radius) {
   return packet;
 }
 
+/// Ray from the eye through a point of the image (in pixels, from above) in room coordinates, by OpenXR's definition, without Catena's
+/// cameras.
+inline Vec3 ray_of(const XrView& view, double x, double y, double width, double height) {
+  const double l = std::tan(view.fov.angleLeft), r = std::tan(view.fov.angleRight), t = std::tan(view.fov.angleUp),
+               b = std::tan(view.fov.angleDown);
+  const Vec3 v(l + (r - l) * x / width, t + (b - t) * y / height, -1.0),
+      u(view.pose.orientation.x, view.pose.orientation.y, view.pose.orientation.z);
+  return direction(v + 2 * double(view.pose.orientation.w) * cross(u, v) + 2.0 * cross(u, cross(u, v)));
+}
+
 class HeadsetFixture : public testing::Test {
  protected:
   void SetUp() override {
     if (!runtime_.found()) GTEST_SKIP() << "the scripted runtime was not built";
   }
   void TearDown() override {
-    headset_ ? headset_->stop() : void();
+    if (headset_) headset_->stop();
     if (renderer_) {
       EXPECT_EQ(renderer_->stats().validation_messages, 0u);
       for (const std::string& text : renderer_->validation_texts()) ADD_FAILURE() << text;
@@ -88,6 +98,40 @@ class HeadsetFixture : public testing::Test {
     options.provider = headset_->vulkan_provider(queue_lock_);
     CATENA_TRY(renderer_, Renderer::create(options));
     return headset_->start(renderer_->device());
+  }
+  /// Ends the session and frees everything that open() made.
+  void close() {
+    if (headset_) headset_->stop();
+    renderer_.reset();
+    headset_.reset();
+  }
+  void set_image_size(std::uint32_t width, std::uint32_t height) {
+    runtime_.script().width = width;
+    runtime_.script().height = height;
+  }
+  /// open() without an error.
+  bool opens() {
+    const Outcome opened = open();
+    EXPECT_TRUE(opened) << opened.error().message;
+    return bool(opened);
+  }
+  /// run_frames() without an error.
+  bool shows(FramePacket& packet, const Placement& placement, int turns = 1) {
+    const Outcome shown = run_frames(packet, placement, turns);
+    EXPECT_TRUE(shown) << shown.error().message;
+    return bool(shown);
+  }
+  /// The next frame of a running session, which must have one.
+  xr::Frame begin_frame() {
+    EXPECT_TRUE(headset_->poll());
+    auto frame = headset_->begin();
+    EXPECT_TRUE(frame) << frame.error().message;
+    return frame.value();
+  }
+  /// Shows a packet in a frame.
+  void show(const xr::Frame& frame, FramePacket& packet, const RenderSettings& settings, const Placement& placement) {
+    const Outcome shown = headset_->show(frame, *renderer_, packet, settings, placement);
+    ASSERT_TRUE(shown) << shown.error().message;
   }
   /// Runs iterations of the loop: events, and a frame while the session runs.
   Outcome run_frames(FramePacket& packet, const Placement& placement, int turns = 1, double share = 1) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// A headless Chromium, driven over its DevTools (https://chromedevtools.github.io/devtools-protocol).
 #pragma once
-#include <cctype>
-
 #include "tests/engine/app/server/serve_process.h"
 
 namespace catena::test {
@@ -18,31 +16,17 @@ class Browser {
  public:
   /// Starts the browser with a size like "800,600"; is_running() tells whether it responds.
   explicit Browser(const std::string& size) {
-    std::vector<std::string> words{browser_path(),
-                                   "--headless=new",
-                                   "--no-sandbox",
-                                   "--disable-gpu",
-                                   "--disable-dev-shm-usage",
-                                   "--no-first-run",
-                                   "--disable-extensions",
-                                   "--disable-background-networking",
-                                   "--mute-audio",
-                                   "--remote-debugging-port=0",
-                                   "--window-size=" + size,
-                                   "--user-data-dir=" + folder_ / "home",
-                                   "about:blank"};
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
+    std::vector<std::string> words{browser_path(), "--window-size=" + size, "--user-data-dir=" + folder_ / "home"};
+    for (const char* word :
+         {"--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run", "--disable-extensions",
+          "--disable-background-networking", "--mute-audio", "--remote-debugging-port=0", "about:blank"})
+      words.push_back(word);
     const std::string port_file = folder_ / "home/DevToolsActivePort";
-    child_ = fork();
-    if (child_ == 0) {
+    child_ = start_process(words, [&] {
       setpgid(0, 0);
       for (const int descriptor : {0, 1, 2}) dup2(::open("/dev/null", O_RDWR), descriptor);
       setenv("HOME", folder_.path().c_str(), 1);
-      execv(argv[0], argv.data());
-      _exit(127);
-    }
+    });
     for (int i = 0; i < 3000 && (!exists(port_file) || read_file(port_file).find('\n') == std::string::npos); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     if (!exists(port_file)) return;

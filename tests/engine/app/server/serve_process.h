@@ -18,24 +18,30 @@
 
 namespace catena::test {
 
+/// Starts a program without a shell; `prepare` runs in the child before it.
+inline pid_t start_process(std::vector<std::string> words, const std::function<void()>& prepare) {
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const pid_t child = fork();
+  if (child != 0) return child;
+  prepare();
+  execv(argv[0], argv.data());
+  _exit(127);
+}
+
 class ServeProcess {
  public:
   /// Starts the server with port 0, small images and more options, and waits for the address.
   explicit ServeProcess(const std::string& source, const std::vector<std::string>& options = {}) {
     std::vector<std::string> words{program_path(), "serve", source, "--port", "0", "--size", "160x120", "--seconds", "120"};
     words.insert(words.end(), options.begin(), options.end());
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
     const std::string out = folder_ / "out", err = folder_ / "err";
-    child_ = fork();
-    if (child_ == 0) {
-      dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), 1);
-      dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), 2);
+    child_ = start_process(words, [&] {
+      dup2(::open(out.c_str(), O_WRONLY | O_CREAT, 0600), 1);
+      dup2(::open(err.c_str(), O_WRONLY | O_CREAT, 0600), 2);
       setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
-      execv(argv[0], argv.data());
-      _exit(127);
-    }
+    });
     for (int i = 0; i < 3000 && this->out().find('\n') == std::string::npos && waitpid(child_, &status_, WNOHANG) == 0; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     url_ = this->out().substr(0, this->out().find('\n'));

@@ -5,8 +5,7 @@
 
 #include <random>
 
-namespace catena::curves {
-namespace robust_bounds_test {
+namespace catena::curves::robust_bounds_test {
 
 TEST(RobustBounds, SpreadPointsHaveNoOutliers) {
   std::mt19937 random(5);
@@ -42,5 +41,4 @@ TEST(RobustBounds, WithoutASpreadAllPointsAreIncluded) {
   EXPECT_EQ(compute_robust_bounds(three).outliers, 0u);
 }
 
-}  // namespace robust_bounds_test
-}  // namespace catena::curves
+}  // namespace catena::curves::robust_bounds_test

@@ -11,8 +11,7 @@
 #include "tests/engine/geometry/flow/advection_reference.h"
 #include "tests/engine/geometry/flow/lambda_field.h"
 
-namespace catena::flow {
-namespace advection_reference_test {
+namespace catena::flow::advection_reference_test {
 
 using test::analytic_vector;
 using test::lambda_field;
@@ -154,5 +153,4 @@ TEST(Advect, SpeedsUpToTheMinimumAreZero) {
   EXPECT_NEAR(advect({field.get(), false, 0.4}, Vec3(0.0), 1, Method::rk4, 1e-9, cursor).displacement.x, 0.5, 1e-15);
 }
 
-}  // namespace advection_reference_test
-}  // namespace catena::flow
+}  // namespace catena::flow::advection_reference_test

@@ -2,7 +2,6 @@
 /// Flows with known vortex cores, with noise, and a score of traced cores.
 #pragma once
 #include <functional>
-#include <limits>
 #include <random>
 #include <string>
 #include <vector>

@@ -7,8 +7,7 @@
 
 #include "tests/engine/geometry/flow/lambda_field.h"
 
-namespace catena::flow {
-namespace derivatives_test {
+namespace catena::flow::derivatives_test {
 
 Mat3 shear() { return Mat3(Vec3(0.3, -1, 0.2), Vec3(2, 0.1, -0.5), Vec3(0.7, 0.4, -0.4)); }  // columns dv/dx_j
 Vec3 linear(const Vec3& p) { return Vec3(0.5, -0.2, 1) + shear() * p; }
@@ -91,5 +90,4 @@ TEST(VelocityGradient, IsInvalidOutsideAndForNonFiniteValues) {
   EXPECT_EQ(compute_velocity_gradient(*still, {0, 0, 0}, cursor, evaluations).scale, 0);
 }
 
-}  // namespace derivatives_test
-}  // namespace catena::flow
+}  // namespace catena::flow::derivatives_test

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "tests/engine/geometry/flow/lambda_field.h"
+#include "tests/support/results.h"
 
-namespace catena::flow {
-namespace seeds_test {
+namespace catena::flow::seeds_test {
 
 using test::sample_vector_grid;
 
@@ -70,13 +70,11 @@ TEST(Seeds, AnIsosurfaceIsCoveredEvenlyByArea) {
     }
     for (const int n : octant) EXPECT_NEAR(n, 100, 20);
     EXPECT_EQ(seeds, seeds_on_isosurface(*field, 1.2, 800));
+    EXPECT_TRUE(seeds_on_isosurface(*field, 100, 5).empty()) << "a level without a surface";
   }
 }
 
-TEST(Seeds, ALevelWithoutASurfaceHasNoSeeds) {
-  const auto made = field::make_analytic("sphere");
-  EXPECT_TRUE(seeds_on_isosurface(*made->scalar, 100, 5).empty());
-}
+double length_of(const Curve& line) { return line.knots().back().s - line.knots().front().s; }
 
 double distance_between(const Curve& a, const Curve& b) {
   double minimum = 1e9;
@@ -85,17 +83,22 @@ double distance_between(const Curve& a, const Curve& b) {
   return minimum;
 }
 
+std::vector<CurvePtr> evenly_spaced(const field::VectorField& field, double distance, const Vec3& start) {
+  EvenSpacingOptions spacing;
+  spacing.distance = distance;
+  spacing.start_points = {start};
+  return trace_evenly_spaced(Flow{&field}, spacing);
+}
+
 TEST(EvenlySpaced, LinesOfAParallelFlowAreAtTheDistance) {
   const auto grid = sample_vector_grid({}, {24, 24, 24}, [](const Vec3&) { return Vec3(1, 0, 0); });
-  EvenSpacingOptions spacing;
-  spacing.distance = 4;
-  spacing.start_points = {{11, 11, 11}};
-  const auto lines = trace_evenly_spaced(Flow{grid.get()}, spacing);
+  const auto lines = evenly_spaced(*grid, 4, {11, 11, 11});
   // A square lattice of lines, four voxels apart: 3, 7, 11, 15, 19, and possibly -1 and 23 at the faces of the box.
   EXPECT_GE(lines.size(), 25u);
   EXPECT_LE(lines.size(), 36u);
+  EXPECT_TRUE(evenly_spaced(*grid, 1, {100, 0, 0}).empty()) << "an invalid start point";
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    EXPECT_NEAR(lines[i]->knots().back().s - lines[i]->knots().front().s, 23, 1e-6);
+    EXPECT_NEAR(length_of(*lines[i]), 23, 1e-6);
     for (std::size_t j = 0; j < i; ++j) EXPECT_GE(distance_between(*lines[i], *lines[j]), 3.99);
   }
 }
@@ -103,56 +106,41 @@ TEST(EvenlySpaced, LinesOfAParallelFlowAreAtTheDistance) {
 TEST(EvenlySpaced, LinesKeepTheTestDistanceAndAreRepeatable) {
   const auto made = field::make_analytic("abc");
   const auto grid = field::sample_on_grid(*made->vector, 32, -2, 2);
-  EvenSpacingOptions spacing;
-  spacing.distance = 0.6;
-  spacing.start_points = {{0.1, 0.2, 0.3}};
-  const auto lines = trace_evenly_spaced(Flow{grid.get()}, spacing), again = trace_evenly_spaced(Flow{grid.get()}, spacing);
+  constexpr double kDistance = 0.6;
+  const auto lines = evenly_spaced(*grid, kDistance, {0.1, 0.2, 0.3}), again = evenly_spaced(*grid, kDistance, {0.1, 0.2, 0.3});
   ASSERT_GT(lines.size(), 10u);
   ASSERT_EQ(lines.size(), again.size());
   for (std::size_t i = 0; i < lines.size(); ++i) {
     EXPECT_EQ(lines[i]->knots().back().p, again[i]->knots().back().p);
-    EXPECT_GE(lines[i]->knots().back().s - lines[i]->knots().front().s, spacing.distance);
-    for (std::size_t j = 0; j < i; ++j) EXPECT_GE(distance_between(*lines[i], *lines[j]), 0.95 * 0.5 * spacing.distance) << i << " " << j;
+    EXPECT_GE(length_of(*lines[i]), kDistance);
+    for (std::size_t j = 0; j < i; ++j) EXPECT_GE(distance_between(*lines[i], *lines[j]), 0.95 * 0.5 * kDistance) << i << " " << j;
   }
   // There is no room for another line: every position of the inner domain has a line within two distances.
   for (double x = -1.5; x <= 1.5; x += 0.5) {
     double minimum = 1e9;
     for (const auto& line : lines)
       for (const Knot& knot : line->knots()) minimum = std::min(minimum, norm(knot.p - Vec3(x, 0.3 * x, -x)));
-    EXPECT_LT(minimum, 2 * spacing.distance) << x;
+    EXPECT_LT(minimum, 2 * kDistance) << x;
   }
 }
 
 TEST(EvenlySpaced, CirclesStayClosed) {
   const auto made = field::make_analytic("circle");
   const auto grid = field::sample_on_grid(*made->vector, 48, -2, 2);
-  EvenSpacingOptions spacing;
-  spacing.distance = 0.5;
-  spacing.start_points = {{1, 0, 0}};
-  const auto lines = trace_evenly_spaced(Flow{grid.get()}, spacing);
+  const auto lines = evenly_spaced(*grid, 0.5, {1, 0, 0});
   ASSERT_FALSE(lines.empty());
   EXPECT_TRUE(lines[0]->is_closed());
   EXPECT_EQ(lines[0]->last_end(), Termination::lap);
 }
 
-TEST(EvenlySpaced, InvalidStartPointsGiveNoLines) {
-  const auto grid = sample_vector_grid({}, {8, 8, 8}, [](const Vec3&) { return Vec3(1, 0, 0); });
-  EvenSpacingOptions spacing;
-  spacing.distance = 1;
-  spacing.start_points = {{100, 0, 0}};
-  EXPECT_TRUE(trace_evenly_spaced(Flow{grid.get()}, spacing).empty());
-}
-
 TEST(Subcurve, ASubcurveEqualsTheCurveBetweenItsEnds) {
   const auto grid = sample_vector_grid({}, {16, 16, 16}, [](const Vec3& p) { return Vec3(1, 0.05 * p.x, 0); });
-  const auto curve = trace(Flow{grid.get()}, {5, 5, 5});
-  ASSERT_TRUE(curve);
-  const CurvePtr part = extract_subcurve(**curve, -1.5, 2.25);
+  const auto curve = test::value_of(trace(Flow{grid.get()}, {5, 5, 5}));
+  const CurvePtr part = extract_subcurve(*curve, -1.5, 2.25);
   EXPECT_EQ(part->knots().front().s, -1.5);
   EXPECT_EQ(part->knots().back().s, 2.25);
   EXPECT_EQ(part->first_end(), Termination::length);
-  for (double s = -1.5; s <= 2.25; s += 0.25) EXPECT_NEAR(norm(part->position(s) - (*curve)->position(s)), 0, 1e-9);
+  for (double s = -1.5; s <= 2.25; s += 0.25) EXPECT_NEAR(norm(part->position(s) - curve->position(s)), 0, 1e-9);
 }
 
-}  // namespace seeds_test
-}  // namespace catena::flow
+}  // namespace catena::flow::seeds_test

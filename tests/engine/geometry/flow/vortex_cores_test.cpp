@@ -4,14 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "tests/engine/geometry/flow/analytic_cores.h"
+#include "tests/support/results.h"
 
-namespace catena::flow {
-namespace vortex_cores_test {
+namespace catena::flow::vortex_cores_test {
 
 VortexCoresPtr cores_of(const field::VectorFieldPtr& field, CoreCriterion criterion = CoreCriterion::sujudi_haimes) {
-  const auto made = find_vortex_cores(field, {criterion});
-  EXPECT_TRUE(made) << (made ? "" : made.error().message);
-  return made ? *made : std::make_shared<const VortexCores>();
+  return test::value_of(find_vortex_cores(field, {criterion}));
 }
 
 TEST(VortexCores, AreAccurateForKnownFlows) {
@@ -96,5 +94,4 @@ TEST(VortexCores, AreCachedWhileInUse) {
   EXPECT_NE(first, cores_of(field, CoreCriterion::vorticity));
 }
 
-}  // namespace vortex_cores_test
-}  // namespace catena::flow
+}  // namespace catena::flow::vortex_cores_test

@@ -12,14 +12,13 @@
 
 #include <cerrno>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 
+#include "tests/support/results.h"
 #include "tests/support/support.h"
 
-namespace catena::sandbox {
-namespace sandbox_test {
+namespace catena::sandbox::sandbox_test {
 
 /// Tries an action in a child process, in the sandbox or not: 1 if the action succeeds, 0 if not, and 2 if the sandbox cannot be entered.
 int attempt(bool confined, const std::function<bool()>& act, const ProcessLimits& limits = {}) {
@@ -67,21 +66,14 @@ TEST(Sandbox, OnlyTheGivenFolderCanBeRead) {
           true, [&] { return ::open(((landlock ? limits.readable_folder : std::string()) + "/" + name).c_str(), flags, 0600) >= 0; },
           limits);
     };
-    EXPECT_EQ(opens("file"), 1) << landlock;
-    EXPECT_EQ(opens("deep/file"), 1) << landlock;
-    EXPECT_EQ(opens("../outside"), 0) << landlock;
-    EXPECT_EQ(opens("link"), 0) << landlock;
-    EXPECT_EQ(opens("file", O_WRONLY), 0) << landlock;
+    for (const char* name : {"file", "deep/file"}) EXPECT_EQ(opens(name), 1) << landlock << name;
+    for (const char* name : {"../outside", "link"}) EXPECT_EQ(opens(name), 0) << landlock << name;
     EXPECT_EQ(opens("new", O_CREAT | O_WRONLY), 0) << landlock;
-    EXPECT_EQ(opens("file", O_RDONLY | O_TRUNC), 0) << landlock;
-    EXPECT_EQ(attempt(
-                  true, [] { return ::open("/etc/passwd", O_RDONLY) >= 0; }, limits),
-              0)
-        << landlock;
-    EXPECT_EQ(attempt(
-                  true, [] { return ::socket(AF_UNIX, SOCK_STREAM, 0) >= 0; }, limits),
-              0)
-        << landlock;
+    for (const int flags : {O_WRONLY, O_RDONLY | O_TRUNC}) EXPECT_EQ(opens("file", flags), 0) << landlock << flags;
+    const auto passwords = [] { return ::open("/etc/passwd", O_RDONLY) >= 0; };
+    const auto socket = [] { return ::socket(AF_UNIX, SOCK_STREAM, 0) >= 0; };
+    EXPECT_EQ(attempt(true, passwords, limits), 0) << landlock;
+    EXPECT_EQ(attempt(true, socket, limits), 0) << landlock;
   }
 }
 
@@ -126,7 +118,7 @@ TEST(Sandbox, AllCapabilitiesAreDropped) {
   EXPECT_EQ(byte, 'y');
   const std::string status = catena::test::read_file("/proc/" + std::to_string(child) + "/status");
   for (const char* set : {"CapInh", "CapPrm", "CapEff", "CapBnd", "CapAmb"})
-    EXPECT_NE(status.find(std::string(set) + ":\t0000000000000000"), std::string::npos) << set << "\n" << status;
+    EXPECT_TRUE(test::has(status, std::string(set) + ":\t0000000000000000")) << set << "\n" << status;
   (void)!::write(end[1], &byte, 1);
   ::waitpid(child, nullptr, 0);
   for (const int file : {ready[0], ready[1], end[0], end[1]}) ::close(file);
@@ -149,5 +141,4 @@ TEST(Sandbox, TimeAndMemoryAreLimited) {
 }
 #endif
 
-}  // namespace sandbox_test
-}  // namespace catena::sandbox
+}  // namespace catena::sandbox::sandbox_test

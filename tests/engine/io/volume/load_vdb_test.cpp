@@ -4,38 +4,29 @@
 #include <openvdb/tools/Dense.h>
 
 #include "engine/field/analytic/analytic.h"
-#include "engine/io/volume/load_field.h"
 #include "tests/engine/field/field_helpers.h"
-#include "tests/support/support.h"
 
-namespace catena::field {
-namespace load_vdb_test {
+namespace catena::field::load_vdb_test {
 
-using catena::test::TemporaryFolder;
-using test::Block;
+using namespace test;
 
-LoadRequest request(const std::string& path, const std::string& grid = {}) {
-  LoadRequest r;
-  r.path = path;
-  r.grid = grid;
-  return r;
-}
-
-/// The error message of a load; fails the test without an error, or if the message is not one line about `path`.
-std::string error_of(const LoadRequest& r) {
-  const auto result = load(r);
-  if (result) {
-    ADD_FAILURE() << "loaded: " << r.path;
-    return {};
+class LoadVdb : public FilesTest {
+ protected:
+  LoadVdb() { openvdb::initialize(); }
+  void save(const openvdb::GridPtrVec& grids) const {
+    openvdb::io::File file(path_);
+    file.write(grids);
+    file.close();
   }
-  EXPECT_EQ(result.error().message.find('\n'), std::string::npos);
-  EXPECT_EQ(result.error().message.find(r.path), 0u) << result.error().message;
-  return result.error().message;
-}
+  const std::string path_ = folder_ / "a.vdb";
+};
+using WriteVdb = LoadVdb;
 
-testing::AssertionResult has(const std::string& text, const std::string& part) {
-  if (text.find(part) != std::string::npos) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << "\"" << part << "\" is not in: " << text;
+/// Success if the load is refused with one line that begins with the path and contains the part.
+testing::AssertionResult is_refused(const LoadRequest& request, const std::string& part = {}) {
+  const auto result = load(request);
+  if (message_of(result).find(request.path) != 0) return testing::AssertionFailure() << "not about the file: " << message_of(result);
+  return fails(result, part);
 }
 
 /// A grid with values x + 10 y + 100 z over 4 x 5 x 6 voxels from (-2, 3, 0).
@@ -50,24 +41,14 @@ typename Grid::Ptr numbers(const std::string& name) {
   return grid;
 }
 
-void save(const std::string& path, const openvdb::GridPtrVec& grids) {
-  openvdb::initialize();
-  openvdb::io::File file(path);
-  file.write(grids);
-  file.close();
-}
-
-TEST(LoadVdb, ReadsEveryScalarType) {
-  TemporaryFolder folder;
-  openvdb::initialize();
+TEST_F(LoadVdb, ReadsEveryScalarType) {
   auto half = numbers<openvdb::FloatGrid>("half");
   half->setSaveFloatAsHalf(true);
-  save(folder / "a.vdb", {numbers<openvdb::FloatGrid>("float"), half, numbers<openvdb::DoubleGrid>("double"),
-                          numbers<openvdb::Int32Grid>("int32"), numbers<openvdb::Int64Grid>("int64")});
+  save({numbers<openvdb::FloatGrid>("float"), half, numbers<openvdb::DoubleGrid>("double"), numbers<openvdb::Int32Grid>("int32"),
+        numbers<openvdb::Int64Grid>("int64")});
   for (const char* name : {"float", "half", "double", "int32", "int64"}) {
-    const auto field = load(request(folder / "a.vdb", name));
-    ASSERT_TRUE(field) << field.error().message;
-    const ScalarGrid& grid = *field->scalar->grid();
+    const auto field = read(path_, name);
+    const ScalarGrid& grid = *field.scalar->grid();
     EXPECT_EQ(grid.name(), name);
     EXPECT_EQ(grid.index_box().lo, Vec3(-2, 3, 0));
     EXPECT_EQ(grid.index_box().hi, Vec3(1, 7, 5));
@@ -79,10 +60,9 @@ TEST(LoadVdb, ReadsEveryScalarType) {
     EXPECT_EQ(grid.min_value(), 28);
     EXPECT_EQ(grid.max_value(), 571);
   }
-  const auto info = describe_grids(folder / "a.vdb");
-  ASSERT_TRUE(info) << info.error().message;
-  ASSERT_EQ(info->size(), 5u);
-  for (const GridInfo& i : *info) {
+  const auto info = value_of(describe_grids(path_));
+  ASSERT_EQ(info.size(), 5u);
+  for (const GridInfo& i : info) {
     EXPECT_EQ(i.type, i.name);
     EXPECT_EQ(i.size, (Index3{4, 5, 6}));
     EXPECT_EQ(i.first_index, (Index3{-2, 3, 0}));
@@ -94,35 +74,27 @@ TEST(LoadVdb, ReadsEveryScalarType) {
   }
 }
 
-TEST(LoadVdb, ReadsEveryVectorType) {
-  TemporaryFolder folder;
-  openvdb::initialize();
-  save(folder / "v.vdb",
-       {numbers<openvdb::Vec3SGrid>("vec3s"), numbers<openvdb::Vec3DGrid>("vec3d"), numbers<openvdb::Vec3IGrid>("vec3i")});
+TEST_F(LoadVdb, ReadsEveryVectorType) {
+  save({numbers<openvdb::Vec3SGrid>("vec3s"), numbers<openvdb::Vec3DGrid>("vec3d"), numbers<openvdb::Vec3IGrid>("vec3i")});
   for (const char* name : {"vec3s", "vec3d", "vec3i"}) {
-    const auto field = load(request(folder / "v.vdb", name));
-    ASSERT_TRUE(field) << field.error().message;
+    const auto field = read(path_, name);
     Cursor cursor;
-    EXPECT_NEAR(norm(field->vector->sample(Vec3(0, 5, 2.5), cursor).value - Vec3(300.0)), 0, 1e-9);
-    EXPECT_NEAR(field->vector->grid()->stats().max, 571 * std::sqrt(3.0), 1e-9);
-    EXPECT_EQ(field->vector->grid()->stats().component_max, Vec3(571.0));
+    EXPECT_NEAR(norm(field.vector->sample(Vec3(0, 5, 2.5), cursor).value - Vec3(300.0)), 0, 1e-9);
+    EXPECT_NEAR(field.vector->grid()->stats().max, 571 * std::sqrt(3.0), 1e-9);
+    EXPECT_EQ(field.vector->grid()->stats().component_max, Vec3(571.0));
   }
 }
 
-TEST(LoadVdb, RoundTripKeepsEveryBitAndTheTransform) {
-  TemporaryFolder folder;
-  const Block block = test::random_block({20, 9, 13}, 1);
+TEST_F(LoadVdb, RoundTripKeepsEveryBitAndTheTransform) {
+  const Block block = random_block({20, 9, 13}, 1);
   std::vector<std::uint8_t> valid(block.values.size(), 1);
   for (std::size_t n = 0; n < valid.size(); n += 7) valid[n] = 0;
-  for (const Mapping& mapping : test::mappings()) {
+  for (const Mapping& mapping : mappings()) {
     const auto grid = make_scalar_grid("g", mapping, block.size, block.values, valid);
-    AnyField any;
-    any.scalar = grid;
-    const auto written = write_vdb(folder / "w.vdb", {{any, "density"}});
-    ASSERT_TRUE(written) << written.error().message;
-    const auto back = load(request(folder / "w.vdb"));
-    ASSERT_TRUE(back) << back.error().message;
-    const ScalarGrid& g = *back->scalar->grid();
+    const AnyField any{grid, nullptr};
+    value_of(write_vdb(folder_ / "w.vdb", {{any, "density"}}));
+    const auto back = read(folder_ / "w.vdb");
+    const ScalarGrid& g = *back.scalar->grid();
     EXPECT_EQ(g.name(), "density");
     EXPECT_TRUE(g.has_mask());
     std::vector<float> values(block.values.size());
@@ -138,26 +110,23 @@ TEST(LoadVdb, RoundTripKeepsEveryBitAndTheTransform) {
   }
 }
 
-TEST(LoadVdb, VectorsAndTheLeftVentricleRoundTrip) {
-  TemporaryFolder folder;
+TEST_F(LoadVdb, VectorsAndTheLeftVentricleRoundTrip) {
   std::vector<NamedGrid> items;
   for (const auto part : analytic_parts("left-ventricle")) {
     const AnyField f = make_analytic("left-ventricle", {.scale = 1, .direction = Vec3(1, 0, 0), .part = std::string(part)}).value();
-    AnyField g;
-    if (f.scalar) g.scalar = sample_on_grid(*f.scalar, 33, -2, 2);
-    if (f.vector) g.vector = sample_on_grid(*f.vector, 33, -2, 2);
+    const AnyField g{f.scalar ? sample_on_grid(*f.scalar, 33, -2, 2) : nullptr, f.vector ? sample_on_grid(*f.vector, 33, -2, 2) : nullptr};
     items.push_back({g, std::string(part)});
   }
-  ASSERT_TRUE(write_vdb(folder / "lv.vdb", items));
-  const auto info = describe_grids(folder / "lv.vdb").value();
+  ASSERT_TRUE(write_vdb(folder_ / "lv.vdb", items));
+  const auto info = describe_grids(folder_ / "lv.vdb").value();
   ASSERT_EQ(info.size(), 4u);
   std::vector<std::string> names;
   for (const GridInfo& i : info) names.push_back(i.name + " " + i.type);
   EXPECT_EQ(names, (std::vector<std::string>{"density float", "transmural float", "fibre vec3s", "valid bool"}));
   EXPECT_FALSE(info[3].is_usable);
-  EXPECT_EQ(info[0].stats.active_voxels, load(request(folder / "lv.vdb", "density")).value().scalar->grid()->stats().active_voxels);
+  EXPECT_EQ(info[0].stats.active_voxels, read(folder_ / "lv.vdb", "density").scalar->grid()->stats().active_voxels);
   EXPECT_LT(info[0].stats.active_voxels, 33u * 33 * 33) << "outside the wall nothing is valid";
-  const auto fibre = load(request(folder / "lv.vdb", "fibre")).value().vector;
+  const auto fibre = read(folder_ / "lv.vdb", "fibre").vector;
   const VectorGrid& sampled = *items[2].field.vector->grid();
   std::vector<float> a(3 * 33 * 33 * 33), b(a.size());
   sampled.read_block({0, 0, 0}, {33, 33, 33}, a);
@@ -168,21 +137,17 @@ TEST(LoadVdb, VectorsAndTheLeftVentricleRoundTrip) {
     for (int z = 0; z < 32; ++z) EXPECT_EQ(sampled.cell({x, 16, z}, ca).valid, fibre->grid()->cell({x, 16, z}, cb).valid);
 }
 
-TEST(LoadVdb, OnlyTheNamedGridIsRead) {
-  TemporaryFolder folder;
-  openvdb::initialize();
-  save(folder / "a.vdb", {numbers<openvdb::FloatGrid>("a"), numbers<openvdb::FloatGrid>("b"), numbers<openvdb::Vec3SGrid>("c")});
+TEST_F(LoadVdb, OnlyTheNamedGridIsRead) {
+  save({numbers<openvdb::FloatGrid>("a"), numbers<openvdb::FloatGrid>("b"), numbers<openvdb::Vec3SGrid>("c")});
   const LoadCounters before = load_counters();
-  ASSERT_TRUE(load(request(folder / "a.vdb", "b")));
+  read(path_, "b");
   const LoadCounters after = load_counters();
   EXPECT_EQ(after.files - before.files, 1u);
   EXPECT_EQ(after.grids - before.grids, 1u);
   EXPECT_EQ(after.masks - before.masks, 0u);
 }
 
-TEST(LoadVdb, MasksAreAppliedByValueOnlyIfRequested) {
-  TemporaryFolder folder;
-  openvdb::initialize();
+TEST_F(LoadVdb, MasksAreAppliedByValueOnlyIfRequested) {
   auto valid = openvdb::BoolGrid::create(false);
   valid->setName("valid");
   auto accessor = valid->getAccessor();
@@ -192,19 +157,19 @@ TEST(LoadVdb, MasksAreAppliedByValueOnlyIfRequested) {
   auto other = valid->deepCopy();
   other->setName("shifted");
   other->setTransform(openvdb::math::Transform::createLinearTransform(2.0));
-  save(folder / "m.vdb", {numbers<openvdb::FloatGrid>("density"), valid, other});
+  save({numbers<openvdb::FloatGrid>("density"), valid, other});
   Cursor cursor;
-  const auto masked = load(request(folder / "m.vdb", "density")).value().scalar;
+  const auto masked = read(path_, "density").scalar;
   EXPECT_TRUE(masked->sample(Vec3(-0.5, 4, 2), cursor).inside);
   EXPECT_FALSE(masked->sample(Vec3(0.5, 4, 2), cursor).inside);
   EXPECT_EQ(masked->max_value(), 570);
   // The description equals the loaded grid.
-  for (const GridStats& stats : {masked->grid()->stats(), describe_grids(folder / "m.vdb").value().at(0).stats}) {
+  for (const GridStats& stats : {masked->grid()->stats(), describe_grids(path_).value().at(0).stats}) {
     EXPECT_EQ(stats.active_voxels, 90u);
     EXPECT_EQ(stats.max, 570);
   }
-  EXPECT_EQ(describe_grids(folder / "m.vdb").value().at(0).display_range.hi, 570);
-  LoadRequest r = request(folder / "m.vdb");
+  EXPECT_EQ(describe_grids(path_).value().at(0).display_range.hi, 570);
+  LoadRequest r = request_for(path_);
   r.mask_grid = std::nullopt;
   const auto bare = load(r).value().scalar;
   EXPECT_TRUE(bare->sample(Vec3(0.5, 4, 2), cursor).inside);
@@ -212,23 +177,21 @@ TEST(LoadVdb, MasksAreAppliedByValueOnlyIfRequested) {
   r.mask_grid = "nowhere";
   EXPECT_TRUE(load(r));
   r.mask_required = true;
-  EXPECT_TRUE(has(error_of(r), "nowhere"));
+  EXPECT_TRUE(is_refused(r, "nowhere"));
   r.mask_grid = "density";
-  EXPECT_TRUE(has(error_of(r), "expected bool"));
+  EXPECT_TRUE(is_refused(r, "expected bool"));
   r.mask_grid = "shifted";
-  EXPECT_TRUE(has(error_of(r), "transform"));
+  EXPECT_TRUE(is_refused(r, "transform"));
 }
 
-TEST(LoadVdb, InactiveVoxelsHoldTheBackground) {
-  TemporaryFolder folder;
-  openvdb::initialize();
+TEST_F(LoadVdb, InactiveVoxelsHoldTheBackground) {
   auto grid = openvdb::FloatGrid::create(-7.f);
   grid->setName("sparse");
   auto accessor = grid->getAccessor();
   accessor.setValue({0, 0, 0}, 1.f);
   accessor.setValue({100, 40, 30}, 3.f);
-  save(folder / "s.vdb", {grid});
-  const auto field = load(request(folder / "s.vdb")).value().scalar;
+  save({grid});
+  const auto field = read(path_).scalar;
   Cursor cursor;
   EXPECT_NEAR(field->sample(Vec3(0.25, 0, 0), cursor).value, 0.75 - 7 * 0.25, 1e-12);
   EXPECT_TRUE(field->sample(Vec3(50, 20, 10), cursor).inside);
@@ -237,9 +200,7 @@ TEST(LoadVdb, InactiveVoxelsHoldTheBackground) {
   EXPECT_EQ(field->grid()->background(), -7.f);
 }
 
-TEST(LoadVdb, EveryBadGridIsOneErrorLine) {
-  TemporaryFolder folder;
-  openvdb::initialize();
+TEST_F(LoadVdb, EveryBadGridIsOneErrorLine) {
   auto empty = openvdb::FloatGrid::create();
   empty->setName("empty");
   auto frustum = numbers<openvdb::FloatGrid>("frustum");
@@ -249,47 +210,41 @@ TEST(LoadVdb, EveryBadGridIsOneErrorLine) {
   auto flags = numbers<openvdb::BoolGrid>("flags");
   auto invalid = openvdb::BoolGrid::create(false);
   invalid->setName("invalid");
-  save(folder / "b.vdb", {empty, frustum, nan, flags, invalid, numbers<openvdb::FloatGrid>("good")});
-  const std::string path = folder / "b.vdb";
-  EXPECT_TRUE(has(error_of(request(path)), "several grids"));
-  EXPECT_TRUE(has(error_of(request(path, "godo")), "good (float)"));
-  EXPECT_TRUE(has(error_of(request(path, "empty")), "no active voxels"));
-  EXPECT_TRUE(has(error_of(request(path, "frustum")), "frustum"));
-  EXPECT_TRUE(has(error_of(request(path, "nan")), "finite"));
-  EXPECT_TRUE(has(error_of(request(path, "flags")), "type bool"));
-  LoadRequest r = request(path, "good");
+  save({empty, frustum, nan, flags, invalid, numbers<openvdb::FloatGrid>("good")});
+  for (const auto& [name, part] : {std::pair{"", "several grids"},
+                                   {"godo", "good (float)"},
+                                   {"empty", "no active voxels"},
+                                   {"frustum", "frustum"},
+                                   {"nan", "finite"},
+                                   {"flags", "type bool"}})
+    EXPECT_TRUE(is_refused(request_for(path_, name), part));
+  LoadRequest r = request_for(path_, "good");
   r.mask_grid = "invalid";
-  EXPECT_TRUE(has(error_of(r), "no valid voxel"));
-  EXPECT_TRUE(load(request(path, "good")));
-  const auto info = describe_grids(path);
-  ASSERT_TRUE(info);
-  for (const GridInfo& i : *info) EXPECT_EQ(i.is_usable, i.name == "good") << i.name;
+  EXPECT_TRUE(is_refused(r, "no valid voxel"));
+  EXPECT_TRUE(load(request_for(path_, "good")));
+  for (const GridInfo& i : value_of(describe_grids(path_))) EXPECT_EQ(i.is_usable, i.name == "good") << i.name;
 }
 
-TEST(LoadVdb, VoxelsAtTheLimitsOfTheIndexRangeAreHandled) {
-  TemporaryFolder folder;
+TEST_F(LoadVdb, VoxelsAtTheLimitsOfTheIndexRangeAreHandled) {
   auto far = numbers<openvdb::FloatGrid>("far");
   far->tree().setValue({2147483647, 0, 0}, 1.f);
   far->tree().setValue({-2147483647 - 1, 0, 0}, 1.f);
-  save(folder / "far.vdb", {far});
-  EXPECT_TRUE(has(error_of(request(folder / "far.vdb")), "(-2147483648, 0, 0) to (2147483647, 7, 5), expected indices within"));
-  const auto grids = describe_grids(folder / "far.vdb");
-  ASSERT_TRUE(grids) << grids.error().message;
-  EXPECT_EQ(grids->at(0).size, Size3(4294967296, 8, 6));
-  EXPECT_FALSE(grids->at(0).is_usable);
+  save({far});
+  EXPECT_TRUE(is_refused(request_for(path_), "(-2147483648, 0, 0) to (2147483647, 7, 5), expected indices within"));
+  const auto grids = value_of(describe_grids(path_));
+  EXPECT_EQ(grids.at(0).size, Size3(4294967296, 8, 6));
+  EXPECT_FALSE(grids.at(0).is_usable);
 }
 
-TEST(LoadVdb, LargeTilesAreCheap) {
-  TemporaryFolder folder;
+TEST_F(LoadVdb, LargeTilesAreCheap) {
   auto wide = numbers<openvdb::FloatGrid>("wide");
   for (int n = 1; n <= 8; ++n) wide->tree().addTile(3, {4096 * n, 0, 0}, 7.f, true);
-  save(folder / "wide.vdb", {wide});
-  const auto field = load(request(folder / "wide.vdb"));
-  ASSERT_TRUE(field) << field.error().message;
-  EXPECT_LT(field->get()->bytes(), 4'000'000u);
+  save({wide});
+  const auto field = read(path_);
+  EXPECT_LT(field.get()->bytes(), 4'000'000u);
   Cursor cursor;
-  EXPECT_EQ(field->scalar->sample(Vec3(20000.5, 2000, 2000), cursor).value, 7);
-  EXPECT_EQ(field->scalar->grid()->stats().active_voxels, 120 + 8 * (std::uint64_t{1} << 36));
+  EXPECT_EQ(field.scalar->sample(Vec3(20000.5, 2000, 2000), cursor).value, 7);
+  EXPECT_EQ(field.scalar->grid()->stats().active_voxels, 120 + 8 * (std::uint64_t{1} << 36));
   // A mask of tiles and single voxels.
   auto valid = openvdb::BoolGrid::create(false);
   valid->setName("valid");
@@ -297,94 +252,73 @@ TEST(LoadVdb, LargeTilesAreCheap) {
   valid->tree().addTile(2, {2 * 4096 + 128, 0, 0}, true, true);
   valid->tree().addTile(1, {2 * 4096 + 8, 0, 0}, true, true);
   for (int x = 0; x < 5; ++x) valid->tree().setValue({3 * 4096 + x, 0, 0}, true);
-  save(folder / "masked.vdb", {wide, valid});
-  const auto described = describe_grids(folder / "masked.vdb");
-  ASSERT_TRUE(described) << described.error().message;
-  const GridInfo& info = described->at(0);
+  save({wide, valid});
+  const auto described = value_of(describe_grids(path_));
+  const GridInfo& info = described.at(0);
   EXPECT_EQ(info.stats.active_voxels, (std::uint64_t{1} << 36) + (std::uint64_t{1} << 21) + 512 + 5);
   EXPECT_EQ(info.stats.min, 7);
 }
 
 /// A grid that shares its tree with another grid.
-TEST(LoadVdb, ASharedTreeIsRead) {
-  TemporaryFolder folder;
+TEST_F(LoadVdb, ASharedTreeIsRead) {
   const auto one = numbers<openvdb::FloatGrid>("one");
   const auto two = one->copy();
   two->setName("two");
-  save(folder / "shared.vdb", {one, two});
+  save({one, two});
   for (const char* name : {"one", "two"}) {
-    const auto field = load(request(folder / "shared.vdb", name));
-    ASSERT_TRUE(field) << field.error().message;
-    EXPECT_EQ(field->get()->name(), name);
-    EXPECT_EQ(field->scalar->grid()->stats().active_voxels, 120u);
+    const auto field = read(path_, name);
+    EXPECT_EQ(field.get()->name(), name);
+    EXPECT_EQ(field.scalar->grid()->stats().active_voxels, 120u);
   }
 }
 
-TEST(LoadVdb, SomeNansLoadAndAreCounted) {
-  TemporaryFolder folder;
-  openvdb::initialize();
+TEST_F(LoadVdb, SomeNansLoadAndAreCounted) {
   auto grid = numbers<openvdb::FloatGrid>("g");
   grid->tree().setValue({0, 5, 3}, std::nanf(""));
-  save(folder / "n.vdb", {grid});
-  const auto field = load(request(folder / "n.vdb"));
-  ASSERT_TRUE(field);
-  EXPECT_EQ(field->scalar->grid()->stats().nan_count, 1u);
+  save({grid});
+  const auto field = read(path_);
+  EXPECT_EQ(field.scalar->grid()->stats().nan_count, 1u);
 }
 
-TEST(LoadVdb, RepeatedNamesAreNumbered) {
-  TemporaryFolder folder;
-  openvdb::initialize();
+TEST_F(LoadVdb, RepeatedNamesAreNumbered) {
   auto second = numbers<openvdb::FloatGrid>("same");
   second->tree().setValue({0, 5, 3}, 9999.f);
-  save(folder / "r.vdb", {numbers<openvdb::FloatGrid>("same"), second});
-  EXPECT_TRUE(has(error_of(request(folder / "r.vdb", "other")), "same[1]"));
-  EXPECT_EQ(load(request(folder / "r.vdb", "same[1]")).value().scalar->max_value(), 9999);
-  EXPECT_EQ(load(request(folder / "r.vdb", "same[0]")).value().scalar->max_value(), 571);
+  save({numbers<openvdb::FloatGrid>("same"), second});
+  EXPECT_TRUE(is_refused(request_for(path_, "other"), "same[1]"));
+  EXPECT_EQ(read(path_, "same[1]").scalar->max_value(), 9999);
+  EXPECT_EQ(read(path_, "same[0]").scalar->max_value(), 571);
 }
 
-TEST(LoadVdb, BadFilesAreRefusedWithoutACrash) {
-  TemporaryFolder folder;
-  openvdb::initialize();
-  EXPECT_TRUE(has(error_of(request(folder / "absent.vdb")), "no such file"));
-  EXPECT_TRUE(has(error_of(request(folder.path())), "folder"));
-  catena::test::write_file(folder / "empty.vdb", "");
-  EXPECT_TRUE(has(error_of(request(folder / "empty.vdb")), "empty"));
-  catena::test::write_file(folder / "text.vdb", std::string(500, 'x'));
-  EXPECT_TRUE(has(error_of(request(folder / "text.vdb")), "not a .vdb"));
-  catena::test::write_file(folder / "a.txt", "hello");
-  EXPECT_TRUE(has(error_of(request(folder / "a.txt")), "expected a data file (.vdb"));
+TEST_F(LoadVdb, BadFilesAreRefusedWithoutACrash) {
+  EXPECT_TRUE(is_refused(request_for(folder_ / "absent.vdb"), "no such file"));
+  EXPECT_TRUE(is_refused(request_for(folder_.path()), "folder"));
+  EXPECT_TRUE(is_refused(request_for(file("empty.vdb", "")), "empty"));
+  EXPECT_TRUE(is_refused(request_for(file("text.vdb", std::string(500, 'x'))), "not a .vdb"));
+  EXPECT_TRUE(is_refused(request_for(file("a.txt", "hello")), "expected a data file (.vdb"));
   // Truncated at all significant lengths.
   auto noise = openvdb::FloatGrid::create();
   noise->setName("noise");
-  test::Random random(3);
+  Random random(3);
   for (int n = 0; n < 4000; ++n)
     noise->tree().setValue(
         {static_cast<int>(random.uniform(0, 20)), static_cast<int>(random.uniform(0, 20)), static_cast<int>(random.uniform(0, 20))},
         static_cast<float>(random.uniform(0, 1)));
   noise->setSaveFloatAsHalf(true);
-  save(folder / "whole.vdb", {noise, numbers<openvdb::FloatGrid>("b")});
-  const std::string whole = catena::test::read_file(folder / "whole.vdb");
-  ASSERT_TRUE(load(request(folder / "whole.vdb", "noise")));
+  save({noise, numbers<openvdb::FloatGrid>("b")});
+  const std::string whole = read_file(path_);
+  read(path_, "noise");
   for (std::size_t length = 0; length < whole.size(); length += length < 700 ? 5 : 397) {
-    catena::test::write_file(folder / "cut.vdb", whole.substr(0, length));
-    error_of(request(folder / "cut.vdb", "noise"));
-    EXPECT_FALSE(describe_grids(folder / "cut.vdb"));
+    EXPECT_TRUE(is_refused(request_for(file("cut.vdb", whole.substr(0, length)), "noise")));
+    EXPECT_FALSE(describe_grids(folder_ / "cut.vdb"));
   }
-  catena::test::write_file(folder / "cut.vdb", whole.substr(0, whole.size() - 1));
-  EXPECT_TRUE(has(error_of(request(folder / "cut.vdb", "b")), "truncated"));
+  EXPECT_TRUE(is_refused(request_for(file("cut.vdb", whole.substr(0, whole.size() - 1)), "b"), "truncated"));
 }
 
-TEST(WriteVdb, FailuresAreReportedAndLeaveNoFile) {
-  TemporaryFolder folder;
-  AnyField any;
-  any.scalar = sample_on_grid(*make_analytic("sphere").value().scalar, 8, -2, 2);
-  const auto missing = write_vdb(folder / "nowhere/x.vdb", {{any, "sphere"}});
-  ASSERT_FALSE(missing);
-  EXPECT_TRUE(has(missing.error().message, "does not exist"));
-  EXPECT_FALSE(write_vdb(folder.path(), {{any, "sphere"}}));
-  const auto full = write_vdb("/dev/full", {{any, "sphere"}});
-  ASSERT_FALSE(full);
-  EXPECT_TRUE(has(full.error().message, "No space left"));
+TEST_F(WriteVdb, FailuresAreReportedAndLeaveNoFile) {
+  const AnyField any{sample_on_grid(*make_analytic("sphere").value().scalar, 8, -2, 2), nullptr};
+  EXPECT_TRUE(fails(write_vdb(folder_ / "nowhere/x.vdb", {{any, "sphere"}}), "does not exist"));
+  EXPECT_FALSE(write_vdb(folder_.path(), {{any, "sphere"}}));
+  EXPECT_TRUE(fails(write_vdb("/dev/full", {{any, "sphere"}}), "No space left"));
   EXPECT_TRUE(write_vdb("/dev/null", {{any, "sphere"}}));
   // Different masks cannot share a file.
   std::vector<float> ones(27, 1.f);
@@ -393,10 +327,9 @@ TEST(WriteVdb, FailuresAreReportedAndLeaveNoFile) {
   AnyField ga, gb;
   ga.scalar = make_scalar_grid("a", {}, {3, 3, 3}, ones, a);
   gb.scalar = make_scalar_grid("b", {}, {3, 3, 3}, ones, b);
-  EXPECT_FALSE(write_vdb(folder / "x.vdb", {{ga, "a"}, {gb, "b"}}));
-  EXPECT_FALSE(catena::test::exists(folder / "x.vdb"));
-  EXPECT_TRUE(write_vdb(folder / "x.vdb", {{ga, "a"}, {ga, "b"}}));
+  EXPECT_FALSE(write_vdb(folder_ / "x.vdb", {{ga, "a"}, {gb, "b"}}));
+  EXPECT_FALSE(exists(folder_ / "x.vdb"));
+  EXPECT_TRUE(write_vdb(folder_ / "x.vdb", {{ga, "a"}, {ga, "b"}}));
 }
 
-}  // namespace load_vdb_test
-}  // namespace catena::field
+}  // namespace catena::field::load_vdb_test

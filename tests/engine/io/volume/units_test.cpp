@@ -9,8 +9,7 @@
 
 #include "tests/support/support.h"
 
-namespace catena::field {
-namespace units_test {
+namespace catena::field::units_test {
 
 TEST(Units, ANiftiHeaderStatesTheLengthUnit) {
   const catena::test::TemporaryFolder folder;
@@ -36,41 +35,42 @@ TEST(Units, ANiftiHeaderStatesTheLengthUnit) {
   EXPECT_EQ(read_units(folder / "none.nii", "").length, "");
 }
 
-TEST(Units, AVdbGridStatesItsUnit) {
+openvdb::FloatGrid::Ptr make_grid(const std::string& name) {
   openvdb::initialize();
+  auto grid = openvdb::FloatGrid::create();
+  grid->setName(name);
+  return grid;
+}
+
+void save(const std::string& path, const openvdb::GridPtrVec& grids, const openvdb::MetaMap& about = {}) {
+  openvdb::io::File file(path);
+  file.write(grids, about);
+  file.close();
+}
+
+TEST(Units, AVdbGridStatesItsUnit) {
   const catena::test::TemporaryFolder folder;
-  auto speed = openvdb::FloatGrid::create(), other = openvdb::FloatGrid::create();
-  speed->setName("speed");
+  const auto speed = make_grid("speed"), other = make_grid("other");
   speed->insertMeta("unit", openvdb::StringMetadata("m/s"));
-  other->setName("other");
-  openvdb::io::File file(folder / "a.vdb");
   openvdb::MetaMap about;
   about.insertMeta("units", openvdb::StringMetadata("HU, mm"));
-  file.write({speed, other}, about);
-  file.close();
+  save(folder / "a.vdb", {speed, other}, about);
   EXPECT_EQ(read_units(folder / "a.vdb", "speed").value, "m/s");
   EXPECT_EQ(read_units(folder / "a.vdb", "speed").length, "mm");
   EXPECT_EQ(read_units(folder / "a.vdb", "other").value, "") << "the file's word may belong to either field";
 }
 
 TEST(Units, LevelSetsAndPatientSpaceAreRecognized) {
-  openvdb::initialize();
   const catena::test::TemporaryFolder folder;
-  auto distance = openvdb::FloatGrid::create(), fog = openvdb::FloatGrid::create();
-  distance->setName("distance");
+  const auto distance = make_grid("distance"), fog = make_grid("fog");
   distance->setGridClass(openvdb::GRID_LEVEL_SET);
-  fog->setName("fog");
   fog->setGridClass(openvdb::GRID_FOG_VOLUME);
-  openvdb::io::File file(folder / "a.vdb");
-  file.write({distance, fog});
-  file.close();
+  save(folder / "a.vdb", {distance, fog});
   EXPECT_TRUE(read_units(folder / "a.vdb", "distance").is_level_set);
   EXPECT_FALSE(read_units(folder / "a.vdb", "fog").is_level_set);
   EXPECT_FALSE(read_units(folder / "a.vdb", "distance").is_patient_space);
   distance->insertMeta("unit", openvdb::StringMetadata("HU"));
-  openvdb::io::File scan(folder / "b.vdb");
-  scan.write({distance, fog});
-  scan.close();
+  save(folder / "b.vdb", {distance, fog});
   EXPECT_TRUE(read_units(folder / "b.vdb", "distance").is_patient_space);
   EXPECT_FALSE(read_units(folder / "b.vdb", "fog").is_patient_space);
 }
@@ -87,5 +87,4 @@ TEST(Units, FreeTextIsParsedOnlyIfUnambiguous) {
   EXPECT_TRUE(is_unit_name("µm"));
 }
 
-}  // namespace units_test
-}  // namespace catena::field
+}  // namespace catena::field::units_test

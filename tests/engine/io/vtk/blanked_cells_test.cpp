@@ -5,47 +5,26 @@
 #include "engine/base/memory_limit.h"
 #include "engine/geometry/mesh/isosurface.h"
 #include "engine/io/client.h"
-#include "engine/io/volume/load_field.h"
 #include "engine/io/volume/write_field.h"
+#include "tests/engine/field/field_helpers.h"
 #include "tests/engine/io/vtk/blanked_grid_files.h"
 #include "tests/fuzz/mutate.h"
-#include "tests/support/support.h"
 
-namespace catena::field {
-namespace blanked_cells_test {
+namespace catena::field::blanked_cells_test {
 
+using namespace test;
 namespace files = test::vtk_files;
 using files::Form;
 constexpr Form kForms[] = {Form::image, Form::rectilinear, Form::structured, Form::unstructured};
 
 double sum(const Vec3& p) { return 1 + 2 * p.x + 3 * p.y + 5 * p.z; }
 
-class BlankedCells : public testing::Test {
- protected:
-  std::string file(const std::string& name, const std::string& bytes) {
-    test::write_file(folder_ / name, bytes);
-    return folder_ / name;
-  }
-  static AnyField read(const std::string& path, const std::string& grid = "v") {
-    LoadRequest request;
-    request.path = path;
-    request.grid = grid;
-    auto field = load(request);
-    EXPECT_TRUE(field) << (field ? "" : field.error().message);
-    return field ? std::move(*field) : AnyField{};
-  }
-  static std::string all_notes(const AnyField& field) {
-    std::string all;
-    for (const std::string& note : field.notes) all += note + "\n";
-    return all;
-  }
-  test::TemporaryFolder folder_;
-};
+/// A value of 0 to 1.
+double unit(catena::test::Random& random) { return static_cast<double>(random.next() >> 11) * 0x1p-53; }
 
-bool inside(const AnyField& field, const Vec3& p) {
-  Cursor cursor;
-  return field.scalar->sample(p, cursor).inside;
-}
+using BlankedCells = FilesTest;
+
+bool inside(const AnyField& field, const Vec3& p) { return sample_at(field, p).inside; }
 
 struct Allowance {
   explicit Allowance(std::uint64_t bytes) { set_memory_limit(bytes); }
@@ -70,7 +49,7 @@ TEST_F(BlankedCells, FlagsHaveVtksMeaningInEveryFormOfGrid) {
         files::Flags flags;
         flags.type = type;
         (of_cells ? flags.cells : flags.points) = [&, at = of_cells ? kCell : kPoint, f = flag](int i) { return i == at ? f : 0; };
-        const AnyField field = read(file(std::string("a") + files::file_extension(form), files::boxes(form, 4, sum, flags)));
+        const AnyField field = read(file(std::string("a") + files::file_extension(form), files::boxes(form, 4, sum, flags)), "v");
         // A hidden cell covers one cell; a hidden point hides the eight cells around it.
         const Vec3 middle = of_cells ? Vec3(1.5) : Vec3(3.0), far(of_cells ? 0.9 : 1.4);
         for (const Vec3& offset : {Vec3(0.0), Vec3(far.x / 3, 0, 0), Vec3(0, -far.x / 3, far.x / 3)})
@@ -79,8 +58,7 @@ TEST_F(BlankedCells, FlagsHaveVtksMeaningInEveryFormOfGrid) {
         for (int axis = 0; axis < 3; ++axis) {
           Vec3 p = middle;
           p[axis] -= of_cells ? 0.6 : 1.1;
-          Cursor cursor;
-          const ScalarSample sample = field.scalar->sample(p, cursor);
+          const ScalarSample sample = sample_at(field, p);
           EXPECT_TRUE(sample.inside);
           EXPECT_NEAR(sample.value, sum(p), 1e-3);
         }
@@ -98,11 +76,10 @@ TEST_F(BlankedCells, CellsWithNonFiniteValuesAreInvalid) {
       const double half = name == "v" ? 1 : 0.5;
       EXPECT_FALSE(inside(field, middle));
       EXPECT_FALSE(inside(field, middle + Vec3(0.8 * half)));
-      Cursor cursor;
-      const ScalarSample sample = field.scalar->sample(middle - Vec3(half + 0.1, 0, 0), cursor);
+      const ScalarSample sample = sample_at(field, middle - Vec3(half + 0.1, 0, 0));
       EXPECT_TRUE(sample.inside);
       EXPECT_NEAR(sample.value, sum(middle - Vec3(half + 0.1, 0, 0)), name == "v" ? 1e-3 : 3);
-      EXPECT_NE(all_notes(field).find(name == "v" ? "1 values at points" : "1 values at cells"), std::string::npos);
+      EXPECT_TRUE(has_note(field, name == "v" ? "1 values at points" : "1 values at cells"));
     }
 }
 
@@ -115,16 +92,14 @@ TEST_F(BlankedCells, HiddenValuesDoNotInfluenceValuesOrTheRange) {
     files::Flags flags;
     flags.cells = [&](int i) { return is_hidden(i) ? 32 : 0; };
     const std::string path = file(std::string("b") + files::file_extension(form), files::boxes(form, 4, value, flags));
-    const auto grids = describe_grids(path);
-    ASSERT_TRUE(grids);
+    const auto grids = value_of(describe_grids(path));
     for (const std::string name : {"v", "c"}) {
       const AnyField field = read(path, name);
-      const auto& info = *std::find_if(grids->begin(), grids->end(), [&](const GridInfo& g) { return g.name == name; });
+      const auto& info = *std::find_if(grids.begin(), grids.end(), [&](const GridInfo& g) { return g.name == name; });
       EXPECT_GT(info.stats.min, 0) << name;
       EXPECT_EQ(field.scalar->min_value(), info.stats.min) << name;
       EXPECT_EQ(field.scalar->max_value(), info.stats.max) << name;
-      Cursor cursor;
-      const ScalarSample sample = field.scalar->sample({2, 2, 1.4}, cursor);
+      const ScalarSample sample = sample_at(field, {2, 2, 1.4});
       EXPECT_TRUE(sample.inside);
       EXPECT_NEAR(sample.value, sum({2, 2, 1.4}), name == "c" && form != Form::image ? 2.6 : 1e-3) << name;
       EXPECT_FALSE(inside(field, {2, 2, 3}));
@@ -137,18 +112,14 @@ TEST_F(BlankedCells, AllReadersAgreeOnALayerOfHiddenCells) {
   flags.cells = [](int i) { return i % 6 == 3 ? 32 : 0; };  // the cells with 3 <= x <= 4 of 6
   const std::string path = file("layer.vti", files::boxes(
                                                  Form::image, 6, [](const Vec3& p) { return p.y + 0.1 * p.x; }, flags));
-  const AnyField field = read(path);
-  LoadRequest cropped;
-  cropped.path = path;
-  cropped.grid = "v";
+  const AnyField field = read(path, "v");
+  LoadRequest cropped = request_for(path, "v");
   cropped.crop = Box{{2, 0, 0}, {5, 6, 6}};
   std::vector<std::pair<std::string, AnyField>> same{{"file", field}, {"crop", load(cropped).value()}};
-  AnyField cubic;
-  cubic.scalar = field.scalar->grid()->as_cubic().value();
-  same.push_back({"cubic", cubic});
+  same.push_back({"cubic", {field.scalar->grid()->as_cubic().value(), nullptr}});
   for (const char* name : {"again.vdb", "again.vti"}) {
     ASSERT_TRUE(write_field(folder_ / name, field, "v", {}));
-    same.push_back({name, read(folder_ / name)});
+    same.push_back({name, read(folder_ / name, "v")});
   }
   for (const auto& [name, one] : same) {
     SCOPED_TRACE(name);
@@ -161,11 +132,10 @@ TEST_F(BlankedCells, AllReadersAgreeOnALayerOfHiddenCells) {
       EXPECT_EQ(grid.status_outside(p, cursor), hole ? SampleStatus::masked : SampleStatus::ok) << x;
       EXPECT_EQ(grid.cell(grid.cell_base(grid.mapping().index_from_world(p)), cursor).valid, !hole) << x;
     }
-    const auto surface = mesh::extract_isosurface(grid, 2.6, mesh::OutwardSide::higher, "s");
-    ASSERT_TRUE(surface);
+    const auto surface = value_of(mesh::extract_isosurface(grid, 2.6, mesh::OutwardSide::higher, "s"));
     double sides[2] = {0, 0};
-    for (const auto& t : surface->triangles) {
-      const Vec3 middle = (surface->vertices[t[0]] + surface->vertices[t[1]] + surface->vertices[t[2]]) * (1.0 / 3);
+    for (const auto& t : surface.triangles) {
+      const Vec3 middle = (surface.vertices[t[0]] + surface.vertices[t[1]] + surface.vertices[t[2]]) * (1.0 / 3);
       EXPECT_FALSE(middle.x > 3 && middle.x < 4);
       ++sides[middle.x > 3.5 ? 1 : 0];
     }
@@ -173,7 +143,7 @@ TEST_F(BlankedCells, AllReadersAgreeOnALayerOfHiddenCells) {
     EXPECT_GT(sides[1], 0);
   }
   // A format without a mask reports the loss.
-  EXPECT_NE(lost_mask_note("a.nrrd", field).find("36 invalid cells"), std::string::npos) << lost_mask_note("a.nrrd", field);
+  EXPECT_TRUE(has(lost_mask_note("a.nrrd", field), "36 invalid cells"));
   EXPECT_TRUE(lost_mask_note("a.vti", field).empty());
 }
 
@@ -182,26 +152,24 @@ TEST_F(BlankedCells, AGapBetweenBlocksHasNoValueInAnyOrientation) {
     std::vector<std::pair<Vec3, Vec3>> boxes;
     for (int i = 0; i < 4; ++i)
       for (int side = 0; side < 2; ++side) boxes.push_back({Vec3(i + 4.2 * side, 0, 0), Vec3(i + 1 + 4.2 * side, 4, 4)});
-    const AnyField field = read(file("gap.vtu", files::hexahedra(boxes, angle, sum)));
+    const AnyField field = read(file("gap.vtu", files::hexahedra(boxes, angle, sum)), "v");
     const auto turned = [&](const Vec3& p) {
       return Vec3(p.x * std::cos(angle) - p.y * std::sin(angle), p.x * std::sin(angle) + p.y * std::cos(angle), p.z);
     };
     const double voxel = max_abs(field.get()->mapping().world_from_index_linear[0]);
     EXPECT_LT(voxel, 0.1);
     int lost = 0, filled = 0;
-    test::Random random{11};
-    const auto unit = [&] { return static_cast<double>(random.next() >> 11) * 0x1p-53; };
+    catena::test::Random random{11};
     for (int i = 0; i < 3000; ++i) {
-      const Vec3 p(0.05 + 3.9 * unit() + (i % 2 == 0 ? 4.2 : 0), 0.05 + 3.9 * unit(), 0.05 + 3.9 * unit());
-      Cursor cursor;
-      const ScalarSample sample = field.scalar->sample(turned(p), cursor);
+      const Vec3 p(0.05 + 3.9 * unit(random) + (i % 2 == 0 ? 4.2 : 0), 0.05 + 3.9 * unit(random), 0.05 + 3.9 * unit(random));
+      const ScalarSample sample = sample_at(field, turned(p));
       lost += sample.inside ? 0 : 1;
       EXPECT_TRUE(!sample.inside || std::fabs(sample.value - sum(p)) < 0.3) << sample.value;
       filled += inside(field, turned({4.1, p.y, p.z})) ? 1 : 0;
     }
     EXPECT_EQ(lost, 0);
     EXPECT_EQ(filled, 0);
-    EXPECT_NE(all_notes(field).find("of random positions in the whole box"), std::string::npos) << all_notes(field);
+    EXPECT_TRUE(has_note(field, "of random positions in the whole box"));
   }
 }
 
@@ -209,25 +177,22 @@ TEST_F(BlankedCells, AGapNarrowerThanVoxelsHasANote) {
   const Allowance allowance(16'000'000);
   std::vector<std::pair<Vec3, Vec3>> boxes;
   for (int i = 0; i < 40; ++i) boxes.push_back({Vec3(i * 10, 0, 0), Vec3(i * 10 + 9.98, 400, 400)});
-  EXPECT_NE(all_notes(read(file("thin.vtu", files::hexahedra(boxes, 0, sum)))).find("in the middle of gaps that are filled"),
-            std::string::npos);
+  EXPECT_TRUE(has_note(read(file("thin.vtu", files::hexahedra(boxes, 0, sum)), "v"), "in the middle of gaps that are filled"));
 }
 
 TEST_F(BlankedCells, PolyhedraReproduceALinearFieldUpToTheirFaces) {
-  const AnyField field = read(file("p.vtu", files::polyhedra(4, sum)));
-  test::Random random{5};
-  const auto unit = [&] { return static_cast<double>(random.next() >> 11) * 0x1p-53; };
+  const AnyField field = read(file("p.vtu", files::polyhedra(4, sum)), "v");
+  catena::test::Random random{5};
   int wrong = 0;
   constexpr int kPlaces = 4000;
   for (int i = 0; i < kPlaces; ++i) {
-    const Vec3 p = Vec3(4.0) * Vec3(unit(), unit(), unit());
-    Cursor cursor;
-    const ScalarSample sample = field.scalar->sample(p, cursor);
+    const Vec3 p = Vec3(4.0) * Vec3(unit(random), unit(random), unit(random));
+    const ScalarSample sample = sample_at(field, p);
     wrong += sample.inside && std::fabs(sample.value - sum(p)) < 0.01 * sum(p) ? 0 : 1;
   }
   EXPECT_LE(wrong, kPlaces / 1000);
   EXPECT_EQ(field.scalar->min_value(), 1) << "not that of a point without a cell";
-  EXPECT_EQ(all_notes(field).find("lost"), std::string::npos) << all_notes(field);
+  EXPECT_FALSE(has_note(field, "lost"));
 }
 
 TEST_F(BlankedCells, ASmallCellsPeakIsKeptOrItsLossHasANote) {
@@ -239,11 +204,11 @@ TEST_F(BlankedCells, ASmallCellsPeakIsKeptOrItsLossHasANote) {
     return all;
   };
   const auto peak = [](const Vec3& p) { return p.x > 5 ? 100.0 : 1.0; };
-  const AnyField preserved = read(file("kept.vtu", files::hexahedra(boxes(0.05, 0), 0, peak)));
-  EXPECT_EQ(all_notes(preserved).find("is lost"), std::string::npos) << all_notes(preserved);
+  const AnyField preserved = read(file("kept.vtu", files::hexahedra(boxes(0.05, 0), 0, peak)), "v");
+  EXPECT_FALSE(has_note(preserved, "is lost"));
   EXPECT_EQ(preserved.scalar->max_value(), 100);
-  const AnyField lost = read(file("lost.vtu", files::hexahedra(boxes(0.001, 0.4003), 0, peak)));
-  EXPECT_NE(all_notes(lost).find("the maximum, 100, is lost"), std::string::npos) << all_notes(lost);
+  const AnyField lost = read(file("lost.vtu", files::hexahedra(boxes(0.001, 0.4003), 0, peak)), "v");
+  EXPECT_TRUE(has_note(lost, "the maximum, 100, is lost"));
 }
 
 TEST_F(BlankedCells, TheResampledGridDependsOnTheFileAndTheStatedLimitOnly) {
@@ -251,13 +216,13 @@ TEST_F(BlankedCells, TheResampledGridDependsOnTheFileAndTheStatedLimitOnly) {
                                                           [](const Vec3& p) { return p.x * p.x + p.y; }));
   const auto size = [&] { return describe_grids(path).value().front().size; };
   const Size3 whole = size();
-  EXPECT_EQ(read(path).get()->index_box().hi.x + 1, static_cast<double>(whole.x));
+  EXPECT_EQ(read(path, "v").get()->index_box().hi.x + 1, static_cast<double>(whole.x));
   std::vector<Size3> sizes;
   for (const std::uint64_t bytes : {std::uint64_t{4} << 30, std::uint64_t{1} << 30, std::uint64_t{2'000'000}}) {
     set_memory_limit(bytes);
     sizes.push_back(size());
-    const AnyField field = read(path);
-    EXPECT_EQ(all_notes(field).find("--memory") != std::string::npos, bytes == 2'000'000) << all_notes(field);
+    const AnyField field = read(path, "v");
+    EXPECT_EQ(bool(has_note(field, "--memory")), bytes == 2'000'000);
     set_memory_limit(std::nullopt);
   }
   EXPECT_EQ(sizes[0], whole);
@@ -265,13 +230,9 @@ TEST_F(BlankedCells, TheResampledGridDependsOnTheFileAndTheStatedLimitOnly) {
   EXPECT_LT(sizes[2].x, whole.x);
   // Without a stated limit, and with too little free memory.
   reader_settings().memory_bytes = 300'000;
-  LoadRequest request;
-  request.path = path;
-  const auto refused = load(request);
+  const auto refused = load(request_for(path));
   reader_settings().memory_bytes = 0;
-  ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("--memory 1 resamples to fewer voxels"), std::string::npos) << refused.error().message;
+  EXPECT_TRUE(fails(refused, "--memory 1 resamples to fewer voxels"));
 }
 
-}  // namespace blanked_cells_test
-}  // namespace catena::field
+}  // namespace catena::field::blanked_cells_test

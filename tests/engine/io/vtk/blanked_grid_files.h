@@ -42,18 +42,17 @@ inline std::string boxes(Form form, int n, const Scalar& f, const Flags& flags =
                      "</CellData>";
   const char* kinds[] = {"ImageData", "RectilinearGrid", "StructuredGrid", "UnstructuredGrid"};
   const std::string kind = kinds[static_cast<int>(form)];
-  std::string head = fmt::format("<{} WholeExtent=\"{}\"", kind, extent), piece = fmt::format("<Piece Extent=\"{}\">", extent);
+  std::string head = " WholeExtent=\"" + extent + "\"", piece = "Extent=\"" + extent + "\"";
   if (form == Form::image) head += " Origin=\"0 0 0\" Spacing=\"1 1 1\"";
   if (form == Form::rectilinear) data += "<Coordinates>" + array("x", axis) + array("y", axis) + array("z", axis) + "</Coordinates>";
   if (form == Form::structured || form == Form::unstructured) data += "<Points>" + array("Points", points, 3) + "</Points>";
   if (form == Form::unstructured) {
-    head = "<" + kind;
-    piece = fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">", (n + 1) * (n + 1) * (n + 1), n * n * n);
+    head = "";
+    piece = fmt::format("NumberOfPoints=\"{}\" NumberOfCells=\"{}\"", (n + 1) * (n + 1) * (n + 1), n * n * n);
     data += "<Cells>" + array("connectivity", ids, 1, "Int64") + array("offsets", ends, 1, "Int64") + array("types", types, 1, "UInt8") +
             "</Cells>";
   }
-  return fmt::format("<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"LittleEndian\">{1}>{2}{3}</Piece></{0}></VTKFile>\n", kind, head,
-                     piece, data);
+  return vtk_file(kind, head, piece, data);
 }
 
 inline const char* file_extension(Form form) {

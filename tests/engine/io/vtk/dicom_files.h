@@ -9,7 +9,6 @@
 #include <cstring>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "engine/base/vec.h"

@@ -24,37 +24,43 @@ inline std::string array(const std::string& name, const std::string& values, int
                      components, values);
 }
 
+/// A file of a VTK XML format: the attributes of the data set, those of its piece, and the piece.
+inline std::string vtk_file(const std::string& type, const std::string& attributes, const std::string& piece, const std::string& data) {
+  return fmt::format("<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"LittleEndian\"><{0}{1}><Piece {2}>{3}</Piece></{0}></VTKFile>\n",
+                     type, attributes, piece, data);
+}
+
+/// Numbers 0 to count - 1, each with `f`.
+template <class F>
+std::string numbers(int count, const F& f) {
+  std::string text;
+  for (int n = 0; n < count; ++n) text += fmt::format("{} ", f(n));
+  return text;
+}
+
 /// An image of 4 x 4 x 3 points with spacing 0.5 1 2, origin 10 20 30, and values by position.
 inline std::string vti(const std::string& direction, const Scalar& f) {
   std::string values;
   for (int k = 0; k < 3; ++k)
     for (int j = 0; j < 4; ++j)
       for (int i = 0; i < 4; ++i) values += fmt::format("{} ", f(Vec3(i, j, k)));
-  return fmt::format(
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\">\n<ImageData WholeExtent=\"0 3 0 3 "
-      "0 2\" "
-      "Origin=\"10 20 30\" Spacing=\"0.5 1 2\" Direction=\"{}\"><Piece Extent=\"0 3 0 3 0 2\"><PointData "
-      "Scalars=\"v\">\n{}</PointData></Piece>"
-      "</ImageData></VTKFile>\n",
-      direction, array("v", values));
+  return "<?xml version=\"1.0\"?>\n" +
+         vtk_file("ImageData", " WholeExtent=\"0 3 0 3 0 2\" Origin=\"10 20 30\" Spacing=\"0.5 1 2\" Direction=\"" + direction + "\"",
+                  "Extent=\"0 3 0 3 0 2\"", "<PointData Scalars=\"v\">\n" + array("v", values) + "</PointData>");
 }
 
 /// An image of 3 x 3 x 2 cells of size 1 x 2 x 3, with values by number.
 inline std::string vti_cells() {
-  std::string values;
-  for (int n = 0; n < 18; ++n) values += fmt::format("{} ", n);
-  return "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\"><ImageData WholeExtent=\"0 3 0 3 0 2\" Origin=\"0 0 0\" "
-         "Spacing=\"1 2 3\"><Piece Extent=\"0 3 0 3 0 2\"><CellData>" +
-         array("id", values, 1, "Int32") + "</CellData></Piece></ImageData></VTKFile>\n";
+  return vtk_file("ImageData", " WholeExtent=\"0 3 0 3 0 2\" Origin=\"0 0 0\" Spacing=\"1 2 3\"", "Extent=\"0 3 0 3 0 2\"",
+                  "<CellData>" + array("id", numbers(18, [](int n) { return n; }), 1, "Int32") + "</CellData>");
 }
 
 /// An image of 4 x 2 x 2 points; those at x = 0 are hidden.
 inline std::string vti_hidden() {
-  std::string values, ghosts;
-  for (int n = 0; n < 16; ++n) values += fmt::format("{} ", n), ghosts += n % 4 == 0 ? "2 " : "0 ";
-  return "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\"><ImageData WholeExtent=\"0 3 0 1 0 1\" Origin=\"0 0 0\" "
-         "Spacing=\"1 1 1\"><Piece Extent=\"0 3 0 1 0 1\"><PointData>" +
-         array("v", values) + array("vtkGhostType", ghosts, 1, "UInt8") + "</PointData></Piece></ImageData></VTKFile>\n";
+  const std::string ghosts = numbers(16, [](int n) { return n % 4 == 0 ? 2 : 0; });
+  return vtk_file(
+      "ImageData", " WholeExtent=\"0 3 0 1 0 1\" Origin=\"0 0 0\" Spacing=\"1 1 1\"", "Extent=\"0 3 0 1 0 1\"",
+      "<PointData>" + array("v", numbers(16, [](int n) { return n; })) + array("vtkGhostType", ghosts, 1, "UInt8") + "</PointData>");
 }
 
 /// An image of 2 x 2 x 2 points with wind = (x, -y, 2) and heat = x.
@@ -79,19 +85,18 @@ inline std::string vts_ring(int nr, int na, int nz, const Scalar& f) {
         values += fmt::format("{} ", f(p));
       }
   const std::string extent = fmt::format("0 {} 0 {} 0 {}", nr - 1, na - 1, nz - 1);
-  return fmt::format(
-      "<VTKFile type=\"StructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><StructuredGrid WholeExtent=\"{0}\"><Piece "
-      "Extent=\"{0}\"><PointData>{1}</PointData><Points>{2}</Points></Piece></StructuredGrid></VTKFile>\n",
-      extent, array("v", values), array("Points", points, 3));
+  return vtk_file("StructuredGrid", " WholeExtent=\"" + extent + "\"", "Extent=\"" + extent + "\"",
+                  "<PointData>" + array("v", values) + "</PointData><Points>" + array("Points", points, 3) + "</Points>");
 }
 
+/// `count` points with the array "v", cells by the ids of their points, and `more` in the piece.
 inline std::string make_vtu(int count, const std::string& points, const std::string& values, const std::string& ids,
-                            const std::string& ends, const std::string& types) {
-  return fmt::format(
-      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece NumberOfPoints=\"{}\" "
-      "NumberOfCells=\"{}\"><PointData>{}</PointData><Points>{}</Points><Cells>{}{}{}</Cells></Piece></UnstructuredGrid></VTKFile>\n",
-      count, 1 + std::count(ends.begin(), ends.end(), ' '), array("v", values), array("Points", points, 3),
-      array("connectivity", ids, 1, "Int64"), array("offsets", ends, 1, "Int64"), array("types", types, 1, "UInt8"));
+                            const std::string& ends, const std::string& types, const std::string& more = {}) {
+  return vtk_file("UnstructuredGrid", "",
+                  fmt::format("NumberOfPoints=\"{}\" NumberOfCells=\"{}\"", count, 1 + std::count(ends.begin(), ends.end(), ' ')),
+                  "<PointData>" + array("v", values) + "</PointData>" + more + "<Points>" + array("Points", points, 3) +
+                      "</Points><Cells>" + array("connectivity", ids, 1, "Int64") + array("offsets", ends, 1, "Int64") +
+                      array("types", types, 1, "UInt8") + "</Cells>");
 }
 
 /// A unit cube as a hexahedron, and a tetrahedron on its face x = 1; "v" at points, "c" in cells.
@@ -99,11 +104,7 @@ inline std::string vtu_mixed(const Scalar& f) {
   const std::vector<Vec3> p{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {2, 0, 0}};
   std::string points, values;
   for (const Vec3& q : p) points += fmt::format("{} {} {} ", q.x, q.y, q.z), values += fmt::format("{} ", f(q));
-  return "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece NumberOfPoints=\"9\" "
-         "NumberOfCells=\"2\"><PointData>" +
-         array("v", values) + "</PointData><CellData>" + array("c", "1 2") + "</CellData><Points>" + array("Points", points, 3) +
-         "</Points><Cells>" + array("connectivity", "0 1 2 3 4 5 6 7 1 8 2 5", 1, "Int64") + array("offsets", "8 12", 1, "Int64") +
-         array("types", "12 10", 1, "UInt8") + "</Cells></Piece></UnstructuredGrid></VTKFile>\n";
+  return make_vtu(9, points, values, "0 1 2 3 4 5 6 7 1 8 2 5", "8 12", "12 10", "<CellData>" + array("c", "1 2") + "</CellData>");
 }
 
 /// A unit cube as one quadratic hexahedron of 20 points.
@@ -235,18 +236,17 @@ inline std::string gifti() {
          "2</Data></DataArray>\n</GIFTI>\n";
 }
 inline std::string vtp() {
-  return "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\"><PolyData><Piece NumberOfPoints=\"4\" "
-         "NumberOfPolys=\"4\"><Points>" +
-         array("Points", "0 0 0 1 0 0 0 2 0 0 0 3", 3) + "</Points><Polys>" + array("connectivity", "0 2 1 0 1 3 1 2 3 0 3 2", 1, "Int64") +
-         array("offsets", "3 6 9 12", 1, "Int64") + "</Polys></Piece></PolyData></VTKFile>\n";
+  return vtk_file("PolyData", "", "NumberOfPoints=\"4\" NumberOfPolys=\"4\"",
+                  "<Points>" + array("Points", "0 0 0 1 0 0 0 2 0 0 0 3", 3) + "</Points><Polys>" +
+                      array("connectivity", "0 2 1 0 1 3 1 2 3 0 3 2", 1, "Int64") + array("offsets", "3 6 9 12", 1, "Int64") + "</Polys>");
 }
 
 /// Two polylines of 3 and 2 points, with "s" at each point.
 inline std::string vtp_lines() {
-  return "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\"><PolyData><Piece NumberOfPoints=\"5\" "
-         "NumberOfLines=\"2\"><PointData Scalars=\"s\">" +
-         array("s", "0 1 2 3 4") + "</PointData><Points>" + array("Points", "0 0 0 1 0 0 1 1 0 5 5 5 5 5 6", 3) + "</Points><Lines>" +
-         array("connectivity", "0 1 2 3 4", 1, "Int64") + array("offsets", "3 5", 1, "Int64") + "</Lines></Piece></PolyData></VTKFile>\n";
+  return vtk_file("PolyData", "", "NumberOfPoints=\"5\" NumberOfLines=\"2\"",
+                  "<PointData Scalars=\"s\">" + array("s", "0 1 2 3 4") + "</PointData><Points>" +
+                      array("Points", "0 0 0 1 0 0 1 1 0 5 5 5 5 5 6", 3) + "</Points><Lines>" +
+                      array("connectivity", "0 1 2 3 4", 1, "Int64") + array("offsets", "3 5", 1, "Int64") + "</Lines>");
 }
 inline std::string ply_points() {
   return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n1 0 0\n0 2 "

@@ -5,14 +5,12 @@
 #include <filesystem>
 
 #include "engine/io/volume/data_files.h"
-#include "engine/io/volume/load_field.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/time_steps.h"
+#include "tests/engine/field/field_helpers.h"
 #include "tests/engine/io/vtk/files.h"
-#include "tests/support/support.h"
 
-namespace catena::field {
-namespace foam_test {
+namespace catena::field::foam_test {
 
 namespace fs = std::filesystem;
 
@@ -82,21 +80,7 @@ void write_control(const std::string& folder) {
             "timeStep;\nwriteInterval 1;\nwriteFormat ascii;\n");
 }
 
-Result<AnyField> at_step(const std::string& path, int step) {
-  LoadRequest request;
-  request.path = path;
-  request.grid = "T";
-  request.step = step;
-  return load(request);
-}
-
-double value_at(const Result<AnyField>& field, double x) {
-  EXPECT_TRUE(field) << (field ? "" : field.error().message);
-  Cursor cursor;
-  const ScalarSample sample = field ? field->scalar->sample({x, 0.5, 0.5}, cursor) : ScalarSample{};
-  EXPECT_TRUE(sample.inside) << x;
-  return sample.value;
-}
+double value_at(const AnyField& field, double x) { return test::value_at(field, {x, 0.5, 0.5}); }
 
 TEST(OpenFoam, ReadsWholeAndDecomposedCases) {
   for (const bool binary : {false, true}) {
@@ -109,11 +93,10 @@ TEST(OpenFoam, ReadsWholeAndDecomposedCases) {
     test::write_file(folder / "whole/x.foam", "");
     const std::string paths[] = {folder / "whole", folder / "whole/", folder / "whole/x.foam", folder / "pieces"};
     for (int step = 0; step < 3; ++step) {
-      const auto reference = at_step(paths[2], step);
-      ASSERT_TRUE(reference) << reference.error().message;
-      EXPECT_EQ(reference->times, (std::vector<double>{0.5, 1, 10}));
+      const AnyField reference = test::read(paths[2], "T", step);
+      EXPECT_EQ(reference.times, (std::vector<double>{0.5, 1, 10}));
       for (const std::string& path : paths) {
-        const auto field = at_step(path, step);
+        const AnyField field = test::read(path, "T", step);
         for (const double x : {0.5, 2.9, 3.0, 3.1, 7.5}) EXPECT_NEAR(value_at(field, x), value_at(reference, x), 1e-3) << path << " " << x;
         EXPECT_NEAR(value_at(field, 4.5), 100 * std::stod(kTimes[step]) + 4, 0.05) << path;
       }
@@ -138,20 +121,14 @@ TEST(OpenFoam, TimesWithoutFieldsAreNoSteps) {
   fs::remove(path + "/0.5/T");
   write(path + "/0.5/p", other);
   EXPECT_EQ(read_times(path), (std::vector<double>{0.5, 1, 10}));
-  EXPECT_NEAR(value_at(at_step(path, 2), 1.5), 1001, 0.05);
-  const auto missing = at_step(path, 0);
-  ASSERT_FALSE(missing);
-  EXPECT_NE(missing.error().message.find("at step 0 (time 0.5) there is no grid \"T\""), std::string::npos) << missing.error().message;
-  EXPECT_NE(missing.error().message.find("step 2 (time 10) has this grid"), std::string::npos) << missing.error().message;
-  const auto first = describe_grids(path), later = describe_grids(path, 1);
-  ASSERT_TRUE(first && later);
-  EXPECT_EQ(first->front().name, "p");
-  EXPECT_EQ(later->front().name, "T");
+  EXPECT_NEAR(value_at(test::read(path, "T", 2), 1.5), 1001, 0.05);
+  test::expect_error(load(test::request_for(path, "T")), {"at step 0 (time 0.5) there is no grid \"T\"", "step 2 (time 10) has this grid"});
+  EXPECT_EQ(test::value_of(describe_grids(path)).front().name, "p");
+  EXPECT_EQ(test::value_of(describe_grids(path, 1)).front().name, "T");
   // A scene of a requested step.
-  const auto scene = scene::scene_for_file(path, "T", {}, 2);
-  ASSERT_TRUE(scene) << scene.error().message;
-  EXPECT_EQ(scene->time.step, 2);
-  EXPECT_EQ(scene::format_time(*scene), "10");
+  const auto scene = test::value_of(scene::scene_for_file(path, "T", {}, 2));
+  EXPECT_EQ(scene.time.step, 2);
+  EXPECT_EQ(scene::format_time(scene), "10");
 }
 
 TEST(OpenFoam, AllRegionsMakeOneField) {
@@ -159,7 +136,7 @@ TEST(OpenFoam, AllRegionsMakeOneField) {
   write_part(folder / "case", "/fluid", 0, 3, false);
   write_part(folder / "case", "/solid", 3, 5, false);
   write_control(folder / "case");
-  const auto field = at_step(folder / "case", 1);
+  const AnyField field = test::read(folder / "case", "T", 1);
   EXPECT_NEAR(value_at(field, 1.5), 101, 0.05);
   EXPECT_NEAR(value_at(field, 6.5), 106, 0.05);
 }
@@ -171,16 +148,11 @@ TEST(OpenFoam, InvalidCasesAreRefused) {
   write_control(folder / "collated");
   fs::create_directories(folder / "collated/processors4/constant");
   fs::create_directories(folder / "empty");
-  const std::pair<const char*, const char*> kCases[] = {{"no_mesh", "without a mesh"},
-                                                        {"no_control", "without system/controlDict"},
-                                                        {"collated", "reconstructPar"},
-                                                        {"empty", "contains neither DICOM images nor an OpenFOAM case"}};
-  for (const auto& [name, words] : kCases) {
-    const auto field = at_step(folder / name, 0);
-    ASSERT_FALSE(field) << name;
-    EXPECT_NE(field.error().message.find(words), std::string::npos) << field.error().message;
-  }
+  for (const auto& [name, words] : {std::pair{"no_mesh", "without a mesh"},
+                                    {"no_control", "without system/controlDict"},
+                                    {"collated", "reconstructPar"},
+                                    {"empty", "contains neither DICOM images nor an OpenFOAM case"}})
+    EXPECT_TRUE(test::fails(load(test::request_for(folder / name, "T")), words)) << name;
 }
 
-}  // namespace foam_test
-}  // namespace catena::field
+}  // namespace catena::field::foam_test

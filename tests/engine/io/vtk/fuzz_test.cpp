@@ -3,18 +3,14 @@
 /// error, within the limits of time and memory. Two of three changed bytes are in the first 2 kB, which contain the headers.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "engine/base/memory_limit.h"
 #include "engine/io/mesh/load_mesh.h"
-#include "engine/io/volume/load_field.h"
+#include "tests/engine/field/field_helpers.h"
 #include "tests/engine/io/vtk/files.h"
 #include "tests/fuzz/mutate.h"
 #include "tests/fuzz/mutate_bytes.h"
-#include "tests/support/support.h"
 
-namespace catena::field {
-namespace vtk_fuzz_test {
+namespace catena::field::vtk_fuzz_test {
 
 namespace files = test::vtk_files;
 
@@ -51,31 +47,27 @@ std::vector<Seed> seeds() {
           {"a.vtp", files::vtp(), true}};
 }
 
-class VtkFuzz : public testing::Test {
+class VtkFuzz : public test::FilesTest {
  protected:
   VtkFuzz() { set_memory_limit(std::uint64_t{256} << 20); }
   ~VtkFuzz() override { set_memory_limit(std::nullopt); }
 
   void expect_one_line(const std::string& message, const std::string& path) {
-    EXPECT_NE(message.find(path), std::string::npos) << message;
+    EXPECT_TRUE(test::has(message, path));
     EXPECT_EQ(message.find_first_of("\r\n\x1b"), std::string::npos) << message;
     EXPECT_EQ(message.find("0x"), std::string::npos) << "an address: " << message;
     EXPECT_LT(message.size(), 800u) << message;
   }
   /// Loads the bytes; true if they are a valid file.
   bool check(const Seed& seed, const std::string& bytes) {
-    const std::string path = folder_ / seed.name;
-    test::write_file(path, bytes);
+    const std::string path = file(seed.name, bytes);
     if (seed.mesh) {
       const auto mesh = mesh::load_mesh(path);
       if (!mesh) expect_one_line(mesh.error().message, path);
       return static_cast<bool>(mesh);
     }
-    LoadRequest request;
-    request.path = path;
-    if (seed.name == std::string("a.vtk")) request.grid = "wind";
-    if (seed.name == std::string("a.vtu")) request.grid = "v";
-    const auto field = load(request);
+    const std::string name = seed.name;
+    const auto field = load(test::request_for(path, name == "a.vtk" ? "wind" : name == "a.vtu" ? "v" : ""));
     if (!field) {
       expect_one_line(field.error().message, path);
       return false;
@@ -90,14 +82,13 @@ class VtkFuzz : public testing::Test {
     }
     return true;
   }
-  test::TemporaryFolder folder_;
 };
 
 TEST_F(VtkFuzz, DamagedFilesEndInOneLine) {
   for (const Seed& seed : seeds()) {
     EXPECT_TRUE(check(seed, seed.bytes)) << seed.name;
     std::uint64_t loaded = 0, all = 0;
-    for (test::FuzzInputs inputs(12, std::hash<std::string>{}(seed.name)); inputs.next(); ++all) {
+    for (catena::test::FuzzInputs inputs(12, std::hash<std::string>{}(seed.name)); inputs.next(); ++all) {
       std::string bytes = seed.bytes;
       const std::size_t changes = 1 + inputs.random.below(6);
       for (std::size_t c = 0; c < changes; ++c) {
@@ -112,5 +103,4 @@ TEST_F(VtkFuzz, DamagedFilesEndInOneLine) {
   }
 }
 
-}  // namespace vtk_fuzz_test
-}  // namespace catena::field
+}  // namespace catena::field::vtk_fuzz_test

@@ -9,11 +9,9 @@
 #include <cstring>
 
 #include "engine/io/mesh/load_mesh.h"
-#include "engine/io/volume/load_field.h"
-#include "tests/support/support.h"
+#include "tests/engine/field/field_helpers.h"
 
-namespace catena::field {
-namespace truncated_files_test {
+namespace catena::field::truncated_files_test {
 
 constexpr int kEdge = 12, kAll = kEdge * kEdge * kEdge;
 
@@ -92,17 +90,12 @@ TEST(TruncatedFiles, AreRefused) {
                                     {"c1.nc", netcdf(folder, 0)},
                                     {"c2.nc", netcdf(folder, NC_64BIT_OFFSET)},
                                     {"c5.nc", netcdf(folder, NC_64BIT_DATA)}}) {
-    LoadRequest request;
-    request.path = folder / name;
     test::write_file(folder / name, whole);
-    const auto all = load(request);
-    ASSERT_TRUE(all) << name << ": " << all.error().message;
-    Cursor cursor;
-    EXPECT_EQ(all->scalar->sample(all->scalar->grid()->mapping().world_from_index(Vec3(kEdge - 1)), cursor).value, kAll) << name;
+    const AnyField all = test::read(folder / name);
+    EXPECT_EQ(test::sample_at(all, all.scalar->grid()->mapping().world_from_index(Vec3(kEdge - 1))).value, kAll) << name;
     for (const double part : {0.3, 0.61, 0.9, 0.98}) {
       test::write_file(folder / name, whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
-      const auto cut = load(request);
-      EXPECT_FALSE(cut) << name << " " << part << ": " << (cut ? cut->scalar->max_value() : 0);
+      EXPECT_NE(test::error_of(folder / name), "loaded") << name << " " << part;
     }
   }
 }
@@ -114,9 +107,7 @@ TEST(TruncatedFiles, CompleteFilesThatResembleTruncatedOnesAreRead) {
     std::string file = appended();
     file.replace(file.find('_') + 5 + 4 * (kAll - 1), 4, std::string(4, static_cast<char>(fill)));
     test::write_file(folder / "f.vti", file);
-    LoadRequest request;
-    request.path = folder / "f.vti";
-    EXPECT_TRUE(load(request)) << fill;
+    EXPECT_EQ(test::error_of(folder / "f.vti"), "loaded") << fill;
   }
 }
 
@@ -142,5 +133,4 @@ TEST(TruncatedFiles, ATruncatedMeshIsRefused) {
   }
 }
 
-}  // namespace truncated_files_test
-}  // namespace catena::field
+}  // namespace catena::field::truncated_files_test

@@ -8,8 +8,7 @@
 #include <limits>
 #include <numbers>
 
-namespace catena::haptics {
-namespace delta_legs_test {
+namespace catena::haptics::delta_legs_test {
 
 Vec3 counts_at(const Vec3& p_mm) {
   const auto legs = solve_delta_legs(p_mm * 1e-3);
@@ -62,5 +61,4 @@ TEST(DeltaLegs, OutOfReachIsRefused) {
   EXPECT_FALSE(solve_delta_legs({0, 0, std::numeric_limits<double>::quiet_NaN()}));
 }
 
-}  // namespace delta_legs_test
-}  // namespace catena::haptics
+}  // namespace catena::haptics::delta_legs_test

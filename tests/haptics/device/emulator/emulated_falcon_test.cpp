@@ -6,15 +6,13 @@
 
 #include "tests/haptics/device/emulator/boot_image.h"
 
-namespace catena::haptics {
-namespace emulated_falcon_test {
+namespace catena::haptics::emulated_falcon_test {
 
 std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
 struct Rig {
   explicit Rig(const EmulatedFalconOptions& options = {}) : device(options) { device.control({0x40, 3, kBaudRunning, 0}); }
   void send(const std::vector<std::uint8_t>& bytes) { device.bulk_out(bytes); }
-  void send(std::initializer_list<std::uint8_t> bytes) { send(std::vector<std::uint8_t>(bytes)); }
   void send(const std::string& text) { send(bytes_of(text)); }
   /// Payload of the next packet.
   std::string receive() {
@@ -23,6 +21,11 @@ struct Rig {
     EXPECT_EQ(packet[0], 0x01);
     return {packet + 2, packet + n};
   }
+  /// Payload of the packet that answers a command; empty if there is none.
+  std::string reply_to(const std::string& command) {
+    send(command);
+    return device.has_payload() ? receive() : "";
+  }
   void reset_processor() {
     device.control({0x40, 3, kBaud9600, 0});
     device.control({0x40, 1, 0x0100, 0});
@@ -30,28 +33,22 @@ struct Rig {
   }
   void wake() {
     reset_processor();
-    send({0x0A, 0x43, 0x0D});
-    EXPECT_EQ(receive(), "\x0A\x44\x2C\x0D");
+    EXPECT_EQ(reply_to("\x0A\x43\x0D"), "\x0A\x44\x2C\x0D");
     device.control({0x40, 1, 0x0100, 0});
     device.control({0x40, 3, kBaudBoot, 0});
-    send({0x41});
-    EXPECT_EQ(receive(), "A");
+    EXPECT_EQ(reply_to("A"), "A");
   }
   EmulatedFalcon device;
 };
 
 const std::string kRest = "<AAAAAAAAAAAAAA>";
+const EmulatedFalconOptions kCold{.firmware = false};
 
 TEST(EmulatedFalcon, EncodersAreSentLowNibbleFirst) {
-  EmulatedFalconOptions options;
-  options.power_on_offset = {-1447 + 510, 0, 0};
-  Rig rig(options);
   // at rest at z = 0.11 the encoders are near -516
   const int near = static_cast<int>(std::lround(angles_to_counts(solve_delta_legs({0, 0, 0.11})->theta).x));
-  options.power_on_offset = {-1447 - near, -near, 1 - near};
-  Rig exact(options);
-  exact.send(kRest);
-  EXPECT_EQ(exact.receive(), "<JFKPAAAABAAAAA>");
+  Rig exact({.power_on_offset = {-1447 - near, -near, 1 - near}});
+  EXPECT_EQ(exact.reply_to(kRest), "<JFKPAAAABAAAAA>");
   EXPECT_EQ(exact.device.last_exchange().encoders, (EmulatedMechanism::Counts{-1447, 0, 1}));
 }
 
@@ -81,12 +78,10 @@ TEST(EmulatedFalcon, AFrameMayArriveInPiecesAndAfterNoise) {
 TEST(EmulatedFalcon, AtAWrongBaudRateCommandsAreIgnored) {
   Rig rig;
   rig.device.control({0x40, 3, kBaud9600, 0});
-  rig.send(kRest);
-  EXPECT_FALSE(rig.device.has_payload());
+  EXPECT_EQ(rig.reply_to(kRest), "");
   EXPECT_EQ(rig.device.frames(), 0u);
   rig.device.faults().garbage_at_wrong_baud = true;
-  rig.send(kRest);
-  EXPECT_TRUE(rig.device.has_payload());
+  EXPECT_NE(rig.reply_to(kRest), "");
   EXPECT_EQ(rig.device.frames(), 0u);
 }
 
@@ -102,9 +97,7 @@ TEST(EmulatedFalcon, UnknownRequestsAreRefused) {
 }
 
 TEST(EmulatedFalcon, BootsAWholeImageAndStartsIt) {
-  EmulatedFalconOptions options;
-  options.firmware = false;
-  Rig rig(options);
+  Rig rig(kCold);
   rig.send(kRest);
   EXPECT_EQ(rig.device.frames(), 0u);
   rig.wake();
@@ -113,9 +106,9 @@ TEST(EmulatedFalcon, BootsAWholeImageAndStartsIt) {
     const std::vector<std::uint8_t> chunk(image.begin() + static_cast<std::ptrdiff_t>(at),
                                           image.begin() + static_cast<std::ptrdiff_t>(std::min(at + 62, image.size())));
     EXPECT_FALSE(rig.device.running());
-    rig.send(chunk);
-    EXPECT_EQ(bytes_of(rig.receive()), chunk);
+    EXPECT_EQ(bytes_of(rig.reply_to({chunk.begin(), chunk.end()})), chunk);
   }
+  EXPECT_EQ(rig.device.boot_rom().image_bytes(), image.size());
   EXPECT_TRUE(rig.device.running());
   rig.device.control({0x40, 3, kBaudRunning, 0});
   rig.send(kRest);
@@ -123,10 +116,8 @@ TEST(EmulatedFalcon, BootsAWholeImageAndStartsIt) {
 }
 
 TEST(EmulatedFalcon, ADamagedOrWrongImageNeverStarts) {
-  EmulatedFalconOptions options;
-  options.firmware = false;
   const auto image = tests::boot_image({20});
-  Rig rig(options);
+  Rig rig(kCold);
   rig.device.boot_rom().faults().echo_errors = {30};
   rig.wake();
   rig.send(image);
@@ -141,7 +132,7 @@ TEST(EmulatedFalcon, ADamagedOrWrongImageNeverStarts) {
   EXPECT_TRUE(rig.device.running());
   EXPECT_EQ(rig.device.boot_rom().attempts(), 2);
 
-  Rig other(options);
+  Rig other(kCold);
   other.wake();
   auto wrong = image;
   wrong[0] = 0xAB;
@@ -150,25 +141,18 @@ TEST(EmulatedFalcon, ADamagedOrWrongImageNeverStarts) {
 }
 
 TEST(EmulatedFalcon, HandshakesMayBeIgnoredOrStartWithAZero) {
-  EmulatedFalconOptions options;
-  options.firmware = false;
-  Rig rig(options);
+  Rig rig(kCold);
   rig.device.boot_rom().faults() = {.ignored_handshakes = 2, .leading_zero = true, .echo_errors = {}};
   rig.reset_processor();
-  for (int i = 0; i < 2; ++i) {
-    rig.send({0x0A, 0x43, 0x0D});
-    EXPECT_FALSE(rig.device.has_payload());
-  }
-  rig.send({0x0A, 0x43, 0x0D});
-  EXPECT_EQ(rig.receive(), std::string("\0\x0A\x44\x2C\x0D", 5));
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(rig.reply_to("\x0A\x43\x0D"), "");
+  EXPECT_EQ(rig.reply_to("\x0A\x43\x0D"), std::string("\0\x0A\x44\x2C\x0D", 5));
 }
 
 TEST(EmulatedFalcon, AnAxisHomesOnItsReturnAndItsOriginJumps) {
   Rig rig;
   const auto at = [&](double z, const std::string& frame) {
     EXPECT_TRUE(rig.device.mechanism().hold({0, 0, z}));
-    rig.send(frame);
-    rig.receive();
+    rig.reply_to(frame);
     return rig.device.last_exchange();
   };
   const std::string homing = "<AAAAAAAAAAAABA>";
@@ -188,12 +172,9 @@ TEST(EmulatedFalcon, AnAxisHomesOnItsReturnAndItsOriginJumps) {
 }
 
 TEST(EmulatedFalcon, ButtonsAndHomedBitsShareAByte) {
-  EmulatedFalconOptions options;
-  options.homed = true;
-  Rig rig(options);
+  Rig rig({.homed = true});
   rig.device.mechanism().hold_buttons(15);
-  rig.send(kRest);
-  EXPECT_EQ(static_cast<std::uint8_t>(rig.receive()[13]), 0x41 + 0x7F);
+  EXPECT_EQ(static_cast<std::uint8_t>(rig.reply_to(kRest)[13]), 0x41 + 0x7F);
 }
 
 TEST(EmulatedFalcon, ReplyFaultsSplitJoinTruncateDropAndAddGarbage) {
@@ -205,19 +186,13 @@ TEST(EmulatedFalcon, ReplyFaultsSplitJoinTruncateDropAndAddGarbage) {
   const std::string head = rig.receive(), tail = rig.receive();
   EXPECT_EQ(head.size(), 5u);
   EXPECT_EQ(tail.size(), 11u);
-  rig.send(kRest);
-  EXPECT_FALSE(rig.device.has_payload());
-  rig.send(kRest);
-  EXPECT_EQ(rig.receive(), head + tail + head + tail);
-  rig.send(kRest);
-  EXPECT_EQ(rig.receive(), (head + tail).substr(0, 9));
-  rig.send(kRest);
-  EXPECT_FALSE(rig.device.has_payload());
-  rig.send(kRest);
-  EXPECT_EQ(rig.receive().substr(4), head + tail);
+  EXPECT_EQ(rig.reply_to(kRest), "");
+  EXPECT_EQ(rig.reply_to(kRest), head + tail + head + tail);
+  EXPECT_EQ(rig.reply_to(kRest), (head + tail).substr(0, 9));
+  EXPECT_EQ(rig.reply_to(kRest), "");
+  EXPECT_EQ(rig.reply_to(kRest).substr(4), head + tail);
   rig.device.faults().silent = true;
-  rig.send(kRest);
-  EXPECT_FALSE(rig.device.has_payload());
+  EXPECT_EQ(rig.reply_to(kRest), "");
 }
 
 TEST(EmulatedFalcon, AHostThatDoesNotReadLosesReplies) {
@@ -245,15 +220,12 @@ TEST(EmulatedFalcon, AnEmulatedHandMovesTheGripAndYieldsToTheMotors) {
   free.device.mechanism().attach_user(hand);
   pushed.device.mechanism().attach_user(hand);
   for (int i = 0; i < 1000; ++i) {
-    free.send(kRest);
-    pushed.send("<OAPPOAPPOAPPAA>");  // about +1 N along z
-    free.receive();
-    pushed.receive();
+    free.reply_to(kRest);
+    pushed.reply_to("<OAPPOAPPOAPPAA>");  // about +1 N along z
   }
   EXPECT_NEAR(free.device.mechanism().position_m().x, 0.01, 1e-6);
   EXPECT_EQ(free.device.mechanism().buttons(), 1u);
   EXPECT_NEAR(pushed.device.mechanism().position_m().z, 0.11 + 1.0 / hand.stiffness_n_per_m, 1e-4);
 }
 
-}  // namespace emulated_falcon_test
-}  // namespace catena::haptics
+}  // namespace catena::haptics::emulated_falcon_test

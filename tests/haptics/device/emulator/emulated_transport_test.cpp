@@ -4,19 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <thread>
-
 #include "haptics/device/usb/falcon.h"
+#include "tests/haptics/device/wait_until.h"
 
-namespace catena::haptics {
-namespace emulated_transport_test {
+namespace catena::haptics::emulated_transport_test {
 
-template <class F>
-bool eventually(F&& condition) {
-  for (int i = 0; i < 60000 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::microseconds(500));
-  return condition();
-}
+using test::wait_until;
 
 TEST(EmulatedTransport, ErrorsMatchThoseOfAUsbBus) {
   auto shared = std::make_shared<SharedEmulatedFalcon>();
@@ -54,13 +47,13 @@ TEST(EmulatedTransport, TheDefaultHandHomesArmsAndStaysInTheWorkspace) {
   auto falcon = usb::Falcon::open(std::make_unique<EmulatedTransportSource>(shared, false), options);
   ASSERT_TRUE(falcon) << falcon.error().message;
   (*falcon)->write({.force_n = {0, 0, 0.5}});
-  ASSERT_TRUE(eventually([&] { return (*falcon)->state() == usb::FalconState::ready; }));
+  ASSERT_TRUE(wait_until([&] { return (*falcon)->state() == usb::FalconState::ready; }));
   const auto frames = [&] {
     const std::scoped_lock lock(shared->mutex);
     return shared->device.frames();
   };
   const std::uint64_t from = frames();
-  ASSERT_TRUE(eventually([&] { return frames() > from + 20000; }));
+  ASSERT_TRUE(wait_until([&] { return frames() > from + 20000; }));
   EXPECT_EQ(early, 0);
   EXPECT_TRUE(outside);
   EXPECT_EQ((*falcon)->stats().out_of_reach, 0u);
@@ -80,8 +73,7 @@ TEST(EmulatedTransport, TheRegistryOpensItAndTheEmulatedHandMoves) {
   ASSERT_TRUE(device) << device.error().message;
   EXPECT_EQ((*device)->capabilities().name, "Novint Falcon");
   EXPECT_GT((*device)->capabilities().max_force_n, 0);
-  EXPECT_TRUE(eventually([&] { return (*device)->read().status == DeviceStatus::starting; }));
+  EXPECT_TRUE(wait_until([&] { return (*device)->read().status == DeviceStatus::starting; }));
 }
 
-}  // namespace emulated_transport_test
-}  // namespace catena::haptics
+}  // namespace catena::haptics::emulated_transport_test

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// The cutting plane end to end: encoder counts and button bits over the unmodified libusb, the driver, the servo and the widget's
 /// state machine; poses against closed forms of the grip's position.
-#include "tests/haptics/device/usbfs/full_stack_widget_program.h"
+#include "tests/haptics/device/usbfs/full_stack_program.h"
 #include "tests/haptics/device/usbfs/in_process_bus.h"
 #include "tests/haptics/device/usbfs/wrap_source.h"
 
-namespace catena::haptics::tests {
-namespace widget_test {
+namespace catena::haptics::tests::widget_test {
 
 using Mode = WidgetMode;
 
@@ -48,7 +47,6 @@ class Hand {
 TEST(WidgetOverUsb, ExploresTranslatesRotatesAndTurnsACuttingPlane) {
   InProcessBus bus({.homed = true});
   auto falcon = open_wrapped_falcon(bus.fd());
-  ASSERT_NE(falcon, nullptr);
   ServoRig catena(bus, *falcon, widget_scene_program(), {.rate_hz = 2000});
   ASSERT_TRUE(catena.start());
   Hand hand(bus, catena.servo());
@@ -102,5 +100,4 @@ TEST(WidgetOverUsb, ExploresTranslatesRotatesAndTurnsACuttingPlane) {
   EXPECT_EQ(hand.cut().pose.points[0], centre);
 }
 
-}  // namespace widget_test
-}  // namespace catena::haptics::tests
+}  // namespace catena::haptics::tests::widget_test

@@ -8,15 +8,13 @@
 #include "tests/haptics/device/usbfs/servo_fixture.h"
 #include "tests/haptics/device/usbfs/wrap_source.h"
 
-namespace catena::haptics::tests {
-namespace soak_test {
+namespace catena::haptics::tests::soak_test {
 
 TEST(UsbSoak, StaysReadyUnderFaults) {
   const char* asked = std::getenv("CATENA_SOAK_TICKS");
   const std::uint64_t ticks = asked != nullptr ? std::strtoull(asked, nullptr, 10) : 20000;
   InProcessBus bus({.homed = true});
   auto falcon = open_wrapped_falcon(bus.fd());
-  ASSERT_NE(falcon, nullptr);
   ServoRig catena(bus, *falcon, ball_link_program(), {.paced = false});
   ASSERT_TRUE(catena.start());
   EmulatedUser hand;
@@ -70,5 +68,4 @@ TEST(UsbSoak, StaysReadyUnderFaults) {
               static_cast<unsigned long long>(stats.stalls), static_cast<unsigned long long>(stats.resyncs));
 }
 
-}  // namespace soak_test
-}  // namespace catena::haptics::tests
+}  // namespace catena::haptics::tests::soak_test

@@ -10,39 +10,35 @@
 namespace catena::haptics::tests {
 namespace {
 
-constexpr std::uint8_t kConfiguration[] = {9,    2,    32,
-                                           0,    1,    1,
-                                           0,    0xA0, 45,  // configuration
-                                           9,    4,    0,
-                                           0,    2,    0xFF,
-                                           0xFF, 0xFF, 2,  // interface 0, two endpoints
-                                           7,    5,    EmulatedFalcon::kEndpointIn,
-                                           2,    64,   0,
-                                           0,  // bulk IN
-                                           7,    5,    EmulatedFalcon::kEndpointOut,
-                                           2,    64,   0,
-                                           0};
+// configuration; interface 0 with two endpoints; bulk IN; bulk OUT
+constexpr std::uint8_t kConfiguration[] = {9,    2,    32,   0, 1, 1, 0,
+                                           0xA0, 45,   9,    4, 0, 0, 2,
+                                           0xFF, 0xFF, 0xFF, 2, 7, 5, EmulatedFalcon::kEndpointIn,
+                                           2,    64,   0,    0, 7, 5, EmulatedFalcon::kEndpointOut,
+                                           2,    64,   0,    0};
 
 constexpr std::uint8_t kDevice[] = {18, 1, 0x00, 0x02, 0, 0, 0, 8, 0x03, 0x04, 0x48, 0xcb, 0x00, 0x06, 1, 2, 0, 1};
+
+EmulatedUsbfs::Urb take_first(std::deque<EmulatedUsbfs::Urb>& queue) {
+  const EmulatedUsbfs::Urb urb = queue.front();
+  queue.pop_front();
+  return urb;
+}
 
 std::vector<std::uint8_t> string_descriptor(int index) {
   if (index == 0) return {4, 3, 0x09, 0x04};
   const std::string text = index == 1 ? "Novint" : index == 2 ? "FALCON HAPTIC" : "";
   if (text.empty()) return {};
   std::vector<std::uint8_t> out{static_cast<std::uint8_t>(2 + 2 * text.size()), 3};
-  for (const char c : text) {
-    out.push_back(static_cast<std::uint8_t>(c));
-    out.push_back(0);
-  }
+  for (const char c : text) out.insert(out.end(), {static_cast<std::uint8_t>(c), 0});
   return out;
 }
 
 }  // namespace
 
 std::vector<std::uint8_t> EmulatedUsbfs::descriptors() {
-  std::vector<std::uint8_t> all;
-  for (const std::uint8_t byte : kDevice) all.push_back(byte);
-  for (const std::uint8_t byte : kConfiguration) all.push_back(byte);
+  std::vector<std::uint8_t> all(std::begin(kDevice), std::end(kDevice));
+  all.insert(all.end(), std::begin(kConfiguration), std::end(kConfiguration));
   return all;
 }
 
@@ -69,12 +65,10 @@ void EmulatedUsbfs::tick_latency() {
     if (stop_ || !plugged_) continue;
     pump_locked();
     if (in_.empty() || !port_.faults.idle_packets) continue;
-    const Urb urb = in_.front();
-    in_.pop_front();
+    const Urb urb = take_first(in_);
     std::uint8_t packet[EmulatedFalcon::kPacket];
     const std::size_t n = port_.device.bulk_in(packet);
     std::memcpy(urb.buffer, packet, std::min(n, static_cast<std::size_t>(urb.urb->buffer_length)));
-    ++port_.counts.idle_packets;
     complete(urb, 0, n);
   }
 }
@@ -82,8 +76,6 @@ void EmulatedUsbfs::tick_latency() {
 void EmulatedUsbfs::complete(const Urb& urb, int status, std::size_t length) {
   urb.urb->status = status;
   urb.urb->actual_length = static_cast<int>(length);
-  ++port_.counts.completed;
-  port_.counts.stalled += status == -EPIPE;
   port_.counts.shut_down += status == -ESHUTDOWN;
   done_.push_back(urb);
   if (done_.size() == 1) node_.ready(true);
@@ -98,8 +90,7 @@ void EmulatedUsbfs::pump_locked() {
   if (!plugged_) return;
   EmulatedFalcon& device = port_.device;
   while (!out_.empty() && !port_.faults.out_naks && device.plugged()) {
-    const Urb urb = out_.front();
-    out_.pop_front();
+    const Urb urb = take_first(out_);
     const auto n = static_cast<std::size_t>(urb.urb->buffer_length);
     if (device.halted(EmulatedFalcon::kEndpointOut)) {
       complete(urb, -EPIPE, 0);
@@ -115,8 +106,7 @@ void EmulatedUsbfs::pump_locked() {
   while (!in_.empty()) {
     const bool halted = device.halted(EmulatedFalcon::kEndpointIn);
     if (!halted && !device.has_payload()) break;
-    const Urb urb = in_.front();
-    in_.pop_front();
+    const Urb urb = take_first(in_);
     if (halted) {
       complete(urb, -EPIPE, 0);
       continue;
@@ -180,8 +170,7 @@ int EmulatedUsbfs::submit(const Urb& urb) {
 int EmulatedUsbfs::reap(Urb& urb) {
   const std::scoped_lock lock(port_.mutex);
   if (done_.empty()) return plugged_ ? EAGAIN : ENODEV;
-  urb = done_.front();
-  done_.pop_front();
+  urb = take_first(done_);
   ++port_.counts.reaped;
   if (done_.empty() && plugged_) node_.ready(false);
   return 0;

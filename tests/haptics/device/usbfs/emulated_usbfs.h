@@ -25,8 +25,8 @@ struct UsbfsFaults {
 };
 
 struct UsbfsCounts {
-  std::uint64_t submitted = 0, completed = 0, discarded = 0, reaped = 0, stalled = 0, shut_down = 0, clear_halts = 0, claims = 0, bulks = 0,
-                releases = 0, idle_packets = 0, after_unplug = 0;
+  std::uint64_t submitted = 0, discarded = 0, reaped = 0, shut_down = 0, clear_halts = 0, claims = 0, bulks = 0, releases = 0,
+                after_unplug = 0;
 };
 
 /// The device with the mutex that guards it, the faults and the counts.

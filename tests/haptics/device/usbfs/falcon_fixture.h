@@ -3,24 +3,16 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <glm/matrix.hpp>
-#include <thread>
+#include <numbers>
 
 #include "haptics/device/usb/falcon.h"
 #include "tests/haptics/device/usbfs/emulated_usbfs.h"
+#include "tests/haptics/device/wait_until.h"
 
 namespace catena::haptics::tests {
 
-/// Waits for a condition that other threads bring about; false after 30 s.
-template <class F>
-bool wait_until(F&& condition) {
-  for (int i = 0; i < 60000; ++i) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(std::chrono::microseconds(500));
-  }
-  return condition();
-}
+using test::wait_until;
 
 /// Options without timeouts for commands and poses, so that slow machines do not fail the tests.
 inline usb::FalconOptions patient_options() {
@@ -49,26 +41,30 @@ bool hold_grip_at(Bus& bus, const Vec3& position_m, std::uint64_t frames = 6) {
   return wait_for_frames(bus, frames);
 }
 
+/// Holds the grip at one height after the other.
+template <class Bus>
+bool move_grip(Bus& bus, const std::vector<double>& heights_m) {
+  return std::all_of(heights_m.begin(), heights_m.end(), [&](double z) { return hold_grip_at(bus, {0, 0, z}); });
+}
+
 /// Moves out, in (homes) and out (arms), in steps of a hand's speed.
 template <class Bus>
 bool home_and_arm(Bus& bus, usb::Falcon& falcon) {
-  for (const double z : {0.14, 0.165, 0.175, 0.165, 0.15, 0.14})
-    if (!hold_grip_at(bus, {0, 0, z})) return false;
+  if (!move_grip(bus, {0.14, 0.165, 0.175, 0.165, 0.15, 0.14})) return false;
   if (!wait_until([&] { return falcon.state() == usb::FalconState::arming; })) return false;
-  for (const double z : {0.155, 0.165, 0.175})
-    if (!hold_grip_at(bus, {0, 0, z})) return false;
-  return wait_until([&] { return falcon.state() == usb::FalconState::ready; });
+  return move_grip(bus, {0.155, 0.165, 0.175}) && wait_until([&] { return falcon.state() == usb::FalconState::ready; });
 }
+
+inline constexpr double kRadPerCount = 0.0364347 * std::numbers::pi / 180;
 
 /// The grip position near `guess_m` with whole encoder counts, by Newton iterations on the emulator's mechanism.
 inline Vec3 snap_to_whole_counts(const Vec3& guess_m) {
   const Vec3 near = angles_to_counts(solve_delta_legs(guess_m)->theta);
   const Vec3 wanted{std::round(near.x), std::round(near.y), std::round(near.z)};
   Vec3 p = guess_m;
-  const double rad_per_count = 0.0364347 * 3.14159265358979323846 / 180;
   for (int i = 0; i < 8; ++i) {
     const auto legs = *solve_delta_legs(p);
-    p += glm::inverse(legs.dtheta_dp) * ((wanted - angles_to_counts(legs.theta)) * rad_per_count);
+    p += glm::inverse(legs.dtheta_dp) * ((wanted - angles_to_counts(legs.theta)) * kRadPerCount);
   }
   return p;
 }
@@ -85,8 +81,7 @@ inline Vec3 force_quantum(const Vec3& position_m) {
 /// Maximum position error from rounding to encoder counts: half a count per leg, through dp/dtheta.
 inline double encoder_quantum_m(const Vec3& position_m) {
   const Mat3 p_by_theta = glm::inverse(solve_delta_legs(position_m)->dtheta_dp);
-  const double half_count = 0.5 * 0.0364347 * 3.14159265358979323846 / 180;
-  return half_count * (norm(p_by_theta[0]) + norm(p_by_theta[1]) + norm(p_by_theta[2]));
+  return 0.5 * kRadPerCount * (norm(p_by_theta[0]) + norm(p_by_theta[1]) + norm(p_by_theta[2]));
 }
 
 }  // namespace catena::haptics::tests

@@ -37,8 +37,7 @@ class ServoRig {
   ~ServoRig() { servo_.stop(); }
 
   bool start() {
-    for (const double z : {0.165, 0.175, 0.165, 0.155})
-      if (!hold_grip_at(bus_, {0, 0, z})) return false;
+    if (!move_grip(bus_, {0.165, 0.175, 0.165, 0.155})) return false;
     if (!wait_until([&] { return falcon_.state() == usb::FalconState::ready; })) return false;
     return static_cast<bool>(servo_.start());
   }

@@ -11,11 +11,20 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <stdexcept>
 
 #include "engine/base/result.h"
 
 namespace catena::haptics::tests {
 namespace {
+
+using Data = std::shared_ptr<UMockdevIoctlData>;
+
+/// Memory of the client at a pointer within `data`; empty if the client was killed.
+Data resolve(UMockdevIoctlData* data, std::size_t offset, std::size_t size) {
+  UMockdevIoctlData* memory = umockdev_ioctl_data_resolve(data, offset, size, nullptr);
+  return memory != nullptr ? Data(memory, g_object_unref) : Data();
+}
 
 /// One plug-in: its device node and its emulated usbfs.
 class Plug final : public EmulatedUsbfs::Node {
@@ -36,7 +45,6 @@ class Plug final : public EmulatedUsbfs::Node {
     usbfs_.reset();
     if (master_ >= 0) close(master_);
     close(slave_);
-    for (UMockdevIoctlData* data : held_) g_object_unref(data);
     std::error_code ignored;
     std::filesystem::remove(node_path_, ignored);
   }
@@ -50,7 +58,7 @@ class Plug final : public EmulatedUsbfs::Node {
   EmulatedUsbfs& usbfs() { return *usbfs_; }
 
   // used by umockdev's thread only; holds the URBs' data until they are reaped
-  std::set<UMockdevIoctlData*> held_;
+  std::set<Data> held_;
 
  private:
   std::string node_path_;
@@ -63,27 +71,17 @@ void finish(UMockdevIoctlClient* client, int error, int value = 0) {
 }
 
 int submit(Plug& plug, UMockdevIoctlData* argument) {
-  UMockdevIoctlData* data = umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_urb), nullptr);
+  const Data data = resolve(argument, 0, sizeof(usbdevfs_urb));
   if (data == nullptr) return EFAULT;
   auto* urb = reinterpret_cast<usbdevfs_urb*>(data->data);
-  const auto length = static_cast<gsize>(urb->buffer_length);
-  UMockdevIoctlData* buffer = umockdev_ioctl_data_resolve(data, offsetof(usbdevfs_urb, buffer), length, nullptr);
+  const auto length = static_cast<std::size_t>(urb->buffer_length);
+  const Data buffer = resolve(data.get(), offsetof(usbdevfs_urb, buffer), length);
+  if (buffer == nullptr && length > 0) return EFAULT;
   static std::uint8_t nothing[1];
-  if (buffer == nullptr && length > 0) {  // the client was killed
-    g_object_unref(data);
-    return EFAULT;
-  }
-  std::uint8_t* bytes = buffer != nullptr ? buffer->data : nothing;
   // queued before it can complete
   plug.held_.insert(data);
-  const int error = plug.usbfs().submit({urb, bytes, data->client_addr, data});
-  if (error == 0) {
-    if (buffer != nullptr) g_object_unref(buffer);
-    return 0;
-  }
-  plug.held_.erase(data);
-  if (buffer != nullptr) g_object_unref(buffer);
-  g_object_unref(data);
+  const int error = plug.usbfs().submit({urb, buffer != nullptr ? buffer->data : nothing, data->client_addr, data.get()});
+  if (error != 0) plug.held_.erase(data);
   return error;
 }
 
@@ -91,27 +89,21 @@ int reap(Plug& plug, UMockdevIoctlData* argument) {
   EmulatedUsbfs::Urb urb;
   if (const int error = plug.usbfs().reap(urb); error != 0) return error;
   auto* data = static_cast<UMockdevIoctlData*>(urb.owner);
-  UMockdevIoctlData* pointer = umockdev_ioctl_data_resolve(argument, 0, sizeof(void*), nullptr);
-  if (pointer != nullptr) {  // null: the client was killed
-    umockdev_ioctl_data_set_ptr(pointer, 0, data);
-    g_object_unref(pointer);
-  }
-  plug.held_.erase(data);
-  g_object_unref(data);  // the argument holds it until it is written back
+  const Data pointer = resolve(argument, 0, sizeof(void*));
+  if (pointer != nullptr) umockdev_ioctl_data_set_ptr(pointer.get(), 0, data);
+  // the argument holds it until it is written back
+  std::erase_if(plug.held_, [&](const Data& held) { return held.get() == data; });
   return 0;
 }
 
 int bulk(Plug& plug, UMockdevIoctlData* argument, int& moved) {
-  UMockdevIoctlData* data = umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_bulktransfer), nullptr);
+  const Data data = resolve(argument, 0, sizeof(usbdevfs_bulktransfer));
   if (data == nullptr) return EFAULT;
   const auto* transfer = reinterpret_cast<const usbdevfs_bulktransfer*>(data->data);
-  const unsigned endpoint = transfer->ep, length = transfer->len;
-  UMockdevIoctlData* bytes = umockdev_ioctl_data_resolve(data, offsetof(usbdevfs_bulktransfer, data), length, nullptr);
+  const Data bytes = resolve(data.get(), offsetof(usbdevfs_bulktransfer, data), transfer->len);
   std::size_t n = 0;
-  const int error = bytes == nullptr ? EFAULT : plug.usbfs().bulk(endpoint, bytes->data, length, n);
+  const int error = bytes == nullptr ? EFAULT : plug.usbfs().bulk(transfer->ep, bytes->data, transfer->len, n);
   moved = static_cast<int>(n);
-  if (bytes != nullptr) g_object_unref(bytes);
-  g_object_unref(data);
   return error;
 }
 
@@ -144,9 +136,8 @@ struct UmockdevBus::State {
       const int error = bulk(*plug, argument, moved);
       finish(client, error, moved);
     } else {
-      UMockdevIoctlData* data = _IOC_SIZE(request) > 0 ? umockdev_ioctl_data_resolve(argument, 0, _IOC_SIZE(request), nullptr) : nullptr;
+      const Data data = _IOC_SIZE(request) > 0 ? resolve(argument, 0, _IOC_SIZE(request)) : nullptr;
       finish(client, plug->usbfs().simple(request, data != nullptr ? data->data : nullptr));
-      if (data != nullptr) g_object_unref(data);
     }
     return TRUE;
   }
@@ -170,12 +161,10 @@ struct UmockdevBus::State {
 };
 
 // umockdev's own check needs a test bed and caches its first result
-bool UmockdevBus::available() {
-  const char* preloaded = std::getenv("LD_PRELOAD");
-  return preloaded != nullptr && std::string(preloaded).find("umockdev") != std::string::npos;
-}
-
 UmockdevBus::UmockdevBus(const EmulatedFalconOptions& options) : state_(std::make_unique<State>(options)) {
+  const char* preloaded = std::getenv("LD_PRELOAD");
+  if (preloaded == nullptr || std::string(preloaded).find("umockdev") == std::string::npos)
+    throw std::runtime_error("run this program through umockdev-wrapper");
   state_->testbed = umockdev_testbed_new();
   gchar* root = umockdev_testbed_get_root_dir(state_->testbed);
   state_->root = root;

@@ -14,8 +14,6 @@ namespace catena::haptics::tests {
 
 class UmockdevBus {
  public:
-  static bool available();  ///< true: runs within umockdev-wrapper
-
   explicit UmockdevBus(const EmulatedFalconOptions& options = {});
   ~UmockdevBus();
   UmockdevBus(const UmockdevBus&) = delete;

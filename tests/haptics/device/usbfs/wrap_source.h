@@ -6,6 +6,7 @@
 
 #include "haptics/device/usb/libusb_transport.h"
 #include "tests/haptics/device/usbfs/falcon_fixture.h"
+#include "tests/support/results.h"
 
 namespace catena::haptics::tests {
 
@@ -25,12 +26,9 @@ class WrapSource final : public usb::TransportSource {
   int fd_;
 };
 
-/// The driver over the in-process bus; nullptr and a failure where it does not open.
+/// The driver over the in-process bus.
 inline std::unique_ptr<usb::Falcon> open_wrapped_falcon(int fd) {
-  auto falcon = usb::Falcon::open(std::make_unique<WrapSource>(fd), patient_options());
-  if (falcon) return std::move(*falcon);
-  ADD_FAILURE() << falcon.error().message;
-  return nullptr;
+  return test::value_of(usb::Falcon::open(std::make_unique<WrapSource>(fd), patient_options()));
 }
 
 }  // namespace catena::haptics::tests

@@ -8,8 +8,7 @@
 #include <atomic>
 #include <thread>
 
-namespace catena::test {
-namespace frame_wait_test {
+namespace catena::test::frame_wait_test {
 
 using namespace std::chrono_literals;
 using render::xr::FrameWaiter;
@@ -98,5 +97,4 @@ TEST_F(FrameWaits, WithoutARequestThereIsNoCall) {
   EXPECT_EQ(calls, 0);
 }
 
-}  // namespace frame_wait_test
-}  // namespace catena::test
+}  // namespace catena::test::frame_wait_test

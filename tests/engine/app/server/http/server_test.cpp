@@ -19,6 +19,7 @@ struct Rig {
   std::unique_ptr<Server> server;
   int port = 0;
   std::string host, cookie;
+  test::Headers known;  ///< headers of a browser with the cookie
 
   Rig() {
     ServerOptions options;
@@ -29,9 +30,19 @@ struct Rig {
     port = server->port();
     host = "127.0.0.1:" + std::to_string(port);
     cookie = test::fetch_cookie(port, server->url());
+    known = {{"Host", host}, {"Cookie", cookie}};
   }
   std::string ask(const std::string& target, const test::Headers& headers, const std::string& method = "GET") const {
     return test::send_raw_request(port, test::make_request(target, headers, method));
+  }
+  int status(const std::string& target, const test::Headers& headers, const std::string& method = "GET") const {
+    return test::parse_status(ask(target, headers, method));
+  }
+  int status(const std::string& target) const { return status(target, known); }
+  /// The status of an attempt to open a socket; 101 if it is open.
+  int socket_status(const test::WebSocketClient::Identity& as) const {
+    const test::WebSocketClient page(port, as);
+    return page.is_open() ? 101 : page.status();
   }
   std::unique_ptr<test::WebSocketClient> page() const {
     return std::make_unique<test::WebSocketClient>(port, test::WebSocketClient::Identity{cookie, "http://" + host});
@@ -53,15 +64,14 @@ struct Rig {
 TEST(Server, ServesThePageWithATokenOrCookie) {
   const Rig rig;
   const std::string url = rig.server->url(), invited = url.substr(url.find("/?"));
-  EXPECT_EQ(test::parse_status(rig.ask("/", {{"Host", rig.host}})), 403);
-  EXPECT_EQ(test::parse_status(rig.ask("/?token=" + std::string(32, '0'), {{"Host", rig.host}})), 403);
+  EXPECT_EQ(rig.status("/", {{"Host", rig.host}}), 403);
+  EXPECT_EQ(rig.status("/?token=" + std::string(32, '0'), {{"Host", rig.host}}), 403);
   const std::string page = rig.ask(invited, {{"Host", rig.host}});
   EXPECT_EQ(test::parse_status(page), 200);
   EXPECT_EQ(test::find_header(page, "Referrer-Policy"), "no-referrer");
   EXPECT_EQ(test::find_header(page, "Cache-Control"), "no-store");
   // Scripts need a nonce that differs in each response.
-  const std::string rules = test::find_header(page, "Content-Security-Policy"),
-                    again = rig.ask("/", {{"Host", rig.host}, {"Cookie", rig.cookie}});
+  const std::string rules = test::find_header(page, "Content-Security-Policy"), again = rig.ask("/", rig.known);
   ASSERT_NE(rules.find("script-src 'nonce-"), std::string::npos);
   const std::string nonce = rules.substr(rules.find("'nonce-") + 7, 32);
   EXPECT_NE(page.find("<script nonce=\"" + nonce + "\">" + nonce + "</script>"), std::string::npos);
@@ -74,20 +84,17 @@ TEST(Server, ServesThePageWithATokenOrCookie) {
 
 TEST(Server, RefusesUnknownHostsOriginsAndCookies) {
   const Rig rig;
-  EXPECT_EQ(test::parse_status(rig.ask("/", {{"Host", "evil.example"}, {"Cookie", rig.cookie}})), 403) << "a name that was rebound";
-  EXPECT_EQ(test::parse_status(rig.ask("/", {{"Cookie", rig.cookie}})), 403);
-  EXPECT_EQ(test::parse_status(rig.ask("/", {{"Host", rig.host}, {"Cookie", rig.cookie}}, "POST")), 405);
-  EXPECT_EQ(test::parse_status(rig.ask("/etc/passwd", {{"Host", rig.host}, {"Cookie", rig.cookie}})), 404);
-  EXPECT_EQ(test::parse_status(rig.ask("/socket", {{"Host", rig.host}, {"Cookie", rig.cookie}, {"Origin", "http://" + rig.host}})), 426);
-  const auto status = [&](const test::WebSocketClient::Identity& as) {
-    const test::WebSocketClient page(rig.port, as);
-    return page.is_open() ? 101 : page.status();
-  };
-  EXPECT_EQ(status({rig.cookie, "http://evil.example"}), 403);
-  EXPECT_EQ(status({rig.cookie, ""}), 403);
-  EXPECT_EQ(status({"", "http://" + rig.host}), 403);
-  EXPECT_EQ(status({rig.cookie, "http://evil.example", "/socket", "evil.example"}), 403);
-  EXPECT_EQ(status({rig.cookie, "http://" + rig.host}), 101);
+  const std::string own = "http://" + rig.host;
+  EXPECT_EQ(rig.status("/", {{"Host", "evil.example"}, {"Cookie", rig.cookie}}), 403) << "a name that was rebound";
+  EXPECT_EQ(rig.status("/", {{"Cookie", rig.cookie}}), 403);
+  EXPECT_EQ(rig.status("/", rig.known, "POST"), 405);
+  EXPECT_EQ(rig.status("/etc/passwd"), 404);
+  EXPECT_EQ(rig.status("/socket", {{"Host", rig.host}, {"Cookie", rig.cookie}, {"Origin", own}}), 426);
+  EXPECT_EQ(rig.socket_status({rig.cookie, "http://evil.example"}), 403);
+  EXPECT_EQ(rig.socket_status({rig.cookie, ""}), 403);
+  EXPECT_EQ(rig.socket_status({"", own}), 403);
+  EXPECT_EQ(rig.socket_status({rig.cookie, "http://evil.example", "/socket", "evil.example"}), 403);
+  EXPECT_EQ(rig.socket_status({rig.cookie, own}), 101);
 }
 
 TEST(Server, TextAndImagesAreDelivered) {
@@ -185,10 +192,10 @@ TEST(Server, AFloodOfMessagesIsNotBuffered) {
 TEST(Server, RequestsAreBounded) {
   const Rig rig;
   const std::string head = "GET / HTTP/1.1\r\nHost: " + rig.host + "\r\n";
-  EXPECT_NE(test::parse_status(test::send_raw_request(rig.port, head + "X: " + std::string(20000, 'x') + "\r\n\r\n")), 200);
-  EXPECT_NE(test::parse_status(test::send_raw_request(rig.port, head + "Content-Length: 1000000\r\n\r\n" + std::string(1000, 'x'))), 200);
-  EXPECT_NE(test::parse_status(test::send_raw_request(rig.port, std::string(3000, '\0') + "\r\n\r\n")), 200);
-  EXPECT_NE(test::parse_status(test::send_raw_request(rig.port, "GET / HTTP/9.9\r\n\r\n")), 200);
+  for (const std::string& request :
+       {head + "X: " + std::string(20000, 'x') + "\r\n\r\n", head + "Content-Length: 1000000\r\n\r\n" + std::string(1000, 'x'),
+        std::string(3000, '\0') + "\r\n\r\n", std::string("GET / HTTP/9.9\r\n\r\n")})
+    EXPECT_NE(test::parse_status(test::send_raw_request(rig.port, request)), 200) << request.substr(0, 80);
   std::vector<std::unique_ptr<test::WebSocketClient>> pages;
   for (int i = 0; i < kMaxViewers; ++i) {
     pages.push_back(rig.page());
@@ -198,7 +205,7 @@ TEST(Server, RequestsAreBounded) {
   const auto one_more = rig.page();
   EXPECT_FALSE(one_more->is_open());
   EXPECT_EQ(one_more->status(), 503);
-  EXPECT_EQ(test::parse_status(rig.ask("/", {{"Host", rig.host}, {"Cookie", rig.cookie}})), 200);
+  EXPECT_EQ(rig.status("/"), 200);
 }
 
 TEST(Server, TheOfferedFileNeedsTheCookie) {
@@ -207,23 +214,20 @@ TEST(Server, TheOfferedFileNeedsTheCookie) {
   std::string bytes;
   for (int i = 0; i < 3'000'000; ++i) bytes += static_cast<char>(std::int64_t{i} * i >> 7);
   test::write_file(folder / "a", bytes);
-  const auto ask = [&](const std::string& target, bool known = true) {
-    return rig.ask(target, known ? test::Headers{{"Host", rig.host}, {"Cookie", rig.cookie}} : test::Headers{{"Host", rig.host}});
-  };
-  EXPECT_EQ(test::parse_status(ask("/a.bin")), 404);
+  EXPECT_EQ(rig.status("/a.bin"), 404);
   rig.server->offer_file("a.bin", folder / "a");
-  const std::string answer = ask("/a.bin");
+  const std::string answer = rig.ask("/a.bin", rig.known);
   EXPECT_EQ(test::parse_status(answer), 200);
   EXPECT_EQ(test::find_header(answer, "Content-Disposition"), "attachment; filename=\"a.bin\"");
   EXPECT_TRUE(answer.substr(answer.find("\r\n\r\n") + 4) == bytes);
-  EXPECT_EQ(test::parse_status(ask("/a.bin", false)), 404);
-  EXPECT_EQ(test::parse_status(ask("/../a.bin")), 404);
+  EXPECT_EQ(rig.status("/a.bin", {{"Host", rig.host}}), 404);
+  EXPECT_EQ(rig.status("/../a.bin"), 404);
   // The file is removed, then no longer offered.
   std::filesystem::remove(folder / "a");
-  EXPECT_EQ(test::parse_status(ask("/a.bin")), 404);
+  EXPECT_EQ(rig.status("/a.bin"), 404);
   rig.server->offer_file("", "");
-  EXPECT_EQ(test::parse_status(ask("/a.bin")), 404);
-  EXPECT_EQ(test::parse_status(ask("/")), 200);
+  EXPECT_EQ(rig.status("/a.bin"), 404);
+  EXPECT_EQ(rig.status("/"), 200);
 }
 
 TEST(Server, AnUnusableAddressIsAnError) {

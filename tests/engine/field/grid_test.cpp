@@ -8,11 +8,9 @@
 #include "engine/field/analytic/analytic.h"
 #include "tests/engine/field/field_helpers.h"
 
-namespace catena::field {
-namespace grid_scalar_test {
+namespace catena::field::grid_test {
 
-using test::Block;
-using test::Random;
+using namespace test;
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
@@ -22,8 +20,8 @@ bool same_bits(const ScalarSample& a, const ScalarSample& b) {
 }
 
 TEST(ScalarGrid, EqualsTheTrilinearFormulaForAnyMapping) {
-  const Block block = test::random_block({19, 11, 14}, 5);
-  for (const Mapping& mapping : test::mappings()) {
+  const Block block = random_block({19, 11, 14}, 5);
+  for (const Mapping& mapping : mappings()) {
     const auto grid = make_scalar_grid("g", mapping, block.size, block.values);
     Random random(6);
     Cursor cursor;
@@ -37,9 +35,8 @@ TEST(ScalarGrid, EqualsTheTrilinearFormulaForAnyMapping) {
 }
 
 TEST(ScalarGrid, GradientIsACovector) {
-  const Block block = test::random_block({9, 9, 9}, 7);
-  for (const Mapping& mapping : test::mappings()) {
-    const auto grid = make_scalar_grid("g", mapping, block.size, block.values);
+  for (const Mapping& mapping : mappings()) {
+    const auto grid = random_grid({9, 9, 9}, 7, mapping);
     Random random(8);
     Cursor cursor;
     for (int trial = 0; trial < 300; ++trial) {
@@ -51,8 +48,7 @@ TEST(ScalarGrid, GradientIsACovector) {
       const ScalarSample s = grid->sample(p, cursor);
       constexpr double h = 1e-4;
       for (int a = 0; a < 3; ++a) {
-        Vec3 step(0.0);
-        step[a] = h;
+        const Vec3 step = along(a, h);
         const double difference = (grid->sample(p + step, cursor).value - grid->sample(p - step, cursor).value) / (2 * h);
         ASSERT_NEAR(s.gradient[a], difference, 1e-6);
       }
@@ -91,9 +87,8 @@ TEST(ScalarGrid, ExtendsTheNearestCellOutside) {
 }
 
 TEST(ScalarGrid, IsSafeFarAwayAndForNonFinitePoints) {
-  const Block block = test::random_block({8, 8, 8}, 10);
-  for (const Mapping& mapping : test::mappings()) {
-    const auto grid = make_scalar_grid("g", mapping, block.size, block.values);
+  for (const Mapping& mapping : mappings()) {
+    const auto grid = random_grid({8, 8, 8}, 10, mapping);
     Cursor cursor;
     for (const double big : {1e10, 1e30, 1e200, 1e308}) {
       const ScalarSample s = grid->sample(Vec3(big, -big, big), cursor);
@@ -110,7 +105,7 @@ TEST(ScalarGrid, IsSafeFarAwayAndForNonFinitePoints) {
 }
 
 TEST(ScalarGrid, CursorsNeverChangeValues) {
-  const Block a = test::random_block({20, 20, 20}, 11), b = test::random_block({20, 20, 20}, 12);
+  const Block a = random_block({20, 20, 20}, 11), b = random_block({20, 20, 20}, 12);
   const auto grid = make_scalar_grid("a", {}, a.size, a.values), other = make_scalar_grid("b", {}, b.size, b.values);
   Random random(13);
   Cursor kept, shared;
@@ -138,8 +133,7 @@ TEST(ScalarGrid, ACursorOfAFreedGridIsNotTrusted) {
 }
 
 TEST(ScalarGrid, SamplingAllocatesNothing) {
-  const Block block = test::random_block({40, 40, 40}, 14);
-  const auto grid = make_scalar_grid("g", {}, block.size, block.values);
+  const auto grid = random_grid({40, 40, 40}, 14);
   Random random(15);
   const AllocationCounter guard;
   Cursor cursor;
@@ -148,7 +142,7 @@ TEST(ScalarGrid, SamplingAllocatesNothing) {
 }
 
 TEST(ScalarGrid, CellsAreClampedAndHaveTheirCornerValues) {
-  const Block block = test::random_block({9, 10, 11}, 16);
+  const Block block = random_block({9, 10, 11}, 16);
   const auto grid = make_scalar_grid("g", {}, block.size, block.values);
   Cursor cursor;
   EXPECT_EQ(grid->cell({100, -5, 3}, cursor).base, (Index3{7, 0, 3}));
@@ -162,7 +156,7 @@ TEST(ScalarGrid, CellsAreClampedAndHaveTheirCornerValues) {
 }
 
 TEST(ScalarGrid, OneLayerHasNoDerivativeAcross) {
-  const Block block = test::random_block({6, 7, 1}, 17);
+  const Block block = random_block({6, 7, 1}, 17);
   const auto grid = make_scalar_grid("g", {}, block.size, block.values);
   Cursor cursor;
   const ScalarSample s = grid->sample(Vec3(2.25, 3.5, 0), cursor);
@@ -172,10 +166,16 @@ TEST(ScalarGrid, OneLayerHasNoDerivativeAcross) {
               1e-6);
   EXPECT_FALSE(grid->sample(Vec3(2.25, 3.5, 0.1), cursor).inside);
   EXPECT_EQ(grid->cell_base(Vec3(2, 3, 5)).z, 0);
+  // A layer with a mask still has cells.
+  std::vector<std::uint8_t> valid(16, 1);
+  valid[15] = 0;
+  const auto masked = make_scalar_grid("g", {}, {4, 4, 1}, std::vector<float>(16, 1.f), valid);
+  EXPECT_TRUE(masked->cell({0, 0, 0}, cursor).valid);
+  EXPECT_FALSE(masked->cell({2, 2, 0}, cursor).valid);
 }
 
 TEST(ScalarGridMask, ACellNeedsEightValidCorners) {
-  const Block block = test::random_block({21, 17, 13}, 18);
+  const Block block = random_block({21, 17, 13}, 18);
   Random random(19);
   std::vector<std::uint8_t> valid(block.values.size());
   for (auto& v : valid) v = random.uniform(0, 1) < 0.93;
@@ -214,18 +214,8 @@ TEST(ScalarGridMask, RangesCountValidVoxelsOnly) {
   EXPECT_EQ(grid->stats().active_voxels, 26u);
 }
 
-TEST(ScalarGridMask, ALayerWithAMaskStillHasCells) {
-  const std::vector<float> values(16, 1.f);
-  std::vector<std::uint8_t> valid(16, 1);
-  valid[15] = 0;
-  const auto grid = make_scalar_grid("g", {}, {4, 4, 1}, values, valid);
-  Cursor cursor;
-  EXPECT_TRUE(grid->cell({0, 0, 0}, cursor).valid);
-  EXPECT_FALSE(grid->cell({2, 2, 0}, cursor).valid);
-}
-
 TEST(ScalarGrid, NonFiniteVoxelsAreCountedAndTheirCellsInvalid) {
-  Block block = test::random_block({10, 10, 10}, 20);
+  Block block = random_block({10, 10, 10}, 20);
   block.values[555] = std::nanf("");
   block.values[777] = std::numeric_limits<float>::infinity();
   const auto grid = make_scalar_grid("g", {}, block.size, block.values);
@@ -252,7 +242,7 @@ TEST(ScalarGrid, ANanInAConstantBlockIsNotPrunedAway) {
 }
 
 TEST(ScalarGrid, BlocksAreCopiedAsStored) {
-  const Block block = test::random_block({21, 18, 19}, 21);
+  const Block block = random_block({21, 18, 19}, 21);
   const auto grid = make_scalar_grid("g", {}, block.size, block.values);
   const Index3 origin{-3, 5, 6}, size{20, 11, 14};
   std::vector<float> out(static_cast<std::size_t>(size.x) * size.y * size.z, -99.f);
@@ -289,5 +279,102 @@ TEST(Field, TheDomainLengthIsTheLongestEdgeAndVersionsDiffer) {
   EXPECT_NE(a->version(), b->version());
 }
 
-}  // namespace grid_scalar_test
-}  // namespace catena::field
+TEST(VectorGrid, EqualsTheTrilinearFormulaInEachComponent) {
+  const Index3 size{12, 17, 10};
+  const std::array<Block, 3> parts{random_block(size, 1), random_block(size, 2), random_block(size, 3)};
+  std::vector<float> xyz;
+  for (std::size_t n = 0; n < parts[0].values.size(); ++n)
+    for (const Block& part : parts) xyz.push_back(part.values[n]);
+  for (const Mapping& mapping : mappings()) {
+    const auto grid = make_vector_grid("v", mapping, size, xyz);
+    Random random(4);
+    Cursor cursor;
+    for (int trial = 0; trial < 2000; ++trial) {
+      const Vec3 index = random.in_box(Vec3(0.0), Vec3(11, 16, 9));
+      const VectorSample s = grid->sample(mapping.world_from_index(index), cursor);
+      ASSERT_TRUE(s.inside);
+      for (int a = 0; a < 3; ++a) ASSERT_NEAR(s.value[a], parts[a].trilinear(index), 1e-12 * (1 + norm(mapping.origin)));
+    }
+  }
+  // Reading as a block.
+  const auto grid = make_vector_grid("v", {}, size, xyz);
+  std::vector<float> out(xyz.size());
+  grid->read_block({0, 0, 0}, size, out);
+  EXPECT_EQ(out, xyz);
+}
+
+TEST(VectorGrid, HelixIsExactBecauseItIsLinear) {
+  const auto grid = sample_on_grid(*make_analytic("helix").value().vector, 65, -2, 2);
+  Cursor cursor;
+  Random random(5);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const Vec3 p = random.in_box(Vec3(-2.0), Vec3(2.0));
+    ASSERT_NEAR(norm(grid->sample(p, cursor).value - Vec3(-2 * p.y, 2 * p.x, 0.5)), 0, 1e-6);
+  }
+  EXPECT_EQ(grid->name(), "helix");
+  EXPECT_NEAR(grid->stats().max, std::sqrt(32.25), 1e-6);
+}
+
+TEST(VectorGrid, LineFieldsSurviveSignFlips) {
+  const auto unit = Vec3(0.6, 0.8, 0);
+  std::vector<float> xyz;
+  Random random(6);
+  for (int n = 0; n < 5 * 5 * 5; ++n) {
+    const double sign = random.uniform(-1, 1) < 0 ? -1 : 1;
+    for (int a = 0; a < 3; ++a) xyz.push_back(static_cast<float>(sign * unit[a]));
+  }
+  const auto grid = make_vector_grid("fibre", {}, {5, 5, 5}, xyz);
+  Cursor cursor;
+  double naive = 1;
+  for (int trial = 0; trial < 200; ++trial) {
+    const Vec3 p = random.in_box(Vec3(0.0), Vec3(4.0));
+    const LineSample line = grid->sample_line(p, cursor);
+    ASSERT_NEAR(std::fabs(dot(line.axis, unit)), 1, 1e-14);
+    ASSERT_NEAR(line.speed, 1, 1e-7);
+    ASSERT_NEAR(line.coherence, 1, 1e-7);  // half the digits, where two eigenvalues vanish
+    naive = std::min(naive, norm(grid->sample(p, cursor).value));
+  }
+  EXPECT_LT(naive, 0.5);
+}
+
+TEST(VectorGrid, ReportsWhyAPositionIsOutside) {
+  std::vector<float> xyz(3 * 64, 1.f);
+  std::vector<std::uint8_t> valid(64, 1);
+  valid[63] = 0;
+  xyz[0] = std::nanf("");
+  const auto grid = make_vector_grid("v", {}, {4, 4, 4}, xyz, valid);
+  EXPECT_TRUE(grid->has_mask());
+  Cursor cursor;
+  for (const auto& [at, status] : {std::pair{Vec3(1.5), SampleStatus::ok},
+                                   {Vec3(1.5, 2.5, 2.5), SampleStatus::ok},
+                                   {Vec3(2.5), SampleStatus::masked},
+                                   {Vec3(0.5), SampleStatus::not_finite},
+                                   {Vec3(1.5, 1.5, 3.1), SampleStatus::outside_box},
+                                   {Vec3(std::nan("")), SampleStatus::not_finite}}) {
+    EXPECT_EQ(grid->status_outside(at, cursor), status) << at.x << " " << at.y << " " << at.z;
+    EXPECT_EQ(grid->sample(at, cursor).inside, status == SampleStatus::ok) << at.x << " " << at.y << " " << at.z;
+  }
+}
+
+TEST(VectorGrid, FarAndNonFinitePointsAreOutside) {
+  const std::vector<float> xyz(3 * 27, 1.f);
+  const auto grid = make_vector_grid("v", {}, {3, 3, 3}, xyz);
+  Cursor cursor;
+  for (const double bad : {1e300, -1e300, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    const VectorSample s = grid->sample(Vec3(bad, 1, 1), cursor);
+    EXPECT_FALSE(s.inside);
+    EXPECT_TRUE(is_finite(s.value));
+  }
+}
+
+TEST(VectorGrid, SamplingMasksNodesOutsideTheField) {
+  const auto fibre = make_analytic("left-ventricle", {1, Vec3(1, 0, 0), "fibre"}).value().vector;
+  const auto grid = sample_on_grid(*fibre, 41, -2, 2);
+  EXPECT_TRUE(grid->has_mask());
+  Cursor cursor;
+  EXPECT_FALSE(grid->sample(Vec3(0.0), cursor).inside);
+  EXPECT_TRUE(grid->sample(Vec3(0.95, 0.1, 0), cursor).inside);
+  EXPECT_NEAR(grid->stats().min, 1, 1e-6);
+}
+
+}  // namespace catena::field::grid_test

@@ -11,9 +11,9 @@
 
 #include "engine/field/analytic/analytic.h"
 #include "engine/field/grid/grid.h"
+#include "tests/support/mesh_shapes.h"
 
-namespace catena::geodesics {
-namespace level_path_test {
+namespace catena::geodesics::geodesics_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -111,5 +111,63 @@ TEST(LevelPath, IsStraightOnAPlane) {
   EXPECT_NEAR(path_length(path), norm(Vec3(2.5, 2, 0)), 1e-6);
 }
 
-}  // namespace level_path_test
-}  // namespace catena::geodesics
+TEST(MeshPath, IsTheGreatCircleOnASphere) {
+  const mesh::MeshPtr ball = *mesh::make_mesh(test::sphere_soup(24), "ball");
+  for (const double angle : {0.1, 0.5, 1.5, 3.0}) {
+    const auto path = path_on_mesh(*ball, {1, 0, 0}, Vec3(std::cos(angle), 0.28 * std::sin(angle), 0.96 * std::sin(angle)));
+    ASSERT_FALSE(path.empty()) << angle;
+    EXPECT_NEAR(path_length(path), angle, 4e-3 * angle) << "the mesh lies within the sphere by 1e-3";
+  }
+}
+
+TEST(MeshPath, IsStraightOnTheUnfoldedFacesOfABox) {
+  const mesh::MeshPtr box = *mesh::make_mesh(test::box_soup(), "box");
+  EXPECT_NEAR(path_length(path_on_mesh(*box, {0.5, 0, 0}, {0, 0.5, 0})), 1, 1e-2);
+  EXPECT_NEAR(path_length(path_on_mesh(*box, {0.5, 0.1, -0.3}, {0.1, 0.5, 0.2})), std::hypot(0.4 + 0.4, 0.5), 1e-2);
+  EXPECT_NEAR(path_length(path_on_mesh(*box, {0.5, -0.4, 0}, {0.5, 0.3, 0.1})), std::hypot(0.7, 0.1), 1e-6) << "on one face";
+}
+
+TEST(MeshPath, DisconnectedPiecesHaveNoPath) {
+  mesh::TriangleSoup soup;
+  test::add_box(soup, Vec3(-0.5), Vec3(0.5));
+  test::add_box(soup, {2, -0.5, -0.5}, {3, 0.5, 0.5});
+  const mesh::MeshPtr two = *mesh::make_mesh(soup, "two");
+  EXPECT_TRUE(path_on_mesh(*two, {0, 0, 0.5}, {2.5, 0, 0.5}).empty());
+  EXPECT_FALSE(path_on_mesh(*two, {2.2, 0, 0.5}, {2.5, 0, 0.5}).empty());
+  EXPECT_TRUE(path_on_mesh(*two, {std::nan(""), 0, 0.5}, {2.5, 0, 0.5}).empty());
+}
+
+TEST(ShortenPath, ADetourInThePlaneBecomesStraight) {
+  const std::vector<Vec3> path =
+      shorten_path({{0, 0, 0}, {0, 3, 0}, {2, -2, 0}, {4, 1, 0}, {5, 0, 0}}, [](Vec3& p) { return p.z = 0, true; });
+  ASSERT_EQ(path.size(), 129u);
+  EXPECT_EQ(path.front(), Vec3(0, 0, 0));
+  EXPECT_EQ(path.back(), Vec3(5, 0, 0));
+  EXPECT_NEAR(path_length(path), 5, 1e-6);
+  for (std::size_t i = 0; i < path.size(); ++i) EXPECT_NEAR(path[i].x, 5.0 * static_cast<double>(i) / 128, 0.02) << "evenly spaced";
+}
+
+TEST(ShortenPath, APathAroundACylinderKeepsItsDirection) {
+  // Three quarters of a turn: the result is the helix, not the shorter path in the other direction.
+  const auto put = [](Vec3& p) {
+    const double r = std::hypot(p.x, p.y);
+    if (!(r > 0)) return false;
+    p.x /= r;
+    p.y /= r;
+    return true;
+  };
+  std::vector<Vec3> path;
+  for (int i = 0; i <= 30; ++i) {
+    const double a = 1.5 * kPi * i / 30;
+    path.push_back({std::cos(a), std::sin(a), (i == 0 ? 0 : i == 30 ? 1 : 0.4)});
+  }
+  EXPECT_NEAR(path_length(shorten_path(path, put)), std::hypot(1.5 * kPi, 1.0), 1e-3);
+}
+
+TEST(ShortenPath, AFailingProjectionKeepsThePath) {
+  const std::vector<Vec3> path = shorten_path({{0, 0, 0}, {1, 1, 0}, {2, 0, 0}}, [](Vec3&) { return false; });
+  EXPECT_NEAR(path_length(path), 2 * std::sqrt(2.0), 1e-12);
+  EXPECT_EQ(path_length(shorten_path({{1, 1, 1}, {1, 1, 1}}, [](Vec3&) { return true; })), 0);
+}
+
+}  // namespace catena::geodesics::geodesics_test
