@@ -69,7 +69,7 @@ Result<Entity> read_shown(const Scene& scene, const json::Node& item) {
   CATENA_TRY(const Entity field, read_field_name(scene, item));
   const Entity target = shown_field(scene.entities, field);
   if (!target)
-    return json::error_at(*item.find("field"), "no volume, slice, coloured isosurface, coloured streamlines or glyphs show " +
+    return json::error_at(*item.find("field"), "no volume and no slice shows, and nothing is coloured by, " +
                                                    in_quotes(scene.entities.get<Name>(field).value) +
                                                    "; a field whose values are shown as colours was expected");
   return target;

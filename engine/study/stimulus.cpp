@@ -247,7 +247,7 @@ class Draw {
 /// Checks the lengths: one that is much longer than the field's box is an error in the units, and tracing it would not end.
 Outcome check_lengths(const Task& task, const Bounds& box) {
   const double diagonal = norm(box.hi - box.lo);
-  for (const auto& [key, mm] : {std::pair{"path_mm", task.rules.path_mm}, {"line_mm", task.rules.context_length_mm}})
+  for (const auto& [key, mm] : {std::pair{"path_mm", task.rules.path_mm}, {"context_length_mm", task.rules.context_length_mm}})
     if (const double length = task.world_from_mm(mm); !(length <= kMaxBoxes * diagonal))
       return json::error_at(
           json::member_or_parent(task.where, "stimulus"),

@@ -259,7 +259,7 @@ Result<DataFolder> DataFolder::open(const std::string& path, const Study& study,
   };
   if (is_new) CATENA_CHECK(write(copy, study.text));
   if (participant_kind == ParticipantKind::model && !simulated)
-    CATENA_CHECK(write(simulated_marker(path), "{\"simulated\": true, \"by\": \"the operator model of study.json, not a person\"}\n"));
+    CATENA_CHECK(write(simulated_marker(path), "{\"simulated\": true, \"by\": \"the human model of study.json, not a person\"}\n"));
   return DataFolder(path, std::move(lock));
 }
 

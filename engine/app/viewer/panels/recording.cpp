@@ -9,28 +9,19 @@
 
 #include "engine/app/viewer/panels/panel.h"
 #include "engine/app/viewer/panels/property_widgets.h"
+#include "engine/app/viewer/scene/file_browser.h"
 
 namespace catena::app {
 
 namespace {
-
-/// Returns the first file name of the form SCENE-N.catlog that is not in use next to the scene.
-std::string propose_recording_name(const std::string& scene_path) {
-  const std::filesystem::path scene(scene_path);
-  const std::filesystem::path base = scene.parent_path() / scene.stem();
-  std::error_code ignored;
-  for (int n = 1;; ++n) {
-    std::string name = fmt::format("{}-{}.catlog", base.string(), n);
-    if (!std::filesystem::exists(name, ignored)) return name;
-  }
-}
 
 void draw_recording(PanelContext& context) {
   const Recording& recording = context.haptic_session.recording();
   static char name[1024] = "";
   if (!recording.is_recording()) {
     if (name[0] == 0) {
-      const std::string proposed = propose_recording_name(context.scene.document().path());
+      const std::filesystem::path scene(context.scene.document().path());
+      const std::string proposed = unused_file_name(scene.parent_path().string(), scene.stem().string(), ".catlog");
       std::strncpy(name, proposed.c_str(), sizeof name - 1);
     }
     ImGui::SetNextItemWidth(-1);
