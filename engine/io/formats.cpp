@@ -6,10 +6,15 @@
 #include <fstream>
 
 #include "engine/base/text.h"
-#include "engine/io/format_rows.h"
 #include "engine/io/volume/data_files.h"
 
 namespace catena::io {
+
+// all formats, each defined in the file of its reader; remote_formats: those that catena-read-vtk reads
+Format vdb_format(), nifti_format(), raw_format(), npy_format(), stl_format(), obj_format(), tck_format(), trk_format(), csv_format(),
+    table_format();
+std::vector<Format> remote_formats();
+
 namespace {
 
 std::vector<Format>& registry() {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/drawable.h"
 
-#include "engine/scene/drawable_rows.h"
 #include "engine/scene/readers.h"
 
 namespace catena::scene {
+
+// rows of all kinds, each defined in the file of its reader
+Drawable volumes(), isosurfaces(), meshes(), slices(), streamlines(), glyphs(), curves(), points();
+
 namespace {
 
 std::vector<Drawable>& registry() {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Reads "curves": polylines from a file, or the vortex core lines of a field, rendered as tubes.
 #include "engine/io/formats.h"
-#include "engine/scene/drawable_rows.h"
 #include "engine/scene/reader_bindings.h"
 
 namespace catena::scene {

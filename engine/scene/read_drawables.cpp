@@ -6,7 +6,6 @@
 #include "engine/base/text.h"
 #include "engine/io/formats.h"
 #include "engine/io/volume/unsupported_formats.h"
-#include "engine/scene/drawable_rows.h"
 #include "engine/scene/reader_bindings.h"
 
 namespace catena::scene {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Reads "glyphs": arrows of a vector field on a slice, a plane, an isosurface or a mesh, or in a box.
 #include "engine/base/text.h"
-#include "engine/scene/drawable_rows.h"
 #include "engine/scene/reader_bindings.h"
 #include "engine/scene/visibility.h"
 

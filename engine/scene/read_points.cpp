@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Reads "points": positions from a table, rendered as spheres.
 #include "engine/io/formats.h"
-#include "engine/scene/drawable_rows.h"
 #include "engine/scene/reader_bindings.h"
 
 namespace catena::scene {

@@ -2,7 +2,6 @@
 /// Reads "slices": their planes, colors and contour lines.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/drawable_rows.h"
 #include "engine/scene/readers.h"
 #include "engine/scene/visibility.h"
 

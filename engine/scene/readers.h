@@ -12,6 +12,7 @@
 #include "engine/scene/drawable.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/to_json.h"
+#include "engine/scene/visibility.h"
 #include "engine/schema/key.h"
 #include "engine/schema/struct_schema.h"
 
@@ -21,36 +22,17 @@ using schema::Key;
 using schema::Keys;
 using schema::Role;
 
-// In the order of docs/reference/scene.md.
-Part time_part();
-Part fields_part();
-Part chain_part();
-Part modes_part();
-Part coupling_part();
-Part workspace_part();
-Part device_part();
-Part widgets_part();
-Part indicator_part();
-Part clip_part();
-Part camera_part();
-Part lights_part();
-Part stereo_part();
-Part screens_part();
-Part background_part();
-Part quality_part();
-Part jitter_part();
-Part cursor_part();
-Part unit_length_part();
-Part bounding_box_part();
-Part axes_part();
-Part ground_part();
-Part fog_part();
-Part scalar_bars_part();
-Part labels_part();
-Part title_part();
-Part orientation_marker_part();
-Part status_part();
-Part overlay_part();
+/// Loads the data of each visible item with the component T by `use`, and the field that colors it.
+template <class T, class Use>
+Outcome load_visible(Scene& scene, const Use& use) {
+  for (const Entity e : visible_entities<T>(scene.entities)) CATENA_CHECK(use(e, T(scene.entities.get<T>(e))));
+  return Done{};
+}
+/// Loads the field of "color_by" of lines, glyphs, curves or points.
+inline Outcome load_color_field(Scene& scene, const std::optional<ColorBy>& by) {
+  if (by && by->source == ColorBy::Source::field) CATENA_CHECK(resolve_field(scene, by->field, by->where));
+  return Done{};
+}
 
 /// Calls read(item) for each object of an array. Error: the node is no array, or an item is no object.
 template <class Read>

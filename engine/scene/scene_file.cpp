@@ -10,6 +10,13 @@
 #include "engine/schema/renames.h"
 
 namespace catena::scene {
+
+// all sections except the drawables, each defined in the file of its reader
+Part time_part(), fields_part(), chain_part(), modes_part(), coupling_part(), workspace_part(), device_part(), widgets_part(),
+    indicator_part(), clip_part(), camera_part(), lights_part(), stereo_part(), screens_part(), background_part(), quality_part(),
+    jitter_part(), cursor_part(), unit_length_part(), bounding_box_part(), axes_part(), ground_part(), fog_part(), scalar_bars_part(),
+    labels_part(), title_part(), orientation_marker_part(), status_part(), overlay_part();
+
 namespace {
 
 /// All sections in reading order, so that every name is defined before it is used: fields first; links before the widgets that name them;

@@ -1,30 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "render/extract/drawable.h"
 
-#include "render/extract/extract_internal.h"
-#include "render/extract/legends.h"
-
 namespace catena::render {
+
+// rows of all kinds, each defined in the file of its extraction
+DrawableExtraction volumes_extraction(), isosurfaces_extraction(), meshes_extraction(), slices_extraction(), streamlines_extraction(),
+    glyphs_extraction(), curves_extraction(), points_extraction();
+
 namespace {
 
-/// Adapts an extraction that cannot fail to the signature of those that can.
-template <void (*Extract)(const scene::Scene&, FramePacket&)>
-Outcome always(const scene::Scene& scene, FramePacket& packet) {
-  Extract(scene, packet);
-  return Done{};
-}
-
 std::vector<DrawableExtraction>& registry() {
-  static std::vector<DrawableExtraction> kinds{
-      {"volumes", nullptr, extract_volumes, volume_legend},
-      {"isosurfaces", nullptr, extract_isosurfaces, isosurface_legend},
-      {"meshes", prepare_meshes, always<extract_meshes>, nullptr},
-      {"slices", prepare_slices, extract_slices, slice_legend},
-      {"streamlines", prepare_streamlines, always<extract_streamlines>, streamlines_legend},
-      {"glyphs", prepare_glyphs, always<extract_glyphs>, glyphs_legend},
-      {"curves", prepare_curves, always<extract_curves>, curves_legend},
-      {"points", prepare_points, always<extract_points>, points_legend},
-  };
+  static std::vector<DrawableExtraction> kinds{volumes_extraction(), isosurfaces_extraction(), meshes_extraction(),
+                                               slices_extraction(),  streamlines_extraction(), glyphs_extraction(),
+                                               curves_extraction(),  points_extraction()};
   return kinds;
 }
 

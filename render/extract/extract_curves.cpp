@@ -10,6 +10,7 @@
 #include "engine/scene/color_maps.h"
 #include "engine/scene/visibility.h"
 #include "render/extract/extract_internal.h"
+#include "render/extract/legends.h"
 
 namespace catena::render {
 
@@ -154,15 +155,9 @@ Result<FlatCurves> flat_curves(scene::Scene& scene, const scene::CurvesSource& d
   return flat;
 }
 
-}  // namespace
-
-const ColorTable* find_curve_colors(const scene::EntityStore& made, scene::Entity curves) {
-  return cached_colors<FlatCurves>(made, curves);
-}
-
 Outcome prepare_curves(scene::Scene& scene) { return prepare_cached<FlatCurves, scene::CurvesSource>(scene, flat_curves); }
 
-void extract_curves(const scene::Scene& scene, FramePacket& packet) {
+Outcome extract_curves(const scene::Scene& scene, FramePacket& packet) {
   scene.entities.each<scene::CurvesSource>([&](scene::Entity e, const scene::CurvesSource& drawn) {
     if (is_hidden(scene.entities, e)) return;
     const FlatCurves& flat = scene.cache.get<FlatCurves>(e);
@@ -174,6 +169,15 @@ void extract_curves(const scene::Scene& scene, FramePacket& packet) {
       packet.tubes.push_back(std::move(tube));
     }
   });
+  return Done{};
 }
+
+Legend curves_legend(const scene::Scene& scene, scene::Entity item, const FramePacket&) {
+  return colored_legend(scene, cached_colors<FlatCurves>(scene.cache, item), scene.entities.get<scene::CurvesSource>(item).color_by);
+}
+
+}  // namespace
+
+DrawableExtraction curves_extraction() { return {"curves", prepare_curves, extract_curves, curves_legend}; }
 
 }  // namespace catena::render

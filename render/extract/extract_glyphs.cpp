@@ -11,6 +11,7 @@
 #include "engine/scene/uniform_sampling.h"
 #include "engine/scene/visibility.h"
 #include "render/extract/extract_internal.h"
+#include "render/extract/legends.h"
 
 namespace catena::render {
 
@@ -218,10 +219,6 @@ Result<MadeGlyphs> make_glyphs(const scene::Scene& scene, const scene::GlyphSet&
   return made;
 }
 
-}  // namespace
-
-const ColorTable* find_glyph_colors(const scene::EntityStore& made, scene::Entity set) { return cached_colors<MadeGlyphs>(made, set); }
-
 Outcome prepare_glyphs(scene::Scene& scene) {
   for (const scene::Entity e : entities_with<scene::GlyphSet>(scene.entities)) {
     if (is_hidden(scene.entities, e)) continue;
@@ -235,13 +232,23 @@ Outcome prepare_glyphs(scene::Scene& scene) {
   return Done{};
 }
 
-void extract_glyphs(const scene::Scene& scene, FramePacket& packet) {
+Outcome extract_glyphs(const scene::Scene& scene, FramePacket& packet) {
   scene.entities.each<scene::GlyphSet>([&](scene::Entity e, const scene::GlyphSet& set) {
     if (is_hidden(scene.entities, e)) return;
     const MadeGlyphs& made = scene.cache.get<MadeGlyphs>(e);
     const std::uint32_t id = packet.add_object("glyphs", entity_name(scene, set.field), set.where.label);
     packet.glyphs.push_back({made.glyphs, made.shaft, made.head, kArrowRadius * made.shaft, id, set.clipped});
   });
+  return Done{};
 }
+
+Legend glyphs_legend(const scene::Scene& scene, scene::Entity item, const FramePacket&) {
+  const scene::GlyphSet& set = scene.entities.get<scene::GlyphSet>(item);
+  return colored_legend(scene, cached_colors<MadeGlyphs>(scene.cache, item), set.color_by, set.field);
+}
+
+}  // namespace
+
+DrawableExtraction glyphs_extraction() { return {"glyphs", prepare_glyphs, extract_glyphs, glyphs_legend}; }
 
 }  // namespace catena::render

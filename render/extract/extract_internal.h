@@ -50,11 +50,6 @@ Outcome prepare_cached(scene::Scene& scene, const Make& make) {
   return Done{};
 }
 
-/// Volumes and isosurfaces: adds the visible ones to the packet. An Error for a vector field, or a level that the field does not have.
-Outcome extract_volumes(const scene::Scene& scene, FramePacket& packet);
-/// Like extract_volumes(), for isosurfaces.
-Outcome extract_isosurfaces(const scene::Scene& scene, FramePacket& packet);
-
 /// Bounding box, axes, ground, fog and lights. Frame thread.
 ///   bounding box   the twelve edges of a field's domain, also for rotated and sheared grids; else of the bounds of all rendered items
 ///   axes           three edges of that box with ticks at round numbers (along the world's axes), on its outline in the image
@@ -71,17 +66,8 @@ void update_box_lines(const scene::Scene& scene, const Bounds& drawn, FramePacke
 /// Updates only the fog, whose range depends on the packet's view.
 void update_fog(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
 
-/// Streamline sets and the local flow indicator. Frame thread.
-///   tubes       every line of a set is flattened once; with "color_by" each point is colored by the value there, using the table
-///   arrows      cones on the line, at distances of "arrows", the seed's in the middle of the first gap
-///   pulse       brightness travels along the line: a cosine of period `pulse` in arc length, moved by the scene's phase
-///   indicator   the exact tracer's line through the probe, half the length to either side; none if the flow has no line there
-
-/// Flattens the lines of all visible sets that changed.
-Outcome prepare_streamlines(scene::Scene& scene);
-/// Adds tubes and arrows of the visible sets to the packet.
-void extract_streamlines(const scene::Scene& scene, FramePacket& packet);
-/// Adds the indicators; to be called after the cursors.
+/// Adds the local flow indicators, to be called after the cursors: the exact tracer's line through the probe, half the length to either
+/// side; none if the flow has no line there. Frame thread.
 Outcome extract_indicators(const scene::Scene& scene, FramePacket& packet);
 
 /// Radius and length of an arrowhead, relative to the radius of its tube.
@@ -91,42 +77,14 @@ inline constexpr double kArrowRadius = 2.4, kArrowLength = 6;
 /// than kMaxCurvePoints points an even selection of the lines is rendered, as reported in packet.omitted. An Error for values that the file
 /// does not have, or if more memory is needed than permitted.
 inline constexpr std::size_t kMaxCurvePoints = 2'000'000;
-/// Builds the tubes of visible curves that changed.
-Outcome prepare_curves(scene::Scene& scene);
-/// Adds the tubes to the packet.
-void extract_curves(const scene::Scene& scene, FramePacket& packet);
-/// Returns the color table of curves; null if there is none.
-const ColorTable* find_curve_colors(const scene::EntityStore& made, scene::Entity curves);
 
 /// Points from tables as spheres: colored by a column, by a field's values or by a single color; gray for NaN. Of more than kMaxSpheres an
 /// even selection is rendered, as reported in packet.omitted. An Error for a column that the table does not have, or if more memory is
 /// needed than permitted.
 inline constexpr std::size_t kMaxSpheres = 4'000'000;
-/// Builds the spheres of visible points that changed.
-Outcome prepare_points(scene::Scene& scene);
-/// Adds the spheres to the packet.
-void extract_points(const scene::Scene& scene, FramePacket& packet);
-/// Returns the color table of points; null if there is none.
-const ColorTable* find_point_colors(const scene::EntityStore& made, scene::Entity points);
-
-/// Returns the color table of a prepared set with "color_by": its own, or the one over the range of rendered values. Null without
-/// "color_by".
-const ColorTable* find_streamline_colors(const scene::EntityStore& made, scene::Entity set);
 
 /// Returns the color of a value by a table with rising values; the end colors beyond them; gray for NaN.
 Color sample_color_table(const ColorTable& table, double value);
-
-/// Glyphs: arrows at evenly spaced positions (engine/scene/uniform_sampling.h). Frame thread.
-///   length   of the longest: as specified, or the spacing; others proportional to their magnitude, or all equal
-///   none     where the field is not valid, is zero or not larger than "min_speed", and outside the visible part of a slice
-
-/// Builds the glyphs, and rebuilds them when the plane, the level or the data they are placed on have changed. More than scene::kMaxGlyphs
-/// in a set are an Error; if the set follows a widget, the spacing is increased instead.
-Outcome prepare_glyphs(scene::Scene& scene);
-/// Adds the glyphs to the packet.
-void extract_glyphs(const scene::Scene& scene, FramePacket& packet);
-/// Returns the color table of a prepared glyph set, like find_streamline_colors().
-const ColorTable* find_glyph_colors(const scene::EntityStore& made, scene::Entity set);
 
 /// Adds the scene's annotations to the packet's overlay. To be called after everything else: scalar bars show the final colors of volumes
 /// and streamlines. Frame thread.
@@ -147,18 +105,6 @@ void update_eyes(FramePacket& packet, const scene::Stereo& stereo);
 
 /// Meshes and slices as plain data. A vector field is shown by its magnitude: on slices by a grid of the magnitudes at the voxels, built
 /// once and interpolated; on meshes at each vertex.
-
-/// Builds the triangles of the meshes. The rendered mesh is the haptic one: the same object of the scene. Colors by a field are those of
-/// its values at the vertices; gray outside its domain.
-Outcome prepare_meshes(scene::Scene& scene);
-/// Adds the meshes to the packet.
-void extract_meshes(const scene::Scene& scene, FramePacket& packet);
-
-/// Builds what the slices need. An Error for a plane that misses the field, a spacing that gives more than scene::kMaxContours lines, or a
-/// vector grid too large for its magnitudes.
-Outcome prepare_slices(scene::Scene& scene);
-/// Adds the slices to the packet. An Error for contour levels as described at prepare_slices().
-Outcome extract_slices(const scene::Scene& scene, FramePacket& packet);
 
 /// Returns the contour levels within lo..hi: those listed, or `count` of them at equal distances excluding the ends, or all multiples of
 /// `spacing`.

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: MIT
+/// Extracts streamline sets and the local flow indicator. Frame thread.
+///   tubes    every line of a set is flattened once; with "color_by" each point is colored by the value there, using the table
+///   arrows   cones on the line, at distances of "arrows", the seed's in the middle of the first gap
+///   pulse    brightness travels along the line: a cosine of period `pulse` in arc length, moved by the scene's phase
 #include "render/extract/extract_internal.h"
 
 #include <algorithm>
@@ -9,6 +13,7 @@
 #include "engine/scene/streamlines.h"
 #include "engine/scene/visibility.h"
 #include "render/extract/flatten_streamlines.h"
+#include "render/extract/legends.h"
 
 namespace catena::render {
 
@@ -44,9 +49,7 @@ Color sample_color_table(const ColorTable& table, double value) {
   return {a.color.r + t * (b.color.r - a.color.r), a.color.g + t * (b.color.g - a.color.g), a.color.b + t * (b.color.b - a.color.b)};
 }
 
-const ColorTable* find_streamline_colors(const scene::EntityStore& made, scene::Entity set) {
-  return cached_colors<FlattenedStreamlines>(made, set);
-}
+namespace {
 
 Outcome prepare_streamlines(scene::Scene& scene) {
   for (const scene::Entity e : entities_with<scene::StreamlineSet>(scene.entities)) {
@@ -60,7 +63,7 @@ Outcome prepare_streamlines(scene::Scene& scene) {
   return Done{};
 }
 
-void extract_streamlines(const scene::Scene& scene, FramePacket& packet) {
+Outcome extract_streamlines(const scene::Scene& scene, FramePacket& packet) {
   scene.entities.each<scene::StreamlineSet>([&](scene::Entity e, const scene::StreamlineSet& set) {
     if (is_hidden(scene.entities, e)) return;
     const FlattenedStreamlines& flat = scene.cache.get<FlattenedStreamlines>(e);
@@ -75,7 +78,17 @@ void extract_streamlines(const scene::Scene& scene, FramePacket& packet) {
           set.band_length > 0 ? with_pulse(flat.tubes[i], flat.arc_lengths[i], set.band_length, scene.animation_phase) : flat.tubes[i]);
     for (const ArrowItem& arrow : flat.arrows) add(packet.arrows, arrow);
   });
+  return Done{};
 }
+
+Legend streamlines_legend(const scene::Scene& scene, scene::Entity item, const FramePacket&) {
+  const scene::StreamlineSet& set = scene.entities.get<scene::StreamlineSet>(item);
+  return colored_legend(scene, cached_colors<FlattenedStreamlines>(scene.cache, item), set.color_by, set.field);
+}
+
+}  // namespace
+
+DrawableExtraction streamlines_extraction() { return {"streamlines", prepare_streamlines, extract_streamlines, streamlines_legend}; }
 
 Outcome extract_indicators(const scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : entities_with<scene::Indicator>(scene.entities)) {

@@ -10,6 +10,7 @@
 #include "engine/scene/color_maps.h"
 #include "engine/scene/visibility.h"
 #include "render/extract/extract_internal.h"
+#include "render/extract/legends.h"
 
 namespace catena::render {
 
@@ -115,21 +116,24 @@ Result<FlatPoints> flat_points(scene::Scene& scene, const scene::PointsSource& d
   return flat;
 }
 
-}  // namespace
-
-const ColorTable* find_point_colors(const scene::EntityStore& made, scene::Entity points) {
-  return cached_colors<FlatPoints>(made, points);
-}
-
 Outcome prepare_points(scene::Scene& scene) { return prepare_cached<FlatPoints, scene::PointsSource>(scene, flat_points); }
 
-void extract_points(const scene::Scene& scene, FramePacket& packet) {
+Outcome extract_points(const scene::Scene& scene, FramePacket& packet) {
   scene.entities.each<scene::PointsSource>([&](scene::Entity e, const scene::PointsSource& drawn) {
     if (is_hidden(scene.entities, e)) return;
     const FlatPoints& flat = scene.cache.get<FlatPoints>(e);
     if (!flat.left_out.empty()) packet.omitted += (packet.omitted.empty() ? "" : "; ") + flat.left_out;
     packet.spheres.push_back({flat.balls, packet.add_object("points", entity_name(scene, e), drawn.where.label), drawn.clipped});
   });
+  return Done{};
 }
+
+Legend points_legend(const scene::Scene& scene, scene::Entity item, const FramePacket&) {
+  return colored_legend(scene, cached_colors<FlatPoints>(scene.cache, item), scene.entities.get<scene::PointsSource>(item).color_by);
+}
+
+}  // namespace
+
+DrawableExtraction points_extraction() { return {"points", prepare_points, extract_points, points_legend}; }
 
 }  // namespace catena::render

@@ -4,6 +4,7 @@
 #include "engine/scene/labels.h"
 #include "render/extract/extract.h"
 #include "render/extract/extract_internal.h"
+#include "render/extract/legends.h"
 
 namespace catena::render {
 
@@ -45,8 +46,7 @@ Projection projection_of(scene::Volume::Projection projection) {
                                        : Projection::composite;
 }
 
-}  // namespace
-
+/// Adds the visible volumes. Error: a vector field.
 Outcome extract_volumes(const scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : entities_with<scene::Volume>(scene.entities)) {
     const scene::Volume& volume = scene.entities.get<scene::Volume>(e);
@@ -62,6 +62,7 @@ Outcome extract_volumes(const scene::Scene& scene, FramePacket& packet) {
   return Done{};
 }
 
+/// Adds the visible isosurfaces. Error: a vector field, or a level that the field does not have.
 Outcome extract_isosurfaces(const scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : entities_with<scene::Isosurface>(scene.entities)) {
     const scene::Isosurface& surface = scene.entities.get<scene::Isosurface>(e);
@@ -76,5 +77,10 @@ Outcome extract_isosurfaces(const scene::Scene& scene, FramePacket& packet) {
   }
   return Done{};
 }
+
+}  // namespace
+
+DrawableExtraction volumes_extraction() { return {"volumes", nullptr, extract_volumes, volume_legend}; }
+DrawableExtraction isosurfaces_extraction() { return {"isosurfaces", nullptr, extract_isosurfaces, isosurface_legend}; }
 
 }  // namespace catena::render

@@ -14,6 +14,7 @@
 #include "engine/scene/visibility.h"
 #include "render/extract/extract.h"
 #include "render/extract/extract_internal.h"
+#include "render/extract/legends.h"
 
 namespace catena::render {
 
@@ -137,8 +138,8 @@ bool cuts(const scene::Slice& slice, const field::ScalarGrid& grid) {
   return min_distance <= slack && max_distance >= -slack;
 }
 
-}  // namespace
-
+/// Builds the triangles of the meshes. The rendered mesh is the haptic one: the same object of the scene. Colors by a field are those of
+/// its values at the vertices; gray outside its domain.
 Outcome prepare_meshes(scene::Scene& scene) {
   for (const scene::Entity e : entities_with<scene::SurfaceMesh>(scene.entities)) {
     const scene::SurfaceMesh& surface = scene.entities.get<scene::SurfaceMesh>(e);
@@ -167,7 +168,7 @@ Outcome prepare_meshes(scene::Scene& scene) {
   return Done{};
 }
 
-void extract_meshes(const scene::Scene& scene, FramePacket& packet) {
+Outcome extract_meshes(const scene::Scene& scene, FramePacket& packet) {
   scene.entities.each<scene::SurfaceMesh>([&](scene::Entity e, const scene::SurfaceMesh& surface) {
     if (is_hidden(scene.entities, e)) return;
     MeshItem item{scene.cache.get<PlainMesh>(e).geometry, surface.color,
@@ -177,13 +178,18 @@ void extract_meshes(const scene::Scene& scene, FramePacket& packet) {
     item.show_edges = surface.show_edges;
     packet.meshes.push_back(std::move(item));
   });
+  return Done{};
 }
 
+/// Builds what the slices need. An Error for a plane that misses the field, a spacing that gives more than scene::kMaxContours lines, or a
+/// vector grid too large for its magnitudes.
 Outcome prepare_slices(scene::Scene& scene) {
   for (const scene::Entity e : entities_with<scene::Slice>(scene.entities))
     if (!is_hidden(scene.entities, e)) CATENA_CHECK(prepare_slice(scene, e));
   return Done{};
 }
+
+}  // namespace
 
 Result<std::vector<double>> contour_levels(const scene::Slice::Contours& contours, double lo, double hi) {
   if (!contours.levels.empty()) return contours.levels;
@@ -199,6 +205,9 @@ Result<std::vector<double>> contour_levels(const scene::Slice::Contours& contour
   return levels;
 }
 
+namespace {
+
+/// Adds the slices to the packet. An Error for contour levels as described at prepare_slices().
 Outcome extract_slices(const scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : entities_with<scene::Slice>(scene.entities)) {
     if (is_hidden(scene.entities, e)) continue;
@@ -237,5 +246,10 @@ Outcome extract_slices(const scene::Scene& scene, FramePacket& packet) {
   }
   return Done{};
 }
+
+}  // namespace
+
+DrawableExtraction meshes_extraction() { return {"meshes", prepare_meshes, extract_meshes, nullptr}; }
+DrawableExtraction slices_extraction() { return {"slices", prepare_slices, extract_slices, slice_legend}; }
 
 }  // namespace catena::render

@@ -37,9 +37,9 @@ Legend make_legend(std::vector<std::array<double, 4>> colors, std::string name, 
   return {std::move(colors), std::move(name), labels, threshold};
 }
 
-/// Makes the legend of lines, glyphs, curves or points, whose table is cached. `field`: the field that they show; none: no field.
-Legend colored_legend(const scene::Scene& scene, const ColorTable* table, const std::optional<scene::ColorBy>& by,
-                      scene::Entity field = {}) {
+}  // namespace
+
+Legend colored_legend(const scene::Scene& scene, const ColorTable* table, const std::optional<scene::ColorBy>& by, scene::Entity field) {
   if (table == nullptr || !by) return {};
   switch (by->source) {
     case Source::field:
@@ -53,8 +53,6 @@ Legend colored_legend(const scene::Scene& scene, const ColorTable* table, const 
   }
   return {};
 }
-
-}  // namespace
 
 Legend volume_legend(const scene::Scene& scene, scene::Entity item, const FramePacket&) {
   const scene::Volume& volume = scene.entities.get<scene::Volume>(item);
@@ -89,24 +87,6 @@ Legend slice_legend(const scene::Scene& scene, scene::Entity item, const FramePa
   if (found >= packet.slices.size()) return {};
   const scene::ColorBy& by = scene.entities.get<scene::Slice>(item).color_by;
   return make_legend(packet.slices[found].colors, field_name(scene, by.field), by, labels_of(scene, by));
-}
-
-Legend streamlines_legend(const scene::Scene& scene, scene::Entity item, const FramePacket&) {
-  const scene::StreamlineSet& set = scene.entities.get<scene::StreamlineSet>(item);
-  return colored_legend(scene, find_streamline_colors(scene.cache, item), set.color_by, set.field);
-}
-
-Legend glyphs_legend(const scene::Scene& scene, scene::Entity item, const FramePacket&) {
-  const scene::GlyphSet& set = scene.entities.get<scene::GlyphSet>(item);
-  return colored_legend(scene, find_glyph_colors(scene.cache, item), set.color_by, set.field);
-}
-
-Legend curves_legend(const scene::Scene& scene, scene::Entity item, const FramePacket&) {
-  return colored_legend(scene, find_curve_colors(scene.cache, item), scene.entities.get<scene::CurvesSource>(item).color_by);
-}
-
-Legend points_legend(const scene::Scene& scene, scene::Entity item, const FramePacket&) {
-  return colored_legend(scene, find_point_colors(scene.cache, item), scene.entities.get<scene::PointsSource>(item).color_by);
 }
 
 }  // namespace catena::render

@@ -9,7 +9,7 @@
 #include "engine/base/text.h"
 #include "engine/io/curves/load_points.h"
 #include "engine/io/curves/write_polylines.h"
-#include "engine/io/format_rows.h"
+#include "engine/io/formats.h"
 #include "engine/io/parse_file.h"
 
 namespace catena::curves {

@@ -10,7 +10,7 @@
 #include "engine/base/text.h"
 #include "engine/geometry/curves/byte_order.h"
 #include "engine/io/curves/load_curves.h"
-#include "engine/io/format_rows.h"
+#include "engine/io/formats.h"
 #include "engine/io/parse_file.h"
 
 namespace catena::curves {

@@ -8,7 +8,7 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/geometry/mesh/checked_growth.h"
-#include "engine/io/format_rows.h"
+#include "engine/io/formats.h"
 #include "engine/io/mesh/load_mesh.h"
 #include "engine/io/mesh/write_mesh.h"
 #include "engine/io/parse_file.h"

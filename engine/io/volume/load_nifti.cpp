@@ -15,7 +15,7 @@
 #include "engine/base/input_files.h"
 #include "engine/base/text.h"
 #include "engine/field/number_type.h"
-#include "engine/io/format_rows.h"
+#include "engine/io/formats.h"
 #include "engine/io/volume/write_box.h"
 
 namespace catena::field {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/field/number_type.h"
-#include "engine/io/format_rows.h"
+#include "engine/io/formats.h"
 
 namespace catena::field {
 

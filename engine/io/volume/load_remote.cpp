@@ -12,7 +12,7 @@
 #include "engine/io/curves/load_curves.h"
 #include "engine/io/curves/load_points.h"
 #include "engine/io/curves/write_polylines.h"
-#include "engine/io/format_rows.h"
+#include "engine/io/formats.h"
 #include "engine/io/mesh/load_mesh.h"
 #include "engine/io/mesh/write_mesh.h"
 #include "engine/io/volume/data_files.h"

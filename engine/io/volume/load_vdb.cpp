@@ -5,7 +5,7 @@
 #include "engine/field/grid/grid_factory.h"
 #include "engine/field/nanovdb/nano_statistics.h"
 #include "engine/io/client.h"
-#include "engine/io/format_rows.h"
+#include "engine/io/formats.h"
 #include "engine/io/volume/write_field.h"
 
 namespace catena::field {
