@@ -7,7 +7,7 @@
 #include <set>
 
 #include "engine/app/cli/command.h"
-#include "engine/app/cli/value_types.h"
+#include "engine/app/cli/option_types.h"
 #include "engine/io/formats.h"
 
 namespace catena::app {
@@ -75,7 +75,7 @@ std::vector<std::string> choices(const std::string& range) {
 /// Returns what the validators of an option accept, as they say it: "INT in [1 - 16]", "{on,off}".
 std::string raw_range(const CLI::Option& option) {
   const std::string full = option.get_type_name();
-  const ValueType* type = find_value_type(full);
+  const OptionType* type = find_option_type(full);
   return type == nullptr || full.size() == type->name.size() ? "" : full.substr(type->name.size() + 1);
 }
 
@@ -87,7 +87,7 @@ std::string default_words(const CLI::Option& option) {
 }
 
 /// Returns a literal that shows the use of an option: "--size 640x480".
-std::string example(const CLI::Option& option, const ValueType* type) {
+std::string example(const CLI::Option& option, const OptionType* type) {
   const std::string name = short_name(option);
   if (is_flag(option)) return name;
   std::string value = type == nullptr ? "" : std::string(type->example);
@@ -100,7 +100,7 @@ std::string example(const CLI::Option& option, const ValueType* type) {
   return (name.empty() ? "" : name + " ") + replace_all(value, "*", own_name);
 }
 
-std::string takes(const CLI::Option& option, const ValueType* type) {
+std::string takes(const CLI::Option& option, const OptionType* type) {
   if (is_flag(option)) return "flag";
   const std::string what = type == nullptr ? "?" : std::string(type->input_kind);
   if (!is_repeatable(option)) return what;
@@ -119,7 +119,7 @@ std::string relations(const CLI::Option& option) {
 }
 
 std::string table_row(const CLI::Option& option) {
-  const ValueType* type = find_value_type(option.get_type_name());
+  const OptionType* type = find_option_type(option.get_type_name());
   std::string names;
   for (const std::string& name : option.get_snames()) names += in_code("-" + name) + ", ";
   for (const std::string& name : option.get_lnames()) names += "`--" + name + (is_flag(option) ? "" : " " + value_name(option)) + "`";
@@ -162,7 +162,7 @@ void add_tables(const CLI::App& command, const std::string& name, std::vector<st
 
 std::string value_name(const CLI::Option& option) {
   if (is_flag(option)) return {};
-  const ValueType* type = find_value_type(option.get_type_name());
+  const OptionType* type = find_option_type(option.get_type_name());
   return type == nullptr ? option.get_type_name() : std::string(type->name);
 }
 

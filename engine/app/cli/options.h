@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/app/cli/value_types.h"
+#include "engine/app/cli/option_types.h"
 #include "engine/app/haptics/haptic_device_setup.h"
 #include "engine/base/numbers.h"
 #include "engine/base/result.h"
@@ -69,7 +69,7 @@ inline CLI::Validator number_above_zero() {
 /// Makes all numeric options of `command` report an empty value before any other check. Call after all options of `command` are added.
 inline void refuse_empty_numbers(CLI::App& command) {
   for (CLI::Option* option : command.get_options([](const CLI::Option* o) { return o->get_expected_min() > 0; })) {
-    const ValueType* type = find_value_type(option->get_type_name());
+    const OptionType* type = find_option_type(option->get_type_name());
     if (type == nullptr || !type->is_number) continue;
     option->transform(CLI::Validator(
         [](std::string& text) -> std::string { return text.empty() ? "the value is empty; a number was expected" : ""; }, ""));

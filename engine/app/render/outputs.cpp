@@ -8,6 +8,7 @@
 
 #include "engine/app/render/video_writer.h"
 #include "engine/base/clock.h"
+#include "engine/scene/drawable.h"
 
 namespace catena::app {
 namespace {
@@ -40,22 +41,31 @@ std::string numbered_path(const std::string& path, int frame) {
 
 std::string describe_contents(const render::FramePacket& packet) {
   std::string text;
-  const auto add = [&](std::size_t count, const char* one, const char* many) {
+  const auto add = [&](std::ptrdiff_t count, std::string_view one, std::string_view many) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, count == 1 ? one : many);
   };
-  add(packet.volumes.size(), "volume", "volumes");
-  add(packet.isosurfaces.size(), "isosurface", "isosurfaces");
-  add(packet.slices.size(), "slice", "slices");
-  add(packet.meshes.size(), "mesh", "meshes");
-  const auto curves = static_cast<std::size_t>(std::ranges::count_if(
-      packet.tubes, [&](const render::TubeItem& tube) { return tube.id > 0 && packet.objects[tube.id - 1].kind == "curves"; }));
-  add(packet.tubes.size() - curves, "streamline", "streamlines");
-  add(curves, "curve", "curves");
-  std::size_t balls = 0;
-  for (const render::SpheresItem& item : packet.spheres) balls += item.spheres->offsets.size();
+  add(std::ssize(packet.volumes), "volume", "volumes");
+  add(std::ssize(packet.isosurfaces), "isosurface", "isosurfaces");
+  add(std::ssize(packet.slices), "slice", "slices");
+  add(std::ssize(packet.meshes), "mesh", "meshes");
+  const auto tubes_of = [&](std::string_view kind) {
+    return std::ranges::count_if(packet.tubes,
+                                 [&](const render::TubeItem& tube) { return tube.id > 0 && packet.objects[tube.id - 1].kind == kind; });
+  };
+  add(tubes_of("streamlines"), "streamline", "streamlines");
+  add(tubes_of("curves"), "curve", "curves");
+  std::ptrdiff_t balls = 0;
+  for (const render::SpheresItem& item : packet.spheres) balls += std::ssize(item.spheres->offsets);
   add(balls, "point", "points");
-  add(packet.glyphs.size(), "set of glyphs", "sets of glyphs");
-  add(packet.cursors.size(), "cursor", "cursors");
+  add(std::ssize(packet.glyphs), "set of glyphs", "sets of glyphs");
+  // all other drawables by their objects
+  constexpr std::string_view kCounted[] = {"volumes", "isosurfaces", "slices", "meshes", "streamlines", "curves", "points", "glyphs"};
+  for (const scene::Drawable& kind : scene::drawables())
+    if (std::ranges::find(kCounted, kind.name) == std::end(kCounted))
+      add(std::ranges::count_if(packet.objects,
+                                [&](const render::ObjectName& object) { return object.kind == kind.name || object.kind == kind.singular; }),
+          kind.singular, kind.plural);
+  add(std::ssize(packet.cursors), "cursor", "cursors");
   return text.empty() ? "nothing" : text;
 }
 

@@ -61,7 +61,7 @@ class CATENA_EXPORT CurveSetBuilder {
   /// Appends a point to the open line. `values`: one per name in `value_names`. Returns false, and adds nothing, when the point is not
   /// finite or a coordinate exceeds 1e15, where squared distances lose their precision.
   bool add(const Vec3& point, const float* values = nullptr);
-  /// Ends the open line; the next add() starts another one.
+  /// Ends the open line; the next add() starts another one. A line without points counts as one without a length.
   void end_line();
   /// Number of lines that have ended so far.
   std::size_t line_count() const { return set_.line_offsets.size() - 1; }

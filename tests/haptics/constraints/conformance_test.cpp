@@ -2,6 +2,7 @@
 // Requirements of every constraint: finite output, rest when the probe rests, bounded evaluations, no allocation, bit-identical
 // output for the same input. Fails for a registered type without examples.
 #include "engine/base/memory_limit.h"
+#include "engine/base/numbers.h"
 #include "tests/haptics/constraints/examples.h"
 
 namespace catena::haptics::tests::conformance_test {
@@ -132,6 +133,46 @@ TEST_P(Conformance, IsRepeatableBitForBit) {
       ASSERT_EQ(std::memcmp(&first.state.residual, &other->state.residual, sizeof(double)), 0);
     }
   }
+}
+
+/// Returns false for types whose proxy depends on its past, so that it has no derivative, for the baseline that never rests (Eqs. 1-2 as
+/// printed), and for a segment so long that differences are rounding.
+bool is_projection(const Example& example) {
+  if (example.body.find("\"linear\"") != std::string::npos || example.body.find("1e300") != std::string::npos) return false;
+  for (const char* type : {"friction", "modulated_friction", "texture", "drag", "viscosity", "gradient_force"})
+    if (example.type == type) return false;
+  return true;
+}
+
+// virtual work: the force on the probe is J^T f, J by differences of the proxy of a resting link
+TEST_P(Conformance, ThePulledBackForceIsTheTransposeOfTheProxysDerivative) {
+  if (!is_projection(GetParam())) return;
+  constexpr double kStep = 1e-6;
+  Rig rig(constraint_);
+  Random random(33);
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < 600; i += 7) {
+    for (int k = 0; k < 3; ++k) rig.tick(probes()[i]);
+    if (rig.state.status != LinkStatus::ok || rig.state.released) continue;
+    const auto proxy_after = [&](const Vec3& move) {
+      Rig moved = rig;
+      return moved.tick(probes()[i] + move).proxy;
+    };
+    const Vec3 f = random.unit();
+    Vec3 expected(0.0), at_half_step(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3 e(0.0);
+      e[axis] = kStep;
+      expected[axis] = dot(f, proxy_after(e) - proxy_after(-e)) / (2 * kStep);
+      at_half_step[axis] = dot(f, proxy_after(0.5 * e) - proxy_after(-0.5 * e)) / kStep;
+    }
+    if (norm(expected - at_half_step) > 1e-4) continue;  // a corner or an edge
+    Rig copy = rig;
+    const PulledBackForce pulled = constraint_->pull_back(probes()[i], f, copy.state, copy.scratch);
+    errors.push_back(norm(pulled.force + pulled.truncated - expected));
+  }
+  // a proxy in a rough field may still move slowly; without pull_back the median is about 0.5
+  EXPECT_LT(errors.empty() ? 0 : quantile(errors, 0.5), 5e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Conformance, testing::ValuesIn(all_examples()),

@@ -2,6 +2,8 @@
 /// Examples of every constraint type, and the fields that they name, for the conformance and the endurance tests.
 /// A new type needs a row in examples().
 #pragma once
+#include <fmt/format.h>
+
 #include "engine/io/curves/load_points.h"
 #include "tests/engine/geometry/flow/lambda_field.h"
 #include "tests/haptics/constraints/mesh_fixture.h"

@@ -8,7 +8,7 @@
 namespace catena::app {
 
 /// One kind of value that options take.
-struct ValueType {
+struct OptionType {
   std::string_view name;        ///< Type name in `--help`: "MB"
   std::string_view input_kind;  ///< What the user types: "number"
   std::string_view unit;        ///< Empty: none
@@ -18,6 +18,6 @@ struct ValueType {
 };
 
 /// Finds the value type that CLI::Option::get_type_name() begins with: "MB" in "MB:FLOAT in [1 - 1e+09]". Null: none.
-const ValueType* find_value_type(std::string_view type_name);
+const OptionType* find_option_type(std::string_view type_name);
 
 }  // namespace catena::app

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "engine/app/cli/value_types.h"
+#include "engine/app/cli/option_types.h"
 
 namespace catena::app {
 
 namespace {
 
 // name, input_kind, unit, range, example, is_number
-constexpr ValueType kValueTypes[] = {
+constexpr OptionType kOptionTypes[] = {
     // numbers
     {"ALPHA", "number", "", "", "0.01", true},
     {"BITS", "whole number", "bits", "", "16", true},
@@ -92,8 +92,8 @@ constexpr ValueType kValueTypes[] = {
 
 }  // namespace
 
-const ValueType* find_value_type(std::string_view type_name) {
-  for (const ValueType& type : kValueTypes)
+const OptionType* find_option_type(std::string_view type_name) {
+  for (const OptionType& type : kOptionTypes)
     if (type_name == type.name || type_name.starts_with(std::string(type.name) + ":")) return &type;
   return nullptr;
 }
