@@ -47,6 +47,4 @@ __attribute__((visibility("default"))) inline Switch the_switch;
 
 }  // namespace catena::mutation
 
-constexpr bool catena_fault(int fault) {
-  return !std::is_constant_evaluated() && catena::mutation::the_switch.is_active(fault);
-}
+constexpr bool catena_fault(int fault) { return !std::is_constant_evaluated() && catena::mutation::the_switch.is_active(fault); }

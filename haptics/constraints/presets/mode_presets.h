@@ -3,9 +3,8 @@
 ///   anisotropic_friction   NAME_surface    isosurface: the probe on a level of a scalar field (p_s)
 ///                          NAME_direction  friction across the tangential component of a vector field (p_c)
 ///                          NAME_friction   friction modulated by the field's angle to the surface, Eqs. 7-9 (p_f)
-/// A mode is a table entry: which of its keys go to which link, under which name. Of the common keys, stiffness, active_when and enabled go to
-/// all links, the others to the first. Values keep their file and line, so that errors name the line in the scene.
-/// Off the tick.
+/// A mode is a table entry: which of its keys go to which link, under which name. Of the common keys, stiffness, active_when and enabled go
+/// to all links, the others to the first. Values keep their file and line, so that errors name the line in the scene. Off the tick.
 #pragma once
 #include "haptics/constraints/registry.h"
 

@@ -104,7 +104,7 @@ TEST(ImageTuning, OffersVoxelFormatsOnlyWhereRaysReadVoxels) {
 TEST(ImageTuning, ErrorsBelowTheReportedMinimumAreEqual) {
   auto scene = test::value_of(scene::parse_scene(R"({"fields": {"ball": {"analytic": "sphere", "resolution": 24}},
     "volumes": [{"field": "ball", "color": "viridis", "range": [0.2, 2], "opacity": [[0.2, 0.3], [2, 0]]}]})",
-                                                "s.json"));
+                                                 "s.json"));
   test::value_of(scene::prepare(scene));
   const auto packet = test::value_of(render::make_frame(scene, 64, 48));
   const auto renderer = test::value_of(render::Renderer::create({}));
