@@ -13,6 +13,7 @@ import json
 import os
 import random
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -111,6 +112,22 @@ def changes(statement, text, number):
     return found
 
 
+def let_processes_report(tree):
+    """Adds the listener to the test programs, and passes the variables of faults and of gcov to confined processes."""
+    shutil.copy(os.path.join(tree, 'tests/mutation/listener.cpp'), os.path.join(tree, 'tests/support/mutation_listener.cpp'))
+    path = os.path.join(tree, 'engine/base/helper_process.cpp')
+    text = open(path).read()
+    fixed, start = 'char* const environment[] = {one_thread, nullptr};', 'arguments, environment);'
+    if fixed not in text or start not in text:
+        raise SystemExit(f'{path}: the environment of a confined process is set in another way')
+    passed = ('std::vector<char*> environment{one_thread};\n'
+              '  for (char** entry = environ; *entry != nullptr; ++entry)\n'
+              '    if (std::string_view(*entry).starts_with("CATENA_FAULT") || std::string_view(*entry).starts_with("GCOV"))\n'
+              '      environment.push_back(*entry);\n'
+              '  environment.push_back(nullptr);')
+    open(path, 'w').write(text.replace(fixed, passed).replace(start, 'arguments, environment.data());'))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('tree', nargs='?', default='.')
@@ -119,6 +136,7 @@ def main():
     parser.add_argument('--build', required=True, help='build folder of the same sources, for flags and precompiled headers')
     given = parser.parse_args()
     chance = random.Random(given.seed)
+    let_processes_report(given.tree)
     built = os.path.realpath(os.path.join(given.build, '../..'))
     all_commands = {name: entry for name, entry in commands(built, given.build).items() if not name.startswith(('tests/', 'build/'))}
     listed = subprocess.check_output(['git', 'ls-files', 'engine', 'haptics', 'render'], cwd=given.tree, text=True).split()

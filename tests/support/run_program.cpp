@@ -41,7 +41,7 @@ ProgramResult run_catena(const std::vector<std::string>& arguments) { return run
 
 ProgramResult expect_run(const std::vector<std::string>& arguments) {
   const ProgramResult result = run_catena(arguments);
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.exit_code, 0) << testing::PrintToString(arguments) << "\n" << result.err;
   return result;
 }
 

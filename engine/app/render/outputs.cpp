@@ -40,32 +40,36 @@ std::string numbered_path(const std::string& path, int frame) {
 }
 
 std::string describe_contents(const render::FramePacket& packet) {
-  std::string text;
-  const auto add = [&](std::ptrdiff_t count, std::string_view one, std::string_view many) {
-    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, count == 1 ? one : many);
-  };
-  add(std::ssize(packet.volumes), "volume", "volumes");
-  add(std::ssize(packet.isosurfaces), "isosurface", "isosurfaces");
-  add(std::ssize(packet.slices), "slice", "slices");
-  add(std::ssize(packet.meshes), "mesh", "meshes");
   const auto tubes_of = [&](std::string_view kind) {
     return std::ranges::count_if(packet.tubes,
                                  [&](const render::TubeItem& tube) { return tube.id > 0 && packet.objects[tube.id - 1].kind == kind; });
   };
-  add(tubes_of("streamlines"), "streamline", "streamlines");
-  add(tubes_of("curves"), "curve", "curves");
   std::ptrdiff_t balls = 0;
   for (const render::SpheresItem& item : packet.spheres) balls += std::ssize(item.spheres->offsets);
-  add(balls, "point", "points");
-  add(std::ssize(packet.glyphs), "set of glyphs", "sets of glyphs");
+  struct Content {
+    std::string_view kind, one, many;
+    std::ptrdiff_t count;
+  };
+  std::vector<Content> contents{{"volumes", "volume", "volumes", std::ssize(packet.volumes)},
+                                {"isosurfaces", "isosurface", "isosurfaces", std::ssize(packet.isosurfaces)},
+                                {"slices", "slice", "slices", std::ssize(packet.slices)},
+                                {"meshes", "mesh", "meshes", std::ssize(packet.meshes)},
+                                {"streamlines", "streamline", "streamlines", tubes_of("streamlines")},
+                                {"curves", "curve", "curves", tubes_of("curves")},
+                                {"points", "point", "points", balls},
+                                {"glyphs", "set of glyphs", "sets of glyphs", std::ssize(packet.glyphs)}};
   // all other drawables by their objects
-  constexpr std::string_view kCounted[] = {"volumes", "isosurfaces", "slices", "meshes", "streamlines", "curves", "points", "glyphs"};
   for (const scene::Drawable& kind : scene::drawables())
-    if (std::ranges::find(kCounted, kind.name) == std::end(kCounted))
-      add(std::ranges::count_if(packet.objects,
-                                [&](const render::ObjectName& object) { return object.kind == kind.name || object.kind == kind.singular; }),
-          kind.singular, kind.plural);
-  add(std::ssize(packet.cursors), "cursor", "cursors");
+    if (std::ranges::find(contents, kind.name, &Content::kind) == contents.end())
+      contents.push_back(
+          {kind.name, kind.singular, kind.plural, std::ranges::count_if(packet.objects, [&](const render::ObjectName& object) {
+             return object.kind == kind.name || object.kind == kind.singular;
+           })});
+  contents.push_back({"cursor", "cursor", "cursors", std::ssize(packet.cursors)});
+  std::string text;
+  for (const Content& content : contents)
+    if (content.count > 0)
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", content.count, content.count == 1 ? content.one : content.many);
   return text.empty() ? "nothing" : text;
 }
 

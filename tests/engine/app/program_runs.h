@@ -27,11 +27,7 @@ inline Words joined(Words words, const Words& more) {
 }
 
 /// Runs `catena` with the words and more of them; it must succeed.
-inline ProgramResult run_ok(const Words& words, const Words& more = {}) {
-  ProgramResult run = run_catena(joined(words, more));
-  EXPECT_EQ(run.exit_code, 0) << testing::PrintToString(joined(words, more)) << "\n" << run.err;
-  return run;
-}
+inline ProgramResult run_ok(const Words& words, const Words& more = {}) { return expect_run(joined(words, more)); }
 
 /// Runs `catena`; it must end with exit code 2 and one line on standard error that has the part.
 inline ProgramResult run_refused(const Words& words, const std::string& part = "") {

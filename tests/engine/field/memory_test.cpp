@@ -2,13 +2,13 @@
 /// Sizes in headers, layouts and scenes are accepted only within the memory limit.
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <filesystem>
 
 #include "engine/base/memory_limit.h"
 #include "engine/field/analytic/analytic.h"
 #include "engine/field/derived/box_downsample.h"
 #include "tests/engine/field/field_helpers.h"
+#include "tests/support/nifti_file.h"
 
 namespace catena::field::memory_test {
 
@@ -34,14 +34,7 @@ TEST_F(Memory, ASparseRawFileIsRefused) {
 }
 
 TEST_F(Memory, ANiftiHeaderWithAHugeSizeIsRefused) {
-  std::string bytes(352 + 4096, '\0');
-  const auto put = [&]<class T>(std::size_t at, T v) { std::memcpy(bytes.data() + at, &v, sizeof v); };
-  put(0, std::int32_t{348});
-  for (const auto& [at, n] : {std::pair{40, 3}, {42, 400}, {44, 400}, {46, 400}, {48, 1}, {50, 1}, {52, 1}, {54, 1}, {70, 2}, {72, 8}})
-    put(static_cast<std::size_t>(at), static_cast<std::int16_t>(n));
-  for (std::size_t d = 0; d < 8; ++d) put(76 + 4 * d, 1.f);
-  put(108, 352.f);
-  std::memcpy(bytes.data() + 344, "n+1", 4);
+  const std::string bytes = catena::test::NiftiFile({400, 400, 400}, 2, 8).bytes();
   // 64 MB of zeros: compressed, this would be a decompression bomb.
   std::filesystem::resize_file(file("a.nii", bytes), 352 + 64'000'000);
   expect_refused(load(test::request_for(folder_ / "a.nii")), "the grid of 400 x 400 x 400 voxels needs");

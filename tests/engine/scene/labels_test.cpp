@@ -2,7 +2,6 @@
 #include "engine/scene/labels.h"
 
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 
 #include "engine/scene/document.h"
@@ -10,6 +9,7 @@
 #include "engine/scene/prepare.h"
 #include "engine/scene/referenced_files.h"
 #include "tests/engine/scene/scene_fixture.h"
+#include "tests/support/nifti_file.h"
 
 namespace catena::scene::labels_test {
 
@@ -51,19 +51,10 @@ TEST_F(LabelScene, TheDefaultInterpolationIsLinearAndNearestForLabels) {
 }
 
 TEST_F(LabelScene, InterpolatingAFileWithLabelIntentHasANote) {
-  // A header of 348 bytes, 4 bytes for extensions, and 4^3 bytes of data; the intent is 1002.
-  std::string file(352, '\0');
-  const auto put = [&](std::size_t at, auto value) { std::memcpy(file.data() + at, &value, sizeof(value)); };
-  put(0, std::int32_t{348});
-  for (const auto& [k, n] : {std::pair{0, 3}, {1, 4}, {2, 4}, {3, 4}, {4, 1}, {5, 1}, {6, 1}, {7, 1}})
-    put(40 + 2 * static_cast<std::size_t>(k), static_cast<std::int16_t>(n));
-  put(68, std::int16_t{1002});
-  put(70, std::int16_t{2}), put(72, std::int16_t{8});
-  for (int k = 0; k < 4; ++k) put(76 + 4 * static_cast<std::size_t>(k), 1.0f);
-  put(108, 352.0f);
-  std::memcpy(file.data() + 344, "n+1", 4);
-  for (int k = 0; k < 64; ++k) file += static_cast<char>(k < 32 ? 3 : 70);
-  test::write_file(folder_ / "a.nii", file);
+  test::NiftiFile file({4, 4, 4}, 2, 8);
+  file.put(68, std::int16_t{1002});  // the intent
+  for (int k = 0; k < 64; ++k) file.append(static_cast<char>(k < 32 ? 3 : 70));
+  test::write_file(folder_ / "a.nii", file.bytes());
   for (const auto& [more, notes] : {std::pair{"}", 1u},
                                     {", \"interpolation\": \"cubic\"}", 1u},
                                     {", \"interpolation\": \"nearest\"}", 0u},

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "render/extract/auto_camera.h"
 
-#include <cstring>
-
 #include "render/passes/overlay/canvas.h"
 #include "tests/render/support/scene_packet.h"
+#include "tests/support/nifti_file.h"
 #include "tests/support/support.h"
 
 namespace catena::render::auto_camera_test {
@@ -133,22 +132,13 @@ TEST(AutoCamera, KeepsAStatedCamera) {
 
 /// A ball of value 100 in 24^3 voxels, with the qform code `code`.
 void write_nifti(const std::string& path, std::int16_t code) {
-  std::string file(352, '\0');
-  const auto put = [&](std::size_t at, auto v) { std::memcpy(file.data() + at, &v, sizeof v); };
-  constexpr std::int16_t kSize = 24;
-  put(0, std::int32_t{348});
-  put(40, std::int16_t{3});
-  for (std::size_t d = 1; d < 8; ++d) put(40 + 2 * d, d < 4 ? kSize : std::int16_t{1});
-  put(70, std::int16_t{2});
-  put(72, std::int16_t{8});
-  for (std::size_t d = 0; d < 4; ++d) put(76 + 4 * d, 1.f);
-  put(108, 352.f);
-  put(252, code);
-  std::memcpy(file.data() + 344, "n+1", 4);
+  constexpr int kSize = 24;
+  catena::test::NiftiFile file({kSize, kSize, kSize}, 2, 8);
+  file.put(252, code);
   for (int z = 0; z < kSize; ++z)
     for (int y = 0; y < kSize; ++y)
-      for (int x = 0; x < kSize; ++x) file += norm(Vec3(x - 11.5, y - 11.5, z - 11.5)) < 9 ? char(100) : char(0);
-  catena::test::write_file(path, file);
+      for (int x = 0; x < kSize; ++x) file.append(norm(Vec3(x - 11.5, y - 11.5, z - 11.5)) < 9 ? char(100) : char(0));
+  catena::test::write_file(path, file.bytes());
 }
 
 TEST(AutoCamera, ViewsAPatientFromTheFront) {

@@ -20,8 +20,8 @@ void draw_recording(PanelContext& context) {
   static char name[1024] = "";
   if (!recording.is_recording()) {
     if (name[0] == 0) {
-      const std::filesystem::path scene(context.scene.document().path());
-      const std::string proposed = unused_file_name(scene.parent_path().string(), scene.stem().string(), ".catlog");
+      const std::string& scene = context.scene.document().path();
+      const std::string proposed = unused_file_name(std::filesystem::path(scene).parent_path().string(), path_stem(scene), ".catlog");
       std::strncpy(name, proposed.c_str(), sizeof name - 1);
     }
     ImGui::SetNextItemWidth(-1);

@@ -37,7 +37,7 @@ std::string resolve_typed_path(const std::string& folder, const std::string& typ
 /// Returns `typed` extended by what all matching entries have in common; a complete folder name ends with "/".
 std::string complete_path(const std::string& folder, const std::string& typed);
 
-/// Returns "FOLDER/STEM-001.png" with the first unused number.
+/// Returns "FOLDER/STEM-001EXTENSION" with the first unused number.
 std::string unused_file_name(const std::string& folder, const std::string& stem, const std::string& extension);
 /// Returns the name without folder and extension ("carotid" for "a/carotid.vdb", "brain" for "brain.nii.gz"); "catena" for an empty path.
 std::string path_stem(const std::string& path);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "tests/engine/field/field_helpers.h"
+#include "tests/support/nifti_file.h"
 
 namespace catena::field::load_nifti_test {
 
@@ -12,37 +13,12 @@ using namespace test;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// A hand-written NIfTI-1 file: 348 bytes of header, 4 bytes of padding, and the voxels.
-struct Nifti {
-  std::string header = std::string(352, '\0');
-  std::string voxels;
-
-  template <class T>
-  void put(std::size_t at, T v) {
-    std::memcpy(header.data() + at, &v, sizeof v);
-  }
-  Nifti(int nx, int ny, int nz, std::int16_t datatype, std::int16_t bits) {
-    put<std::int32_t>(0, 348);
-    put<std::int16_t>(40, 3);
-    put<std::int16_t>(42, static_cast<std::int16_t>(nx));
-    put<std::int16_t>(44, static_cast<std::int16_t>(ny));
-    put<std::int16_t>(46, static_cast<std::int16_t>(nz));
-    for (std::size_t d = 4; d < 8; ++d) put<std::int16_t>(40 + 2 * d, 1);
-    put(70, datatype);
-    put(72, bits);
-    for (std::size_t d = 0; d < 8; ++d) put(76 + 4 * d, 1.f);
-    put(108, 352.f);
-    std::memcpy(header.data() + 344, "n+1", 4);
-  }
+struct Nifti : catena::test::NiftiFile {
+  Nifti(int nx, int ny, int nz, std::int16_t datatype, std::int16_t bits) : NiftiFile({nx, ny, nz}, datatype, bits) {}
   void sform(const float (&rows)[12]) {
     put<std::int16_t>(254, 1);
     std::memcpy(header.data() + 280, rows, sizeof rows);
   }
-  template <class T>
-  void append(T v) {
-    voxels.append(reinterpret_cast<const char*>(&v), sizeof v);
-  }
-  std::string bytes() const { return header + voxels; }
 };
 
 /// Voxels 0, 1, 2, ... or all of one value.
