@@ -41,7 +41,8 @@ struct WidgetReport {
   double value = 0;                    ///< isolevel widget: value of the field at the handle
   std::uint32_t revision = 0;          ///< revision (Spec::revision) of the pose from which the interaction with the probe started
   WidgetMode mode = WidgetMode::idle;  ///< current mode
-  /// Active handle. Rake and ruler: 0, 1 an end, 2 the whole widget; box: 0..5 the faces -x +x -y +y -z +z, 6 the whole box; -1: none.
+  /// Active handle. Rake and ruler: 0, 1 an end, 2 the whole widget; box: 0..5 the faces -x +x -y +y -z +z, 6 the whole box;
+  /// cutting plane: 0 the arrow; -1: none.
   std::int8_t handle = -1;
   std::uint8_t active_planes = 0;  ///< bit i: the plane across axis i of the widget is active
 };

@@ -46,6 +46,14 @@ Proximity plane_proximity(const Spec& spec, const State& state, const Vec3& prob
   out.near_sphere = to_sphere <= spec.grab_distance;
   out.near_plane = to_plane <= (state.mode == Mode::explore ? spec.release : spec.snap);
   out.distance = out.near_sphere ? to_sphere : to_plane;
+  if (out.near_sphere || out.near_plane) return out;
+  const Vec3 normal = frame_axis(state.pose.orientation, 2);
+  const double along = std::fmin(std::fmax(dot(normal, probe - center_of(state)), 0.0), kArrowLength * spec.radius);
+  const double to_arrow = norm(probe - center_of(state) - normal * along);
+  if (to_arrow <= spec.grab_distance) {
+    out.nearest_handle = 0;
+    out.distance = to_arrow;
+  }
   return out;
 }
 
@@ -69,7 +77,14 @@ ChainRequest plan_plane_chain(const Spec& spec, State& state, const Vec3& probe)
       activate_plane(state, 2);
       out.add_link(2, plane_through_center(state, state.pose.orientation, 2));
       break;
+    case Mode::hover:
+      for (int i = 0; i < 2; ++i) {
+        activate_plane(state, i);
+        out.add_link(i, plane_through_center(state, state.pose.orientation, i));
+      }
+      break;
     case Mode::translate:
+    case Mode::drag:
       out.disables_scene_links = true;
       add_planes(spec, state, probe, out);
       break;
@@ -101,7 +116,7 @@ ChainRequest plan_plane_chain(const Spec& spec, State& state, const Vec3& probe)
 }
 
 void update_plane_pose(const Spec& spec, State& state, const Vec3& proxy) noexcept {
-  if (state.mode == Mode::translate)
+  if (state.mode == Mode::translate || state.mode == Mode::drag)
     state.pose.points[0] = translated(state.start_pose.points[0], state.grip.frame, displacement(spec, state, proxy));
   else
     update_turn(state, proxy);

@@ -3,6 +3,10 @@
 /// Lists in brackets are the links of the chain in that mode.
 ///   near the plane     |e_2 . (x - c)| <= snap; in mode explore <= release
 ///   near the sphere    | |x - c| - r | <= grab_distance
+///   near the arrow     |x - (c + t e_2)| <= grab_distance for a t from 0 to kArrowLength r, where neither plane nor sphere is near; the
+///                      arrow is handle 0
+///   hover              [plane x, plane y]: the probe is attracted to the arrow's line
+///   drag               as translate, but the planes across e_0 and e_1 always hold: the plane moves along its normal
 ///   explore            [plane z]
 ///   translate          planes of a Grip across e_i
 ///   rotate             [planes through c with |e_i . (x - c)| <= grab_distance, sphere]   (no planes with RotationMode::free)
@@ -16,13 +20,15 @@
 
 namespace catena::widget {
 
-/// Returns whether the probe is near the sphere or the plane.
+inline constexpr double kArrowLength = 1.45;  ///< Length of the arrow along the normal, from the center, in radii of the sphere.
+
+/// Returns whether the probe is near the arrow, the sphere or the plane.
 Proximity plane_proximity(const Spec& spec, const State& state, const Vec3& probe) noexcept;
 /// Starts mode turn: chooses the axis whose great circle is nearest to the probe, or none for turning freely.
 void begin_turn(const Spec& spec, State& state, const Vec3& probe) noexcept;
 /// Returns the links for the current mode; may switch a turn about an axis to a free one.
 ChainRequest plan_plane_chain(const Spec& spec, State& state, const Vec3& probe) noexcept;
-/// Updates the pose in modes translate and turn from the last proxy of the chain.
+/// Updates the pose in modes translate, turn and drag from the last proxy of the chain.
 void update_plane_pose(const Spec& spec, State& state, const Vec3& proxy) noexcept;
 
 }  // namespace catena::widget

@@ -103,7 +103,10 @@ Proximity handle_proximity(const Spec& spec, const State& state, const Vec3& pro
 
 Grip make_grip(const Spec& spec, const State& state, const Vec3& probe) noexcept {
   Grip out{probe, state.pose.orientation, 0, 0};
-  if (spec.kind == Kind::box) {
+  if (spec.kind == Kind::cutting_plane) {
+    out.fixed_axes = 3;
+    out.free_axes = 4;
+  } else if (spec.kind == Kind::box) {
     out.frame = kIdentityRotation;
     if (state.handle < kFaces) {
       out.free_axes = static_cast<std::uint8_t>(1u << (state.handle / 2));

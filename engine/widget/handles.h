@@ -15,10 +15,10 @@ Vec3 translated(const Vec3& from, const Quat& frame, const Vec3& displacement) n
 
 /// Parts of a widget that a probe is near. World units.
 struct Proximity {
-  std::int8_t nearest_handle = -1;  ///< Nearest handle within grab_distance; -1: none
+  std::int8_t nearest_handle = -1;  ///< Nearest handle, or the arrow of a cutting plane, within grab_distance; -1: none
   bool near_sphere = false;         ///< Cutting plane: near its sphere
   bool near_plane = false;          ///< Cutting plane: near its plane
-  double distance = 0;              ///< Distance from the nearest of these parts
+  double distance = 0;              ///< Distance from the nearest of these parts, or from the sphere if that is near
 };
 
 /// Widgets with handles: seed, rake, isolevel, box, ruler. Notation: x probe, h position of a handle.
@@ -38,7 +38,7 @@ Vec3 handle_position(Kind kind, const Pose& pose, int handle) noexcept;
 
 /// Returns the nearest handle of the probe.
 Proximity handle_proximity(const Spec& spec, const State& state, const Vec3& probe) noexcept;
-/// Returns the grip for dragging state.handle from the probe.
+/// Returns the grip for dragging state.handle, or a cutting plane's arrow, from the probe.
 Grip make_grip(const Spec& spec, const State& state, const Vec3& probe) noexcept;
 /// Returns the links for the current mode.
 ChainRequest plan_handle_chain(const Spec& spec, State& state, const Vec3& probe) noexcept;

@@ -12,7 +12,13 @@ namespace {
 
 // Mode of a cutting plane that is not grabbed.
 Mode at_rest(const TransitionInput& f) noexcept {
+  if (f.near_handle) return Mode::hover;
   return f.near_sphere ? (f.rotate_on_contact ? Mode::turn : Mode::rotate) : f.near_plane ? Mode::explore : Mode::idle;
+}
+
+Mode next_of_handle(Mode mode, const TransitionInput& f, Mode otherwise) noexcept {
+  if (mode == Mode::hover && f.button_pressed) return Mode::drag;
+  return mode == Mode::drag && f.button_down ? Mode::drag : otherwise;
 }
 
 Mode next_of_cutting_plane(Mode mode, const TransitionInput& f) noexcept {
@@ -27,20 +33,14 @@ Mode next_of_cutting_plane(Mode mode, const TransitionInput& f) noexcept {
       if (f.button_pressed || (f.is_gripped && f.button_down)) return Mode::turn;
       return at_rest(f);
     default:
-      return at_rest(f);
+      return next_of_handle(mode, f, at_rest(f));
   }
-}
-
-Mode next_of_handles(Mode mode, const TransitionInput& f) noexcept {
-  if (mode == Mode::hover && f.button_pressed) return Mode::drag;
-  if (mode == Mode::drag && f.button_down) return Mode::drag;
-  return f.near_handle ? Mode::hover : Mode::idle;
 }
 
 // The part of a widget that the probe is near: its priority and the probe's distance.
 struct Near {
   Proximity reach;
-  int rank = 0;  // priority: 0 nothing, 1 a cutting plane, 2 its sphere, 3 a handle
+  int rank = 0;  // priority: 0 nothing, 1 a cutting plane, 2 its sphere, 3 a handle or an arrow
 };
 
 Near near_of(const Spec& spec, const State& state, const Vec3& probe) noexcept {
@@ -95,7 +95,8 @@ void move_grip(State& state, const TickInput& input) noexcept {
 }  // namespace
 
 Mode next_mode(Kind kind, Mode mode, const TransitionInput& facts) noexcept {
-  return kind == Kind::cutting_plane ? next_of_cutting_plane(mode, facts) : next_of_handles(mode, facts);
+  if (kind == Kind::cutting_plane) return next_of_cutting_plane(mode, facts);
+  return next_of_handle(mode, facts, facts.near_handle ? Mode::hover : Mode::idle);
 }
 
 void reset_state(const Spec& spec, State& state) noexcept {
@@ -170,7 +171,7 @@ bool is_valid_state(const Spec& spec, const State& state) noexcept {
   if (byte(state.is_initialized) > 1 || byte(state.is_gripped) > 1 || byte(state.rebase_arm) > 1) return false;
   if (byte(state.mode) > static_cast<unsigned char>(Mode::drag)) return false;
   const bool on_handle = state.mode == Mode::hover || state.mode == Mode::drag, plane = spec.kind == Kind::cutting_plane;
-  if (state.mode != Mode::idle && plane == on_handle) return false;
+  if (state.mode != Mode::idle && !plane && !on_handle) return false;
   return state.handle >= (on_handle ? 0 : -1) && state.handle < std::max(handle_count(spec.kind), 1) && state.axis >= -1 && state.axis <= 2;
 }
 

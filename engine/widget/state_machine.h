@@ -4,10 +4,10 @@
 ///   before   step_modes: transitions of all widgets, by `next_mode` alone;  plan_chain: links, order and shapes of the engaged widget
 ///   after    update_pose: its pose, from the last proxy of the chain
 /// One widget at a time is engaged; the others are idle. It is the widget that is grabbed or being grabbed; else it is chosen by what the
-/// probe is near: a handle before a sphere before a cutting plane, then the engaged widget before others, then the nearest, then the first.
-/// When the probe returns after ticks without one (`probe_returned`), a button press is ignored; a grab continues only if its button is
-/// down, with the pose unchanged and the grip moved to the new probe position; a ruler's end on links is released.
-/// World units. Haptic thread: no allocation, lock, throw.
+/// probe is near: a handle or an arrow before a sphere before a cutting plane, then the engaged widget before others, then the nearest,
+/// then the first. When the probe returns after ticks without one (`probe_returned`), a button press is ignored; a grab continues only if
+/// its button is down, with the pose unchanged and the grip moved to the new probe position; a ruler's end on links is released. World
+/// units. Haptic thread: no allocation, lock, throw.
 #pragma once
 #include <span>
 
@@ -18,7 +18,7 @@ namespace catena::widget {
 
 /// Input of a mode transition.
 struct TransitionInput {
-  bool near_handle = false;        ///< The probe is within grab_distance of a handle
+  bool near_handle = false;        ///< The probe is within grab_distance of a handle or an arrow
   bool near_sphere = false;        ///< The probe is within grab_distance of the sphere
   bool near_plane = false;         ///< The probe is within `snap` of the cutting plane; in mode explore: within `release`
   bool button_pressed = false;     ///< The button went down in this tick

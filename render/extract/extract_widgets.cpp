@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/scene/ruler.h"
+#include "engine/widget/cutting_plane.h"
 #include "render/extract/widget_shapes.h"
 
 namespace catena::render {
@@ -18,7 +19,7 @@ using widget::Mode;
 // shares of L, the length that a widget's sizes follow
 constexpr double kSphere = 0.12, kBall = 0.012, kLine = 0.0035;
 // shares of the sphere's radius
-constexpr double kNormalLength = 1.45, kFreeLength = 2.1, kHead = 0.34, kGrabbedSquare = 0.36;
+constexpr double kFreeLength = 2.1, kHead = 0.34, kGrabbedSquare = 0.36;
 // shares of the handle's radius
 constexpr double kGradientLength = 6, kHandleLength = 7, kHandleHead = 2.4, kHandleSquare = 2.8;
 
@@ -66,6 +67,20 @@ void draw_border(WidgetShapes& shapes, const scene::Widget& widget, const Bounds
   shapes.loop(border, explored ? 2.2 : moved ? 1.6 : 1, explored ? brighten(color, 0.6f) : color);
 }
 
+/// Draws the arrow along the normal; its width and brightness show hover and drag.
+void draw_arrow(WidgetShapes& shapes, const scene::Widget& widget, const Vec3& centre, double radius) {
+  const bool hovered = widget.report.mode == Mode::hover, dragged = widget.report.mode == Mode::drag;
+  const Vec3 tip = centre + widget::kArrowLength * radius * axis_of(widget, 2);
+  shapes.arrow(centre, tip,
+               dragged   ? 3.2
+               : hovered ? 2.4
+                         : 1.5,
+               kHead * radius,
+               brighten(widget.color, dragged   ? 0.7f
+                                      : hovered ? 0.4f
+                                                : 0));
+}
+
 void draw_cutting_plane(WidgetShapes& shapes, const scene::Widget& widget, const Bounds& drawn) {
   const Vec3& centre = widget.report.pose.points[0];
   const double radius = radius_of(widget);
@@ -82,7 +97,7 @@ void draw_cutting_plane(WidgetShapes& shapes, const scene::Widget& widget, const
   if (moves)
     draw_axes(shapes, widget, centre, kFreeLength * radius, kGrabbedSquare * radius, kHead * radius);
   else
-    shapes.arrow(centre, centre + kNormalLength * radius * axis_of(widget, 2), 1.5, kHead * radius, widget.color);
+    draw_arrow(shapes, widget, centre, radius);
 }
 
 /// Draws a handle as a ball; its size and brightness show hover and drag.

@@ -52,6 +52,13 @@ TEST(WidgetMachine, EveryTransitionOfACuttingPlane) {
   expect_rows(kind, translate, {{grip(nothing), translate}, {grip(both), translate}, {plane, explore}, {both, rotate}, {nothing, idle}});
   expect_rows(kind, rotate, {{sphere, rotate}, {plane, explore}, {nothing, idle}, {press(sphere), turn}});
   expect_rows(kind, turn, {{grip(nothing), turn}, {sphere, rotate}, {plane, explore}, {nothing, idle}});
+  // the arrow comes first
+  const TransitionInput arrow{.near_handle = true, .near_sphere = true, .near_plane = true};
+  expect_rows(kind, idle, {{arrow, hover}, {press(arrow), hover}});
+  expect_rows(kind, explore, {{arrow, hover}, {press(arrow), translate}});
+  expect_rows(kind, rotate, {{arrow, hover}, {press(arrow), turn}});
+  expect_rows(kind, hover, {{arrow, hover}, {press(arrow), drag}, {sphere, rotate}, {plane, explore}, {nothing, idle}});
+  expect_rows(kind, drag, {{grip(nothing), drag}, {arrow, hover}, {both, rotate}, {nothing, idle}});
   // rotation on contact
   expect_rows(kind, idle, {{touch(sphere), turn}});
   expect_rows(kind, explore, {{touch(both), turn}});
@@ -85,7 +92,8 @@ TEST(WidgetMachine, ThereAreNoOtherTransitions) {
       const Mode plane = next_mode(Kind::cutting_plane, from, f), seed = next_mode(Kind::seed, from, f);
       const auto implies = [](bool is, bool then) { EXPECT_TRUE(!is || then); };
       SCOPED_TRACE(word(f) + " from " + to_string(from));
-      EXPECT_TRUE(plane != Mode::hover && plane != Mode::drag);
+      implies(plane == Mode::drag, (from == Mode::hover && f.button_pressed) || (from == Mode::drag && f.button_down));
+      implies(plane == Mode::hover, f.near_handle);
       EXPECT_TRUE(seed == Mode::idle || seed == Mode::hover || seed == Mode::drag);
       // A grab begins from its preceding mode, at a press.
       implies(plane == Mode::translate, (from == Mode::explore && f.button_pressed) || (from == Mode::translate && f.button_down));
@@ -148,6 +156,30 @@ TEST(WidgetMachine, ExploreBeginsAtSnapAndEndsAtRelease) {
   EXPECT_EQ(m.step({2, 0, 0.1999}), 0);
   EXPECT_EQ(m.step({2, 0, 0.2001}), -1);
   EXPECT_EQ(m.step({2, 0, 0.1999}), -1);
+}
+
+TEST(WidgetMachine, TheArrowMovesThePlaneAlongItsNormalOnly) {
+  Machine m({plane_spec()});
+  EXPECT_EQ(m.modes_at({0.03, -0.02, 0.07}), "explore") << "the plane comes first";
+  EXPECT_EQ(m.modes_at({0.03, -0.02, 0.55}), "rotate") << "and the sphere";
+  EXPECT_EQ(m.modes_at({0.03, -0.02, 0.81}), "away") << "beyond the tip";
+  EXPECT_EQ(m.modes_at({0.03, -0.02, 0.3}), "hover") << "inside the sphere";
+  EXPECT_EQ(m.modes_at({0.03, -0.02, 0.6}), "hover");
+  const ChainRequest line = plan_chain(m.specs[0], m.states[0], {0.03, -0.02, 0.6});
+  ASSERT_EQ(line.count, 2);
+  EXPECT_EQ(line.shapes[0].normal, Vec3(1, 0, 0));
+  EXPECT_EQ(line.shapes[1].normal, Vec3(0, 1, 0));
+  EXPECT_EQ(m.modes_at({0.03, -0.02, 0.6}, 1), "drag");
+  EXPECT_EQ(m.modes_at({0.5, 0.4, 0.9}, 1), "drag");
+  const ChainRequest drag = plan_chain(m.specs[0], m.states[0], {0.5, 0.4, 0.9});
+  ASSERT_EQ(drag.count, 2);
+  EXPECT_TRUE(drag.disables_scene_links);
+  EXPECT_EQ(drag.shapes[0].origin, Vec3(0.03, -0.02, 0.6));
+  update_pose(m.specs[0], m.states[0], {0.03, -0.02, 0.9});
+  EXPECT_EQ(m.states[0].pose.points[0].x, 0);
+  EXPECT_EQ(m.states[0].pose.points[0].y, 0);
+  EXPECT_NEAR(m.states[0].pose.points[0].z, 0.3, 1e-15);
+  EXPECT_EQ(m.states[0].pose.orientation, kIdentityRotation);
 }
 
 TEST(WidgetMachine, OnlyOneWidgetIsEngagedAndHandlesPrecedeSpheresAndPlanes) {
