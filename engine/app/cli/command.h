@@ -26,6 +26,7 @@ void add_replay(CLI::App& program, CommandAction& chosen);
 void add_export(CLI::App& program, CommandAction& chosen);
 void add_trace(CLI::App& program, CommandAction& chosen);
 void add_info(CLI::App& program, CommandAction& chosen);
+void add_measure(CLI::App& program, CommandAction& chosen);
 void add_generate(CLI::App& program, CommandAction& chosen);
 void add_import(CLI::App& program, CommandAction& chosen);
 void add_tradeoff(CLI::App& program, CommandAction& chosen);
@@ -53,7 +54,7 @@ Result<std::vector<field::GridInfo>> read_grid_infos(const std::string& path, co
 /// Opens a scene file, or makes the default scene of a data file. `field_options`: NAME=FILE[:GRID], scene files only. `colors`, `grid` and
 /// `step`: data files only. Prints the notes of a scene file.
 Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options = {},
-                                const scene::NamedColors& colors = {}, const std::string& grid = {}, int step = 0);
+                                const scene::FileColors& colors = {}, const std::string& grid = {}, int step = 0);
 /// Opens a scene whose time steps are followed (engine/scene/follow_files.h); waits for a data file that is still being written. `source`
 /// becomes the path that is followed. Error: nothing in the scene can get time steps, or no file was complete after `seconds` (0: no
 /// limit).

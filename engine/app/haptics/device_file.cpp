@@ -5,6 +5,7 @@
 
 #include "engine/base/json_edit.h"
 #include "engine/base/output_file.h"
+#include "engine/base/text.h"
 #include "haptics/device/device_settings.h"
 
 namespace catena::app {
