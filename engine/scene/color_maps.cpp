@@ -39,6 +39,15 @@ constexpr Anchor kMagma[] = {{0, 0x000004},   {5, 0x02020b},   {16, 0x0a0822},  
 constexpr Anchor kPlasma[] = {{0, 0x0d0887},   {7, 0x20068f},   {26, 0x43039e},  {49, 0x6700a8},  {62, 0x7b02a8},
                               {73, 0x8b0aa5},  {92, 0xa51f99},  {124, 0xc8437b}, {161, 0xe76e5b}, {191, 0xf89441},
                               {216, 0xfeb82c}, {233, 0xfbd324}, {250, 0xf3f027}, {254, 0xf0f724}, {255, 0xf0f921}};
+constexpr Anchor kTurbo[] = {
+    {0, 0x30123b},   {7, 0x38276d},   {14, 0x3f3b97},  {22, 0x4451bf},  {29, 0x4664da},  {36, 0x4776ee},  {43, 0x4687fb},  {48, 0x4294ff},
+    {54, 0x3aa3fc},  {61, 0x2eb4f2},  {72, 0x1ccdd8},  {79, 0x18dbc5},  {84, 0x19e3b9},  {90, 0x22ebaa},  {98, 0x38f491},  {110, 0x65fd69},
+    {120, 0x8bff4b}, {126, 0x9ffd3f}, {132, 0xaffa37}, {140, 0xc3f134}, {150, 0xdbe236}, {160, 0xeecf3a}, {169, 0xf9bc39}, {178, 0xfea732},
+    {188, 0xfd8a26}, {199, 0xf56918}, {210, 0xe84b0c}, {221, 0xd63506}, {233, 0xbc2002}, {246, 0x980e01}, {255, 0x7a0403}};
+constexpr Anchor kHot[] = {{0, 0x0b0000}, {93, 0xff0000}, {190, 0xfffe00}, {199, 0xffff22}, {255, 0xffffff}};
+constexpr Anchor kJet[] = {{0, 0x000080},   {28, 0x0000ff},  {32, 0x0000ff},  {86, 0x00d8ff},  {87, 0x00dcfe},
+                           {89, 0x00e4f8},  {95, 0x13fce4},  {96, 0x16ffe1},  {163, 0xeeff09}, {166, 0xf8f500},
+                           {168, 0xfeed00}, {177, 0xffcc00}, {227, 0xff1300}, {232, 0xe80000}, {255, 0x800000}};
 constexpr Anchor kGrey[] = {{0, 0x000000}, {255, 0xffffff}};
 
 /// Dusk blue over green to ivory: light enough on a black background, dark enough on a white one.
@@ -77,10 +86,17 @@ std::vector<ColorPoint> cool_warm() {
 }
 
 const std::vector<ColorMap>& color_maps() {
-  static const std::vector<ColorMap> maps = {{"viridis", from_anchors(kViridis)}, {"cividis", from_anchors(kCividis)},
-                                             {"inferno", from_anchors(kInferno)}, {"magma", from_anchors(kMagma)},
-                                             {"plasma", from_anchors(kPlasma)},   {"cool-warm", cool_warm()},
-                                             {"grey", from_anchors(kGrey)},       {"dusk", dusk()}};
+  static const std::vector<ColorMap> maps = {{"viridis", from_anchors(kViridis)},
+                                             {"cividis", from_anchors(kCividis)},
+                                             {"inferno", from_anchors(kInferno)},
+                                             {"magma", from_anchors(kMagma)},
+                                             {"plasma", from_anchors(kPlasma)},
+                                             {"cool-warm", cool_warm()},
+                                             {"turbo", from_anchors(kTurbo)},
+                                             {"hot", from_anchors(kHot)},
+                                             {"jet", from_anchors(kJet)},
+                                             {"grey", from_anchors(kGrey)},
+                                             {"dusk", dusk()}};
   return maps;
 }
 
@@ -112,6 +128,12 @@ const std::vector<std::string_view>& color_map_names() {
 }
 
 bool is_color_map(std::string_view name) { return find_map(name) != nullptr; }
+
+std::string_view color_map_warning(std::string_view name) {
+  const ColorMap* map = find_map(name);
+  if (map == nullptr || map->name != "jet") return {};
+  return "jet misleads: its lightness rises and falls, which shows edges where the values have none; turbo has its colours without this";
+}
 
 std::string unknown_color_map_message(std::string_view name) {
   return in_quotes(name) + " is not a colour map; one of " + join_words(color_map_names()) +

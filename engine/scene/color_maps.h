@@ -3,6 +3,8 @@
 ///   viridis, inferno, magma, plasma   N. Smith, S. van der Walt, 2015
 ///   cividis                           J. Nunez, C. Anderton, R. Renslow, PLoS ONE 13(7), 2018: the same with color vision deficiency
 ///   cool-warm                         K. Moreland, ISVC 2009: computed, Msh (80, 1.08, -1.1) over white to (80, 1.08, 0.5)
+///   turbo                             A. Mikhailov, Google AI blog, 2019
+///   hot, jet                          as in Matplotlib
 ///   grey                              black to white
 ///   dusk                              Catena's own, from blue over green to ivory: the default of volumes
 /// Each name with the suffix "_r" is the reversed map. Piecewise linear: no component of the published 256 entries is off by more than
@@ -26,6 +28,8 @@ inline constexpr std::string_view kDefaultVolumeColorMap = "dusk";
 const std::vector<std::string_view>& color_map_names();
 /// Returns whether there is a map of that name, with or without "_r".
 bool is_color_map(std::string_view name);
+/// Returns a warning, one clause, for a map whose lightness misleads; empty: none.
+std::string_view color_map_warning(std::string_view name);
 /// Returns an error message that quotes the unknown name, lists the known ones and suggests the most similar one.
 std::string unknown_color_map_message(std::string_view name);
 

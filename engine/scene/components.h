@@ -118,6 +118,17 @@ struct TransferFunction {
   std::string file;                             ///< Transfer file it was read from; empty: the scene file itself
 };
 
+/// Colors and opacities requested for a data file instead of those chosen from its values. At most one of `opacities` and `preset` is set.
+struct FileColors {
+  NamedColors named{};                                      ///< Color map, range and scale
+  std::vector<TransferFunction::OpacityPoint> opacities{};  ///< Opacities of a volume, values rising; empty: chosen from the data
+  std::string preset{};                                     ///< Name of a preset (opacity_presets.h); empty: none
+  /// Returns whether nothing was requested.
+  bool is_default() const { return named.is_default() && !makes_volume(); }
+  /// Returns whether a volume was requested.
+  bool makes_volume() const { return !opacities.empty() || !preset.empty(); }
+};
+
 /// Colors by value: the scene key "color_by", and the colors of a slice.
 struct ColorBy {
   /// Origin of the values: another field at the same position, speed or arc length of a line, or values stored in a data file.

@@ -157,7 +157,7 @@ void remove_locations(Scene& scene) {
 
 }  // namespace
 
-Result<DefaultScene> make_default_scene(const std::string& path, const std::string& grid, const NamedColors& colors, int step) {
+Result<DefaultScene> make_default_scene(const std::string& path, const std::string& grid, const FileColors& colors, int step) {
   DefaultScene result;
   result.scene_path = path + ".json";
   const std::string file = json::serialize_string(std::filesystem::path(path).filename().string());
@@ -181,7 +181,7 @@ Result<DefaultScene> make_default_scene(const std::string& path, const std::stri
   }
   if (data_file.kind == FileKind::points) {
     CATENA_TRY(result.points, curves::load_points(data_file.path, data_file.step));
-    CATENA_TRY(const std::string parts, default_points_members(*result.points, file, colors, result.note));
+    CATENA_TRY(const std::string parts, default_points_members(*result.points, file, colors.named, result.note));
     result.text = "{\n" + parts + ",\n" + default_mesh_background() + "\n}\n";
     return result;
   }
@@ -189,13 +189,15 @@ Result<DefaultScene> make_default_scene(const std::string& path, const std::stri
     return Error{one_line(path + ": a .raw file does not state its shape; a scene file with the shape was expected")};
   result.request.grid = grid;
   CATENA_TRY(result.field, load_best(data_file, result.request));
+  if (colors.makes_volume() && !result.field.scalar)
+    return Error{one_line(path + ": opacities are those of a volume, but the field is a vector field; a scalar field was expected")};
   const std::string name = json::serialize_string(field_name(result.field.get()->name()));
   const auto later = later_step(path, result);
   const field::AnyField& shown_field = later ? later->field : result.field;
   DefaultVisualization visualization =
       shown_field.scalar ? choose_default_visualization(name, *shown_field.scalar->grid(),
                                                         field::read_units(result.request.path, result.request.grid), colors)
-                         : choose_default_visualization(name, *shown_field.vector->grid(), colors);
+                         : choose_default_visualization(name, *shown_field.vector->grid(), colors.named);
   if (later) visualization.note += fmt::format(" (at step {}; at step {} all values are equal)", later->step, step);
   if (grid.empty() && colors.is_default()) show_fibres(data_file, result, visualization);
   result.note = name + " " + visualization.note;
@@ -295,14 +297,14 @@ Outcome check_size_of_values(const field::AnyField& field, const std::string& pa
 
 }  // namespace
 
-Result<Scene> scene_for_field(const field::AnyField& grid, const NamedColors& colors) {
+Result<Scene> scene_for_field(const field::AnyField& grid, const FileColors& colors) {
   if (grid.get() == nullptr || !grid.get()->is_grid())
     return Error{"a formula has no default visualization; a grid (sample_on_grid) or a scene was expected"};
   CATENA_CHECK(check_size_of_values(grid, "field"));
   FieldOverride with{"field", {}, {}, grid};
   const std::string name = "\"field\"";
   const DefaultVisualization visualization = grid.scalar ? choose_default_visualization(name, *grid.scalar->grid(), {}, colors)
-                                                         : choose_default_visualization(name, *grid.vector->grid(), colors);
+                                                         : choose_default_visualization(name, *grid.vector->grid(), colors.named);
   if (visualization.is_label_map) with.in_memory_field.scalar = grid.scalar->grid()->with_interpolation(field::Interpolation::nearest);
   // `extra_fields` starts with a comma
   const std::string extra_fields = visualization.extra_fields.empty() ? visualization.extra_fields : visualization.extra_fields.substr(1);
@@ -314,7 +316,7 @@ Result<Scene> scene_for_field(const field::AnyField& grid, const NamedColors& co
   return scene;
 }
 
-Result<Scene> scene_for_file(const std::string& path, const std::string& grid, const NamedColors& colors, int step) {
+Result<Scene> scene_for_file(const std::string& path, const std::string& grid, const FileColors& colors, int step) {
   CATENA_TRY(const DefaultScene default_scene, make_default_scene(path, grid, colors, step));
   CATENA_CHECK(check_size_of_values(default_scene.field, path));
   CATENA_TRY(Scene scene, parse_scene(default_scene.text, path));

@@ -24,7 +24,7 @@ struct DefaultScene {
 
 /// Loads the data file and writes its default scene. `grid`: the grid to show; empty: the first usable scalar grid, else the first vector
 /// grid. `step`: time step that is loaded and shown. Error: the file cannot be read, or colors are specified for a mesh or curves.
-Result<DefaultScene> make_default_scene(const std::string& path, const std::string& grid, const NamedColors& colors, int step = 0);
+Result<DefaultScene> make_default_scene(const std::string& path, const std::string& grid, const FileColors& colors, int step = 0);
 /// Hands the loaded data, and the notes on them, to the scene that was read from `text`, so that nothing is loaded twice.
 void adopt_loaded_data(const DefaultScene& default_scene, Scene& scene);
 

@@ -15,6 +15,7 @@
 #include "engine/scene/classify_scalar.h"
 #include "engine/scene/classify_vector.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/opacity_presets.h"
 #include "engine/scene/readers.h"
 #include "engine/scene/to_json.h"
 
@@ -71,6 +72,25 @@ std::string colored_volume(const std::string& field, const field::ScalarGrid& gr
     if (is_color_range(lo, hi)) colors.range = {lo, hi};
   }
   return "  \"volumes\": [{\"field\": " + field + color_members(colors) + ", \"shade\": true}]";
+}
+
+/// Returns a volume in the requested colors and opacities.
+std::string requested_volume(const std::string& field, const field::ScalarGrid& grid, const FileColors& colors) {
+  const OpacityPreset* found = find_opacity_preset(colors.preset);
+  if (found != nullptr) {
+    const DisplayRange& range = field::display_range(grid);
+    const OpacityPreset preset = scaled_to(*found, range.lo, range.lo < range.hi ? range.hi : range.lo + 1);
+    return "  \"volumes\": [{\"field\": " + field + ", \"color\": " + to_json(preset.colors) +
+           ", \"opacity\": " + to_json(preset.opacities) +
+           (preset.is_projection ? ", \"projection\": \"maximum\"}]" : ", \"shade\": true}]");
+  }
+  if (colors.opacities.empty()) return colored_volume(field, grid, colors.named);
+  NamedColors named = colors.named;
+  const double lo = colors.opacities.front().value, hi = colors.opacities.back().value;
+  if (named.map.empty()) named.map = kDefaultVolumeColorMap;
+  if (!named.range && is_color_range(lo, hi)) named.range = {lo, hi};
+  return "  \"volumes\": [{\"field\": " + field + color_members(named) + ", \"opacity\": " + to_json(colors.opacities) +
+         ", \"shade\": true}]";
 }
 
 std::string quantity(const std::string& field, const field::ScalarGrid& grid, const ScalarStats& facts) {
@@ -145,7 +165,7 @@ std::string color_members(const NamedColors& colors) {
 }
 
 DefaultVisualization choose_default_visualization(const std::string& field, const field::ScalarGrid& grid, const field::Units& units,
-                                                  NamedColors colors) {
+                                                  const FileColors& colors) {
   const ScalarStats facts = compute_scalar_stats(grid, units);
   DataKind kind = classify_scalar(facts);
   // a sample of the voxels may look like a label map although the complete grid is not
@@ -166,11 +186,11 @@ DefaultVisualization choose_default_visualization(const std::string& field, cons
   };
   if (const int axis = flat_axis(grid); axis >= 0) {
     visualization.note = "is a single image";
-    visualization.scene_members = image(field, grid, axis, facts, std::move(colors)) + ",\n" + default_mesh_background();
+    visualization.scene_members = image(field, grid, axis, facts, colors.named) + ",\n" + default_mesh_background();
     return visualization;
   }
   if (!colors.is_default() || one_value) {
-    visualization.scene_members = colored_volume(field, grid, colors);
+    visualization.scene_members = requested_volume(field, grid, colors);
   } else {
     switch (kind) {
       case DataKind::ct:

@@ -11,7 +11,7 @@
 ///   simulation   volume with a perceptually uniform map, its scalar bar and a bounding box
 ///   flow         evenly spaced lines, colored by speed, with scalar bar and bounding box; fibers (unit length or line field) in one
 ///                color; three slices of the speed if no line can be traced
-/// If a color map or range is specified, or all values are equal, any scalar grid but an image is a volume in these colors.
+/// If colors, opacities or a preset are requested, or all values are equal, any scalar grid but an image is a volume with them.
 #pragma once
 #include <string>
 
@@ -35,7 +35,7 @@ struct DefaultVisualization {
 
 /// Chooses the visualization of a grid. `field`: its name in the scene, as a JSON string.
 DefaultVisualization choose_default_visualization(const std::string& field, const field::ScalarGrid& grid, const field::Units& units,
-                                                  NamedColors colors);
+                                                  const FileColors& colors);
 DefaultVisualization choose_default_visualization(const std::string& field, const field::VectorGrid& grid, const NamedColors& colors);
 /// Returns the specified colors as further members: `, "color": MAP, "range": [MIN, MAX]` and so on.
 std::string color_members(const NamedColors& colors);

@@ -11,7 +11,7 @@
 
 namespace catena::scene {
 
-Result<Document> Document::open(const std::string& path, const std::vector<FieldOverride>& overrides, const NamedColors& colors,
+Result<Document> Document::open(const std::string& path, const std::vector<FieldOverride>& overrides, const FileColors& colors,
                                 const std::string& grid) {
   Document document;
   document.path_ = path;

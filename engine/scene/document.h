@@ -23,7 +23,7 @@ class Document {
   /// Opens a scene file, or a data file with a new scene that shows it as scene_for_file does. `grid` (empty: the default grid) and
   /// `colors` apply to data files only, `overrides` to scene files only. Error: the file cannot be read, the scene is invalid, or an
   /// argument does not apply.
-  static Result<Document> open(const std::string& path, const std::vector<FieldOverride>& overrides = {}, const NamedColors& colors = {},
+  static Result<Document> open(const std::string& path, const std::vector<FieldOverride>& overrides = {}, const FileColors& colors = {},
                                const std::string& grid = {});
 
   /// Creates a document that is not on disk yet. `path`: where save() without an argument puts it. Error: `text` is not a valid scene.

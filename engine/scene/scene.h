@@ -84,11 +84,11 @@ CATENA_EXPORT Result<Scene> parse_scene(std::string_view text, const std::string
 /// triangle meshes as they are, curves in the colors of their directions, points as balls; the camera is fitted. `grid`: the grid to show;
 /// empty: the first usable scalar grid, else the first vector grid. `colors` may specify a color map and a range: a scalar grid is then a
 /// volume whose opacity follows the range, and lines are colored by speed. `step`: time step that is analyzed and shown.
-CATENA_EXPORT Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {}, const NamedColors& colors = {},
+CATENA_EXPORT Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {}, const FileColors& colors = {},
                                            int step = 0);
 
 /// Creates the scene of a grid of the calling program, which becomes the field "field". Error: it is no grid, or has no finite value.
-CATENA_EXPORT Result<Scene> scene_for_field(const field::AnyField& grid, const NamedColors& colors = {});
+CATENA_EXPORT Result<Scene> scene_for_field(const field::AnyField& grid, const FileColors& colors = {});
 
 /// Description of a data file at a time step.
 struct FileSummary {

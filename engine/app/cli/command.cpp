@@ -58,13 +58,13 @@ void print_scene_notes(const std::string& path, const std::vector<std::string>& 
   if (count > kMaximum) print_message(fmt::format("note: {} more notes", count - kMaximum));
 }
 
-Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options, const scene::NamedColors& colors,
+Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options, const scene::FileColors& colors,
                                 const std::string& grid, int step) {
   CATENA_TRY(const std::vector<scene::FieldOverride> overrides, parse_field_overrides(field_options));
   if (is_scene_file(path)) {
     if (!grid.empty()) return Error{path + ": --grid applies only to a data file; a scene names its grids"};
     if (!colors.is_default())
-      return Error{path + ": --colormap, --range and --mapping apply only to a data file; a scene states its colours"};
+      return Error{path + ": --colormap, --range, --mapping, --opacity and --preset apply only to a data file; a scene states its colours"};
     auto scene = scene::read_scene(path, overrides);
     if (scene) print_scene_notes(*scene);
     return scene;

@@ -4,10 +4,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
+#include "engine/base/console.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/opacity_presets.h"
 #include "engine/scene/time_steps.h"
 
 namespace catena::app {
@@ -88,6 +91,40 @@ void ColorOptions::add_to(CLI::App& command) {
                   "for --mapping symlog: maximum magnitude of the values that are mapped linearly (default: a thousandth of the maximum)")
       ->type_name("VALUE")
       ->check(accepted("> 0"));
+  CLI::Option* pairs =
+      command
+          .add_option(
+              "--opacity", opacity,
+              "opacities of a volume of a data file: pairs of a value, in the data's unit, and an alpha over the smallest voxel edge")
+          ->type_name("V,A,V,A...");
+  std::string presets = "colours and opacities for a kind of data: ";
+  for (const scene::OpacityPreset& one : scene::opacity_presets()) presets += (presets.ends_with(": ") ? "" : ", ") + std::string(one.name);
+  command.add_option("--preset", preset, presets)->type_name("PRESET")->excludes(pairs);
+}
+
+Result<scene::FileColors> ColorOptions::to_file_colors() const {
+  scene::FileColors colors;
+  CATENA_TRY(colors.named, to_named_colors());
+  if (!preset.empty() && scene::find_opacity_preset(preset) == nullptr) {
+    const auto names = scene::opacity_preset_names();
+    return Error{one_line("--preset: " + in_quotes(preset) + " is not a preset; one of " + join_words(names) + " was expected" +
+                          suggestion(preset, names))};
+  }
+  colors.preset = preset;
+  if (opacity.empty()) return colors;
+  std::vector<std::string> numbers;
+  std::istringstream list(opacity);
+  for (std::string number; std::getline(list, number, ',');) numbers.push_back(number);
+  const Error refused{
+      one_line("--opacity " + opacity + ": pairs of a rising value and an alpha from 0 to 1, such as 40,0,80,0.2,300,0.8, were expected")};
+  if (numbers.size() < 4 || numbers.size() % 2 != 0) return refused;
+  for (std::size_t i = 0; i < numbers.size(); i += 2) {
+    const auto value = parse_double(numbers[i]), alpha = parse_double(numbers[i + 1]);
+    if (!value || !alpha || !std::isfinite(*value) || !(*alpha >= 0 && *alpha <= 1)) return refused;
+    if (!colors.opacities.empty() && !(*value > colors.opacities.back().value)) return refused;
+    colors.opacities.push_back({*value, std::min(*alpha, scene::TransferFunction::OpacityPoint::kMaxAlpha)});
+  }
+  return colors;
 }
 
 Result<scene::NamedColors> ColorOptions::to_named_colors() const {
@@ -95,6 +132,7 @@ Result<scene::NamedColors> ColorOptions::to_named_colors() const {
   if (!colormap.empty() && !scene::is_color_map(colormap))
     return Error{one_line("--colormap: " + scene::unknown_color_map_message(colormap))};
   colors.map = colormap;
+  if (const std::string_view warning = scene::color_map_warning(colormap); !warning.empty()) print_message(std::string(warning));
   if (!mapping.empty()) {
     const auto word = std::ranges::find(scene::kMappingNames, mapping);
     if (word == std::end(scene::kMappingNames))

@@ -192,7 +192,8 @@ Outcome add_annotations(scene::Scene& scene, const AnnotationOptions& options);
 
 }  // namespace catena::app
 
-/// The options --colormap NAME, --range LO HI, --mapping WORD and --linear-below SIZE: the colors of a data file.
+/// The options --colormap NAME, --range LO HI, --mapping WORD, --linear-below SIZE, --opacity PAIRS and --preset NAME: the colors and
+/// opacities of a data file.
 namespace CLI {
 class App;
 }
@@ -203,10 +204,14 @@ namespace catena::app {
 struct ColorOptions {
   std::string colormap;
   std::vector<std::string> range;
-  std::string mapping, linear_below;
+  std::string mapping, linear_below, opacity, preset;
 
   void add_to(CLI::App& command);
-  /// Checks and converts the options. Error: an unknown color map or mapping, or a range that is not valid for the mapping.
+  /// Checks and converts the options. Error: an unknown color map, mapping or preset, a range that is not valid for the mapping, or
+  /// opacities that are no pairs of a rising value and an alpha from 0 to 1.
+  Result<scene::FileColors> to_file_colors() const;
+
+ private:
   Result<scene::NamedColors> to_named_colors() const;
 };
 

@@ -106,6 +106,10 @@ TEST_F(ColorMapProgram, DataFilesHaveTheRequestedColours) {
   for (std::uint32_t y = 0; y < 48; ++y)
     for (std::uint32_t x = 0; x < 64; ++x) greener = std::max(greener, int(plain.pixel(x, y)[1]) - int(plain.pixel(x, y)[0]));
   EXPECT_GT(greener, 20) << "not grey without the map";
+  const Image8 clear = draw("{g.vdb} --size 64x48 --opacity -1,0,2,0", "clear"),
+               dense = draw("{g.vdb} --size 64x48 --opacity 0,0,0.5,0.9", "dense");
+  EXPECT_EQ(std::memcmp(clear.pixel(32, 24), clear.pixel(1, 1), 4), 0) << "alpha 0 everywhere";
+  EXPECT_NE(std::memcmp(dense.pixel(32, 24), dense.pixel(1, 1), 4), 0);
   // Lines are colored by speed.
   succeed("generate circle -o {c.vdb} --resolution 16");
   const Image8 lines = draw("{c.vdb} --size 64x48 --colormap grey_r", "bare-lines");
@@ -120,11 +124,18 @@ TEST_F(ColorMapProgram, DataFilesHaveTheRequestedColours) {
 
 TEST_F(ColorMapProgram, RefusesBadMapsAndRangesAndScenes) {
   succeed("generate gaussian -o {g.vdb} --resolution 8");
+  succeed("generate circle -o {c.vdb} --resolution 8");
   write("s.json", "{}");
   write("t.json", "{\n\"color\": \"jett\"}");
   write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   write("f.json", R"({"fields": {"s": {"analytic": "sphere", "resolution": 8}}, "volumes": [{"field": "s", "transfer": "t.json"}]})");
-  const std::pair<const char*, const char*> bad[] = {{"{g.vdb} --colormap virdis", "did you mean \"viridis\"?"},
+  const std::pair<const char*, const char*> bad[] = {{"{g.vdb} --opacity 0,0,1", "pairs of a rising value and an alpha"},
+                                                     {"{g.vdb} --opacity 1,0,0,1", "pairs of a rising value and an alpha"},
+                                                     {"{g.vdb} --opacity 0,0,1,2", "pairs of a rising value and an alpha"},
+                                                     {"{g.vdb} --preset ct-bon", "did you mean \"ct-bone\"?"},
+                                                     {"{c.vdb} --preset mr", "a scalar field was expected"},
+                                                     {"{s.json} --preset mr", "a scene states its colours"},
+                                                     {"{g.vdb} --colormap virdis", "did you mean \"viridis\"?"},
                                                      {"{g.vdb} --range 1 0", "two increasing numbers LO HI were expected"},
                                                      {"{g.vdb} --range a 0", "two increasing numbers LO HI were expected"},
                                                      {"{g.vdb} --range 1", "--range"},

@@ -51,8 +51,24 @@ TEST(ColorMaps, EqualThePublishedTables) {
       {0, 0.050383, 0.029803, 0.527975},   {30, 0.287076, 0.010855, 0.627295},  {77, 0.568201, 0.055778, 0.639477},
       {108, 0.719181, 0.191729, 0.542663}, {128, 0.798216, 0.280197, 0.469538}, {165, 0.915471, 0.448807, 0.342890},
       {203, 0.987332, 0.646633, 0.214648}, {226, 0.991897, 0.784239, 0.151042}, {255, 0.940015, 0.975158, 0.131326}};
-  for (const auto& [name, entries] :
-       {std::pair{"viridis", &viridis}, {"cividis", &cividis}, {"inferno", &inferno}, {"magma", &magma}, {"plasma", &plasma}})
+  const std::vector<Published> turbo{
+      {0, 0.189950, 0.071760, 0.232170},   {30, 0.275090, 0.400720, 0.866920},  {77, 0.095320, 0.844550, 0.792990},
+      {108, 0.365810, 0.987020, 0.436880}, {128, 0.643620, 0.989990, 0.233560}, {165, 0.960490, 0.771810, 0.228110},
+      {203, 0.945380, 0.366380, 0.074610}, {226, 0.799710, 0.170550, 0.015200}, {255, 0.479600, 0.015830, 0.010550}},
+      hot{{0, 0.041600, 0.000000, 0.000000},   {30, 0.350445, 0.000000, 0.000000},  {77, 0.834303, 0.000000, 0.000000},
+          {108, 1.000000, 0.153432, 0.000000}, {128, 1.000000, 0.359314, 0.000000}, {165, 1.000000, 0.740196, 0.000000},
+          {203, 1.000000, 1.000000, 0.197058}, {226, 1.000000, 1.000000, 0.552205}, {255, 1.000000, 1.000000, 1.000000}},
+      jet{{0, 0.000000, 0.000000, 0.500000},   {30, 0.000000, 0.000000, 1.000000},  {77, 0.000000, 0.707843, 1.000000},
+          {108, 0.237192, 1.000000, 0.730550}, {128, 0.490196, 1.000000, 0.477546}, {165, 0.958254, 0.973856, 0.009488},
+          {203, 1.000000, 0.421932, 0.000000}, {226, 1.000000, 0.087872, 0.000000}, {255, 0.500000, 0.000000, 0.000000}};
+  for (const auto& [name, entries] : {std::pair{"turbo", &turbo},
+                                      {"hot", &hot},
+                                      {"jet", &jet},
+                                      {"viridis", &viridis},
+                                      {"cividis", &cividis},
+                                      {"inferno", &inferno},
+                                      {"magma", &magma},
+                                      {"plasma", &plasma}})
     for (const Published& entry : *entries)
       EXPECT_LE(off(make_color_map(name, 0, 255), entry.at, entry), 1 / 255.0) << name << " " << entry.at;
 }
@@ -97,7 +113,7 @@ TEST(ColorMaps, OneValueHasTheMiddleColour) {
 
 TEST(ColorMaps, UnknownNamesAreRefusedWithASuggestion) {
   EXPECT_TRUE(is_color_map("cividis") && is_color_map("cool-warm_r"));
-  for (const char* name : {"", "_r", "Viridis", "viridis_r_r", "jet"}) EXPECT_FALSE(is_color_map(name)) << name;
+  for (const char* name : {"", "_r", "Viridis", "viridis_r_r", "rainbow"}) EXPECT_FALSE(is_color_map(name)) << name;
   EXPECT_NE(unknown_color_map_message("virdis").find("did you mean \"viridis\"?"), std::string::npos);
 }
 

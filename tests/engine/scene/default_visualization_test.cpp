@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "engine/scene/labels.h"
+#include "engine/scene/opacity_presets.h"
 #include "engine/scene/prepare.h"
 #include "tests/engine/scene/scene_fixture.h"
 
@@ -20,7 +21,7 @@ Scene scene_of_grid(const std::string& path, const field::AnyField& grid) {
 
 /// The default scene of a file with a grid of 32^3 over -1..1; the scene is also prepared for rendering.
 template <class Value>
-Scene scene_of(const std::string& path, const Value& value, const NamedColors& colors = {}) {
+Scene scene_of(const std::string& path, const Value& value, const FileColors& colors = {}) {
   constexpr int kSize = 32;
   const double edge = 2.0 / (kSize - 1);
   std::vector<float> values;
@@ -32,6 +33,22 @@ Scene scene_of(const std::string& path, const Value& value, const NamedColors& c
   Scene scene = value_of(scene_for_file(path, {}, colors));
   value_of(prepare(scene));
   return scene;
+}
+
+TEST(OpacityPreset, EveryPresetIsAVolumeOverTheRangeOfTheData) {
+  const test::TemporaryFolder folder;
+  for (const OpacityPreset& preset : opacity_presets()) {
+    const Scene scene = scene_of(folder / "g.vdb", [](const Vec3& p) { return 100 * p.x; }, {.preset = std::string(preset.name)});
+    const auto volumes = all_of<Volume>(scene);
+    ASSERT_EQ(volumes.size(), 1u) << preset.name;
+    const auto& points = volumes[0].transfer.opacities;
+    ASSERT_EQ(points.size(), preset.opacities.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double value = preset.opacities[i].value;
+      EXPECT_NEAR(points[i].value, preset.is_relative ? 200 * value - 100 : value, 1e-3) << preset.name;
+      EXPECT_EQ(points[i].alpha, preset.opacities[i].alpha);
+    }
+  }
 }
 
 std::vector<double> levels(const Scene& scene) {

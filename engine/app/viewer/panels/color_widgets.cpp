@@ -33,6 +33,7 @@ std::optional<std::string> choose_color_map(const std::string& now, const char* 
         list->AddRectFilled({at.x + 2 * static_cast<float>(i), at.y}, {at.x + 2 * static_cast<float>(i + 1), at.y + height},
                             to_imgui_color(evaluate_color(points, i / 23.0)));
       list->AddText({at.x + 56, at.y}, ImGui::GetColorU32(ImGuiCol_Text), word.c_str());
+      if (const std::string_view warning = scene::color_map_warning(name); !warning.empty()) show_tooltip(std::string(warning));
     }
     ImGui::EndCombo();
   }
