@@ -8,49 +8,19 @@
 #include "engine/base/output_file.h"
 #include "engine/io/formats.h"
 #include "engine/scene/readers.h"
+#include "engine/scene/references.h"
 
 namespace catena::scene {
 namespace {
 
 namespace fs = std::filesystem;
 
-void add_string(const json::Node& object, std::string_view key, std::vector<const json::Node*>& names) {
-  const json::Node* node = object.find(key);
-  if (node != nullptr && node->kind == json::Kind::string && !node->string.empty()) names.push_back(node);
-}
-
-/// Adds every string of `object` whose key has the role of a file; also in nested lists and objects.
-void add_files(const json::Node& object, const schema::Keys& keys, std::vector<const json::Node*>& names) {
-  for (const schema::Key& key : keys) {
-    if (key.role == schema::Role::file) add_string(object, key.name, names);
-    const json::Node* value = object.find(key.name);
-    if (value != nullptr && key.value_type == schema::ValueType::object) add_files(*value, *key.members, names);
-  }
-}
-
-/// Adds the file names in an item of a section, or in the section itself.
-void add_files(const json::Node& item, const schema::Section& component, std::vector<const json::Node*>& names) {
-  add_files(item, component.keys, names);
-  for (const schema::Variant& variant : component.variants) add_files(item, variant.keys, names);
-  if (schema::find(component.keys, "color_by") != nullptr)
-    add_string(item, "transfer", names);  // "transfer" is allowed where "color_by" is a name
-}
-
 /// Returns the values that name files, in text order.
 std::vector<const json::Node*> file_names(const json::Node& root) {
   std::vector<const json::Node*> names;
-  for (const schema::Section& component : scene_components()) {
-    const json::Node* part = root.find(component.name);
-    if (part == nullptr) continue;
-    for (const json::Node& item : part->items) add_files(item, component, names);
-    if (component.layout == schema::Section::Layout::map)
-      for (const auto& [name, item] : part->members) add_files(item, component, names);
-    else
-      add_files(*part, component, names);
-  }
-  if (const json::Node* device = root.find("device")) add_string(*device, "firmware", names);
-  std::sort(names.begin(), names.end(), [](const json::Node* a, const json::Node* b) { return a->begin < b->begin; });
-  names.erase(std::unique(names.begin(), names.end()), names.end());  // several variants may have the same key
+  each_reference(root, [&](schema::Role role, const json::Node& node) {
+    if (role == schema::Role::file) names.push_back(&node);
+  });
   return names;
 }
 

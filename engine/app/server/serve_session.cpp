@@ -40,7 +40,7 @@ ServeSession::ServeSession(const ServeOptions& options, const LoadedScene& loade
       height_(options.height) {
   scene_.bounds = loaded.bounds;
   camera_.adopt_scene(loaded);
-  scene_.set_validator([&hand](scene::Scene& edited) { return hand.validate(edited); });
+  scene_.set_validator(SceneModel::make_validator(hand));
   scene_.take_changed();
   tuning_.has_fixed_quality = options.has_fixed_quality;
 }

@@ -211,14 +211,14 @@ TEST(NewWidget, EveryTypeIsValidAndHasAUniqueName) {
   Fixture f;
   for (const std::string& type : list_widget_types())
     for (int n = 0; n < (type == "seed" ? 2 : 1); ++n) {
-      const std::string text = value_of(make_widget_json(f.host->scene(), type, test::cube_bounds()));
-      value_of(f.host->set("/widgets/-", text, "add"));
+      value_of(f.host->apply(value_of(make_add_widget_edits(f.host->scene(), type, test::cube_bounds(), Vec3(0, -1, 0))), "add"));
     }
   int count = 0;
   f.host->scene().entities.each<scene::Widget>([&](scene::Entity, const scene::Widget&) { ++count; });
   EXPECT_EQ(count, 7);
   EXPECT_TRUE(scene::find_widget(f.host->scene(), "seed_2"));
   EXPECT_TRUE(scene::find_widget(f.host->scene(), "cut"));
+  EXPECT_EQ(f.host->scene().clip_planes.size(), 7u) << "the plane and the six faces of the box clip";
 }
 
 }  // namespace catena::app::chain_editing_test

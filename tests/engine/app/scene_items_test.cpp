@@ -85,8 +85,7 @@ TEST_F(EditedScene, EveryPresentationOfAFieldIsDrawn) {
     for (const ShowAs as : {ShowAs::volume, ShowAs::isosurface, ShowAs::slice, ShowAs::streamlines, ShowAs::glyphs}) {
       if (!can_show(drawn, as)) continue;
       ++items;
-      const Outcome done =
-          document_->set(new_item_pointer(as), make_item_json(scene_, scene::find_field(scene_, name), drawn, as, {}), to_string(as));
+      const Outcome done = document_->apply(make_item_edits(scene_, scene::find_field(scene_, name), drawn, as, {}), to_string(as));
       ASSERT_TRUE(done) << name << " as " << to_string(as) << ": " << done.error().message;
     }
   }
@@ -115,11 +114,12 @@ TEST_F(EditedScene, ANewIsosurfaceHasTheLevelOfTheFirstLink) {
   const auto drawn = test::value_of(scene::resolve_rendered_field(scene_, scene::find_field(scene_, "ball"), {}));
   const std::string level = first_link_level(scene_, "ball");
   EXPECT_EQ(level, "1.25") << "the first link's";
-  EXPECT_EQ(make_item_json(scene_, scene::find_field(scene_, "ball"), drawn, ShowAs::isosurface, {}),
+  EXPECT_EQ(*make_item_edits(scene_, scene::find_field(scene_, "ball"), drawn, ShowAs::isosurface, {}).front().value,
             R"({"field": "ball", "level": 1.25})");
   EXPECT_TRUE(first_link_level(scene_, "flow").empty());
   auto without_links = test::value_of(scene::parse_scene(R"({"fields": {"ball": {"analytic": "sphere"}}})", "s.json"));
-  const std::string item = make_item_json(without_links, scene::find_field(without_links, "ball"), drawn, ShowAs::isosurface, {});
+  const std::string item =
+      *make_item_edits(without_links, scene::find_field(without_links, "ball"), drawn, ShowAs::isosurface, {}).front().value;
   EXPECT_EQ(item.find("1.25"), std::string::npos) << "else of its own range: " << item;
 }
 

@@ -3,17 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <set>
 
 #include "engine/app/viewer/edit/chain_editing.h"
 #include "engine/app/viewer/edit/histogram_cache.h"
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/base/json.h"
-#include "engine/base/json_edit.h"
 #include "engine/base/text.h"
 #include "engine/field/field_display_range.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/labels.h"
 #include "engine/scene/to_json.h"
 #include "engine/scene/widgets.h"
 
@@ -63,11 +61,6 @@ bool take_felt_level(const scene::Scene& scene, scene::Entity field, scene::Isos
 
 }  // namespace
 
-std::string new_item_pointer(ShowAs as) {
-  constexpr const char* pointers[] = {"/volumes/-", "/isosurfaces/-", "/slices/-", "/streamlines/-", "/glyphs/-"};
-  return pointers[static_cast<int>(as)];
-}
-
 const char* to_string(ShowAs as) {
   constexpr const char* words[] = {"volume", "isosurface", "slice", "streamlines", "glyphs"};
   return words[static_cast<int>(as)];
@@ -78,13 +71,15 @@ bool can_show(const field::AnyField& field, ShowAs as) {
   return as == ShowAs::streamlines || as == ShowAs::glyphs ? field.vector != nullptr : field.scalar != nullptr;
 }
 
+namespace {
+
 std::string make_item_json(const scene::Scene& scene, scene::Entity field, const field::AnyField& values, ShowAs as,
                            const std::vector<float>& sorted) {
   const Domain domain = domain_of(*values.get());
   const auto rounded = [&](double value) { return round_within(value, 0, domain.shortest); };
   const Vec3 middle{rounded(domain.middle.x), rounded(domain.middle.y), rounded(domain.middle.z)};
   scene::ColorBy colors;
-  colors.named.map = scene::kDefaultLineColorMap;
+  if (scene::find_label_map(scene, field) == nullptr) colors.named.map = scene::kDefaultLineColorMap;
   switch (as) {
     case ShowAs::volume: {
       scene::Volume volume;
@@ -133,6 +128,35 @@ std::string make_item_json(const scene::Scene& scene, scene::Entity field, const
   return scene::to_json(scene, set);
 }
 
+/// Name of a field around all labels of the map; empty: there is none.
+std::string find_label_surface(const scene::Scene& scene, const std::string& map) {
+  std::string name;
+  scene.entities.each<scene::FieldSource>([&](scene::Entity e, const scene::FieldSource& source) {
+    if (source.label && source.label->label_map == map && source.label->all_labels) name = entity_name(scene, e);
+  });
+  return name;
+}
+
+}  // namespace
+
+std::vector<scene::Document::Edit> make_item_edits(const scene::Scene& scene, scene::Entity field, const field::AnyField& values, ShowAs as,
+                                                   const std::vector<float>& sorted) {
+  constexpr const char* kPointers[] = {"/volumes/-", "/isosurfaces/-", "/slices/-", "/streamlines/-", "/glyphs/-"};
+  const std::string pointer = kPointers[static_cast<int>(as)];
+  if (as != ShowAs::isosurface || scene::find_label_map(scene, field) == nullptr)
+    return {{pointer, make_item_json(scene, field, values, as, sorted)}};
+  const std::string map = entity_name(scene, field);
+  std::vector<scene::Document::Edit> edits;
+  std::string surface = find_label_surface(scene, map);
+  if (surface.empty()) {
+    surface = make_unique_name(map + "_labels", [&](const std::string& n) { return bool(scene::find_field(scene, n)); });
+    edits.push_back({"/fields/" + surface, "{\"label\": \"*\", \"of\": " + scene::to_json(map) + "}"});
+  }
+  edits.push_back(
+      {pointer, "{\"field\": " + scene::to_json(surface) + ", \"level\": 0.5, \"color_by\": {\"field\": " + scene::to_json(map) + "}}"});
+  return edits;
+}
+
 namespace {
 
 /// Field of a visible isosurface, or else the first scalar field.
@@ -155,12 +179,50 @@ std::vector<std::string> list_widget_types() {
   return words;
 }
 
-Result<std::string> make_widget_json(const scene::Scene& scene, const std::string& type, const Bounds& bounds) {
-  using widget::Kind;
+namespace {
+
+using widget::Kind;
+
+Kind kind_of(const std::string& type) {
   const std::vector<std::string> types = list_widget_types();
-  const auto kind = static_cast<Kind>(std::find(types.begin(), types.end(), type) - types.begin());
-  const std::string name = make_unique_name(kind == Kind::cutting_plane ? "cut" : type,
-                                            [&](const std::string& n) { return bool(scene::find_widget(scene, n)); });
+  return static_cast<Kind>(std::find(types.begin(), types.end(), type) - types.begin());
+}
+
+std::string new_widget_name(const scene::Scene& scene, const std::string& type) {
+  return make_unique_name(kind_of(type) == Kind::cutting_plane ? "cut" : type,
+                          [&](const std::string& n) { return bool(scene::find_widget(scene, n)); });
+}
+
+/// Rotation of z to the world axis nearest to the direction.
+Quat facing(const Vec3& direction) {
+  Vec3 axis(0.0);
+  int k = 0;
+  for (int i = 1; i < 3; ++i)
+    if (std::abs(direction[i]) > std::abs(direction[k])) k = i;
+  axis[k] = direction[k] < 0 ? -1 : 1;
+  return shortest_arc({0.0, 0.0, 1.0}, axis);
+}
+
+}  // namespace
+
+std::string make_clip_json(const scene::Scene& scene, const std::string& name, Kind kind) {
+  const std::size_t planes = kind == Kind::cutting_plane ? 1 : kind == Kind::box ? 6 : 0;
+  if (planes == 0 || scene.clip_planes.size() + planes > kMaxClipPlanes) return {};
+  return "{\"widget\": " + scene::to_json(name) + (planes == 1 ? ", \"side\": \"behind\"}" : "}");
+}
+
+Result<std::vector<scene::Document::Edit>> make_add_widget_edits(const scene::Scene& scene, const std::string& type, const Bounds& bounds,
+                                                                 const Vec3& to_camera) {
+  CATENA_TRY(const std::string widget, make_widget_json(scene, type, bounds, to_camera));
+  std::vector<scene::Document::Edit> edits{{"/widgets/-", widget}};
+  const std::string clip = make_clip_json(scene, new_widget_name(scene, type), kind_of(type));
+  if (!clip.empty()) edits.push_back({"/clip/-", clip});
+  return edits;
+}
+
+Result<std::string> make_widget_json(const scene::Scene& scene, const std::string& type, const Bounds& bounds, const Vec3& to_camera) {
+  const Kind kind = kind_of(type);
+  const std::string name = new_widget_name(scene, type);
 
   const Vec3 middle = bounds.empty() ? Vec3(0.0) : bounds.center(), size = bounds.empty() ? Vec3(1.0) : bounds.hi - bounds.lo;
   const Vec3 half = kind == Kind::box ? size * 0.25 : Vec3(0.25 * max_abs(size), 0, 0);
@@ -168,73 +230,10 @@ Result<std::string> make_widget_json(const scene::Scene& scene, const std::strin
   scene::Widget widget;
   widget.spec.kind = kind;
   widget.spec.pose.points = {two_ends ? middle - half : middle, middle + half};
+  if (kind == Kind::cutting_plane) widget.spec.pose.orientation = facing(to_camera);
   if (kind == Kind::isolevel && !(widget.field = field_of_isolevel(scene)))
     return Error{"an isolevel needs a scalar field, which the scene does not have"};
   return scene::to_json(scene, name, widget);
-}
-
-namespace fs = std::filesystem;
-
-namespace {
-
-json::Node* member_of(json::Node& object, std::string_view key) {
-  const auto found = std::ranges::find_if(object.members, [&](const auto& member) { return member.first == key; });
-  return found == object.members.end() ? nullptr : &found->second;
-}
-
-std::string free_among(std::set<std::string>& taken, const std::string& name) {
-  std::string free = make_unique_name(name, [&](const std::string& n) { return taken.contains(n); });
-  taken.insert(free);
-  return free;
-}
-
-/// Rewrites a file name that is relative to folder `from` so that it is relative to folder `to`.
-std::string named_from(const fs::path& from, const fs::path& to, const std::string& file) {
-  // a scene path without a folder lies in the current one
-  std::error_code code;
-  const fs::path here = fs::current_path(code);
-  const fs::path whole = (here / from / file).lexically_normal(), near = whole.lexically_relative((here / to).lexically_normal());
-  return near.empty() || *near.begin() == ".." ? whole.string() : near.string();
-}
-
-}  // namespace
-
-Result<MergedFile> make_merge_edits(const std::string& open_text, const std::string& open_path, const std::string& added_text,
-                                    const std::string& added_path) {
-  CATENA_TRY(const json::Node open, json::parse(open_text, open_path));
-  CATENA_TRY(json::Node added, json::parse(added_text, added_path));
-  MergedFile result;
-  std::set<std::string> fields, things;
-  if (const json::Node* there = open.find("fields"))
-    for (const auto& [name, node] : there->members) fields.insert(name);
-  for (const char* part : {"meshes", "curves", "points"})
-    if (const json::Node* there = open.find(part))
-      for (const json::Node& item : there->items)
-        if (const json::Node* name = item.find("name")) things.insert(name->string);
-  const fs::path from = fs::path(added_path).parent_path(), to = fs::path(open_path).parent_path();
-
-  if (json::Node* own = member_of(added, "fields"))
-    for (auto& [name, node] : own->members) {
-      const std::string as = free_among(fields, name);
-      if (json::Node* file = member_of(node, "file")) file->string = named_from(from, to, file->string);
-      result.edits.push_back({"/fields/" + json::escape_pointer_token(as), json::serialize_node(node)});
-      result.renames.emplace_back(name, as);
-    }
-  const auto renamed = [&](const std::string& name) {
-    const auto found = std::ranges::find(result.renames, name, &std::pair<std::string, std::string>::first);
-    return found == result.renames.end() ? name : found->second;
-  };
-  for (const char* part : {"meshes", "curves", "points", "volumes", "streamlines"}) {
-    json::Node* items = member_of(added, part);
-    if (items == nullptr) continue;
-    for (json::Node& item : items->items) {
-      if (json::Node* field = member_of(item, "field")) field->string = renamed(field->string);
-      if (json::Node* file = member_of(item, "file")) file->string = named_from(from, to, file->string);
-      if (json::Node* name = member_of(item, "name")) name->string = free_among(things, name->string);
-      result.edits.push_back({std::string("/") + part + "/-", json::serialize_node(item)});
-    }
-  }
-  return result;
 }
 
 }  // namespace catena::app

@@ -6,10 +6,12 @@
 
 #include "engine/app/viewer/edit/haptic_binding.h"
 #include "engine/base/json_edit.h"
+#include "engine/scene/references.h"
 #include "engine/scene/ruler.h"
 #include "engine/scene/streamlines.h"
 #include "engine/scene/to_json.h"
 #include "engine/scene/visibility.h"
+#include "engine/scene/widgets.h"
 
 namespace catena::app {
 
@@ -22,14 +24,6 @@ struct Place {
   bool operator==(const Place&) const = default;
 };
 
-/// A key that refers to an item of a list by its index.
-struct IndexKey {
-  const char *holder, *key, *list;  ///< "scalar_bars", "slice", "slices"
-};
-constexpr IndexKey kIndexKeys[] = {
-    {"scalar_bars", "volume", "volumes"}, {"scalar_bars", "slice", "slices"},        {"scalar_bars", "streamlines", "streamlines"},
-    {"scalar_bars", "glyphs", "glyphs"},  {"scalar_bars", "curves", "curves"},       {"scalar_bars", "points", "points"},
-    {"glyphs", "on/slice", "slices"},     {"glyphs", "on/isosurface", "isosurfaces"}};
 constexpr const char* kPlaneKeys[] = {"point", "normal", "axis", "at", "widget"};
 
 /// The plane of a slice, as JSON text for glyphs.
@@ -45,7 +39,7 @@ std::string plane_of(const json::Node& slice) {
 void add_hangers(const json::Node& root, std::vector<Place>& gone, TextEdits& edits) {
   for (std::size_t g = 0; g < gone.size(); ++g) {
     const Place lost = gone[g];
-    for (const IndexKey& index : kIndexKeys) {
+    for (const scene::IndexReference& index : scene::kIndexReferences) {
       const json::Node* holders = index.list == lost.list ? root.find(index.holder) : nullptr;
       for (std::size_t k = 0; holders != nullptr && k < holders->items.size(); ++k) {
         const Place holder{index.holder, k};
@@ -62,7 +56,7 @@ void add_hangers(const json::Node& root, std::vector<Place>& gone, TextEdits& ed
 
 /// Renumbers references by index: each is reduced by the number of removed items before it.
 void add_renumbered(const json::Node& root, const std::vector<Place>& gone, TextEdits& edits) {
-  for (const IndexKey& index : kIndexKeys) {
+  for (const scene::IndexReference& index : scene::kIndexReferences) {
     const json::Node* holders = root.find(index.holder);
     for (std::size_t k = 0; holders != nullptr && k < holders->items.size(); ++k) {
       const json::Node* named = json::find_value(holders->items[k], "/" + std::string(index.key));
@@ -194,7 +188,45 @@ Rule rule_of(scene::Scene& scene, const std::string& item) {
   return {};
 }
 
+/// Calls `visit` with the pointer, the key and the node of every object {"widget": name, ...} below `node`.
+void each_follower(const json::Node& node, const std::string& pointer, const std::string& key, const std::string& name,
+                   const std::function<void(const std::string&, const std::string&, const json::Node&)>& visit) {
+  if (const json::Node* named = node.find("widget"); named != nullptr && named->string == name) visit(pointer, key, node);
+  for (const auto& [member, value] : node.members)
+    each_follower(value, pointer + "/" + json::escape_pointer_token(member), member, name, visit);
+  for (std::size_t i = 0; i < node.items.size(); ++i) each_follower(node.items[i], pointer + "/" + std::to_string(i), key, name, visit);
+}
+
 }  // namespace
+
+TextEdits make_remove_widget_edits(const scene::Scene& scene, const std::string& text, const std::string& name) {
+  const auto root = json::parse(text, {});
+  const scene::Entity entity = scene::find_widget(scene, name);
+  if (!root || !entity) return {};
+  const scene::Widget& widget = scene.entities.get<scene::Widget>(entity);
+  const widget::Pose& pose = widget.report.pose;
+  TextEdits edits;
+  std::vector<Place> gone = place_of(widget.where.label);
+  each_follower(*root, {}, {}, name, [&](const std::string& pointer, const std::string& key, const json::Node& node) {
+    if (key == "clip") {
+      gone.push_back({"clip", std::stoul(pointer.substr(pointer.rfind('/') + 1))});
+    } else if (key == "level") {
+      edits.push_back({pointer, scene::to_json(widget.report.value)});
+    } else if (key == "seed") {
+      edits.push_back({pointer, scene::to_json(pose.points[0])});
+    } else if (key == "seeds") {
+      const json::Node* count = node.find("count");
+      const int seeds = count != nullptr ? static_cast<int>(count->number) : 1;
+      edits.push_back({pointer, scene::to_json(scene::make_widget_seeds(widget.spec.kind, pose, seeds))});
+    } else {
+      edits.push_back({pointer + "/widget", std::nullopt});
+      edits.push_back({pointer + "/point", scene::to_json(pose.points[0])});
+      edits.push_back({pointer + "/normal", scene::to_json(scene::plane_normal(pose))});
+    }
+  });
+  for (scene::Document::Edit& edit : edits_without(text, gone)) edits.push_back(std::move(edit));
+  return edits;
+}
 
 TextEdits make_remove_edits(const std::string& text, const std::string& item) { return edits_without(text, place_of(item)); }
 

@@ -101,6 +101,13 @@ bool is_held(WidgetMode mode) {
 
 }  // namespace
 
+TextEdits make_pose_edits(const scene::Widget& widget, const widget::Pose& pose) {
+  TextEdits edits;
+  for (auto& [key, value] : scene::pose_members(widget.spec.kind, pose))
+    edits.push_back({item_pointer(widget.where) + "/" + key, std::move(value)});
+  return edits;
+}
+
 std::vector<WidgetEdits::FinishedMove> WidgetEdits::take_finished(const scene::Scene& scene) {
   std::vector<FinishedMove> ended;
   std::map<std::string, bool> held;
@@ -109,10 +116,7 @@ std::vector<WidgetEdits::FinishedMove> WidgetEdits::take_finished(const scene::S
     held[place] = is_held(widget.report.mode);
     const auto before = grabbed_.find(place);
     if (before == grabbed_.end() || !before->second || held[place]) return;
-    FinishedMove end{"move " + scene.entities.get<scene::Name>(e).value, {}};
-    for (auto& [key, value] : scene::pose_members(widget.spec.kind, widget.report.pose))
-      end.edits.push_back({item_pointer(widget.where) + "/" + key, std::move(value)});
-    ended.push_back(std::move(end));
+    ended.push_back({"move " + scene.entities.get<scene::Name>(e).value, make_pose_edits(widget, widget.report.pose)});
   });
   grabbed_ = std::move(held);
   return ended;

@@ -50,6 +50,9 @@ std::string first_link_level(const scene::Scene& scene, const std::string& field
 /// Returns the field of the first visible isosurface; empty if there is none.
 std::string visible_surface_field(const scene::Scene& scene);
 
+/// Returns the edits that give the widget another pose.
+TextEdits make_pose_edits(const scene::Widget& widget, const widget::Pose& pose);
+
 /// Converts the final position of a widget, when the user releases it, into edits of the scene's text: one undo step. Frame thread.
 class WidgetEdits {
  public:

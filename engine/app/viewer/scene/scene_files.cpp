@@ -8,10 +8,10 @@
 
 #include "engine/app/cli/command.h"
 #include "engine/app/cli/io_conflicts.h"
-#include "engine/app/viewer/edit/item_templates.h"
 #include "engine/app/viewer/scene/file_browser.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
+#include "engine/scene/merge.h"
 #include "engine/scene/to_json.h"
 
 namespace catena::app {
@@ -63,7 +63,7 @@ void SceneFiles::adopt_scene(const LoadedScene& loaded) {
   context_.scene.bounds = loaded.bounds;
   camera_.adopt_scene(loaded);
   viewport_.reset();
-  context_.scene.set_validator([&haptic_session = context_.haptic_session](scene::Scene& scene) { return haptic_session.validate(scene); });
+  context_.scene.set_validator(SceneModel::make_validator(context_.haptic_session));
 }
 
 // ---- closing ----
@@ -163,7 +163,7 @@ void SceneFiles::open_dropped(const std::string& dropped) {
 void SceneFiles::on_choice(DroppedFileChoice choice) {
   const auto path = std::exchange(context_.state.dialogs.dropped_file, std::nullopt);
   if (!path) return;
-  if (choice == DroppedFileChoice::add) start_loading(*path, true);
+  if (choice == DroppedFileChoice::add) add(*path);
   if (choice == DroppedFileChoice::open) open(*path);
 }
 
@@ -217,11 +217,11 @@ void SceneFiles::add_to_scene(LoadedScene loaded, const std::string& path) {
   SceneModel& scene = context_.scene;
   ViewState& state = context_.state;
   const scene::Document& document = scene.document();
-  const auto added = make_merge_edits(document.text(), document.path(), loaded.model.document().text(), loaded.model.document().path());
+  const auto added = scene::merge_scene(document.text(), document.path(), loaded.model.document().text(), loaded.model.document().path());
   if (!added) return state.show_message(added.error().message, true);
   if (const Outcome done = scene.apply(added->edits, "added " + name_of_file(path)); !done)
     return state.show_message(done.error().message, true);
-  for (const auto& [theirs, ours] : added->renames) {
+  for (const auto& [theirs, ours] : added->fields) {
     const scene::Entity from = scene::find_field(loaded.model.scene(), theirs), to = scene::find_field(scene.scene(), ours);
     if (!from || !to) continue;
     const auto& source = loaded.model.scene().entities.get<scene::FieldSource>(from);

@@ -34,6 +34,8 @@ class SceneFiles {
   // Commands.
   /// Opens a file in place of the scene, after resolving unsaved changes.
   void open(const std::string& path) { confirm_leave({path}); }
+  /// Adds what a file shows to the scene.
+  void add(const std::string& path) { start_loading(path, true); }
   /// Opens a dropped file or folder, or asks whether to add it to the scene.
   void open_dropped(const std::string& dropped);
   /// Saves to the scene's own file; without one, opens the Save As dialog.

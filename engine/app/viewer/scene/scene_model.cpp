@@ -123,6 +123,14 @@ Outcome SceneModel::edit_document(const std::function<Outcome(scene::Document&)>
   return Done{};
 }
 
+SceneModel::Validator SceneModel::make_validator(const HapticSession& hand) {
+  return [&hand](scene::Scene& edited) -> Outcome {
+    CATENA_CHECK(hand.validate(edited));
+    CATENA_CHECK(render::make_frame(edited, 16, 16));
+    return Done{};
+  };
+}
+
 Outcome SceneModel::set(std::string_view pointer, const std::string& value, const std::string& what, const std::string& drag) {
   return edit_document([&](scene::Document& document) { return document.set(pointer, value, what, drag); });
 }

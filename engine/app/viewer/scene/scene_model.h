@@ -18,6 +18,8 @@
 
 namespace catena::app {
 
+class HapticSession;
+
 /// Owns document and scene, and keeps them consistent.
 class SceneModel {
  public:
@@ -33,6 +35,8 @@ class SceneModel {
   /// scene refers to.
   using Validator = std::function<Outcome(scene::Scene&)>;
   void set_validator(Validator check) { validator_ = std::move(check); }
+  /// Returns the check that the haptic program can be built and the scene be drawn. `hand` must outlive the validator.
+  static Validator make_validator(const HapticSession& hand);
 
   /// Applies an edit; an Error leaves everything unchanged. `what`: undo label, `drag`: undo group, as in Document::set.
   Outcome set(std::string_view pointer, const std::string& value, const std::string& what, const std::string& drag = {});
