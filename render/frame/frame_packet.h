@@ -279,7 +279,9 @@ struct SpheresItem {
 struct FramePacket {
   View view;                 ///< camera
   std::vector<View> eyes{};  ///< views rendered one by one, each at the packet's size, then packed into one image; empty: only `view`
-  Packing packing = Packing::single;            ///< packing of the images of `eyes` into one
+  Packing packing = Packing::single;  ///< packing of the images of `eyes`, or of this packet and `planes`, into one
+  /// Packets of the same size, shown beside this one with Packing::grid: views of planes through the data. Without eyes.
+  std::vector<std::shared_ptr<const FramePacket>> planes{};
   std::uint32_t width = 1024, height = 768;     ///< size of each view, pixels
   std::array<float, 4> background{0, 0, 0, 1};  ///< alpha 0: transparent
   std::vector<VolumeItem> volumes;              ///< rendered by ray casting
@@ -302,6 +304,18 @@ struct FramePacket {
   std::optional<bool> jitter;       ///< jitter of the ray starts; overrides RenderSettings::jitter; nullopt: the settings apply
   std::vector<ObjectName> objects;  ///< objects by id
   std::string omitted;              ///< message about curves and points that are not rendered; empty: all are
+
+  /// Number of views in the image; 0: only `view`.
+  std::size_t view_count() const { return planes.empty() ? eyes.size() : planes.size() + 1; }
+  /// Returns the packet of the first view alone.
+  FramePacket first_view() const {
+    FramePacket one = *this;
+    if (!eyes.empty()) one.view = eyes.front();
+    one.eyes.clear();
+    one.planes.clear();
+    one.packing = Packing::single;
+    return one;
+  }
 
   /// Appends an object and returns its id (1 for the first one). `item` is the path in the scene.
   std::uint32_t add_object(std::string kind, std::string name, std::string item = {}) {

@@ -8,6 +8,7 @@
 ///   top_bottom_half    n pixels of a column averaged to one          W x n (H / n)
 ///   anaglyph           two views; red from the first eye, cyan from the second, by Dubois' matrices for LCD screens, in linear light
 ///   anaglyph_gray      the same of the luminance
+///   grid               four views: the second, the first, the third, the fourth, in two rows              2 W x 2 H
 ///   rows, columns, checkerboard   pixel (x, y) is taken from view y, x or x + y, modulo n
 #pragma once
 #include <algorithm>
@@ -28,6 +29,7 @@ enum class Packing {
   side_by_side_half,
   top_bottom,
   top_bottom_half,
+  grid,
   anaglyph,
   anaglyph_gray,
   rows,
@@ -55,6 +57,10 @@ inline PackedSize packed_size(Packing packing, std::size_t views, std::uint32_t 
     case Packing::top_bottom:
       size.height *= views;
       break;
+    case Packing::grid:
+      size.width *= 2;
+      size.height *= 2;
+      break;
     case Packing::top_bottom_half:
       size.height = views * (height / views);
       break;
@@ -69,11 +75,12 @@ inline PackedSize view_size(Packing packing, std::size_t views, std::uint32_t wi
   PackedSize size{width, height};
   if (packing == Packing::side_by_side) size.width = std::max<std::uint64_t>(1, width / views);
   if (packing == Packing::top_bottom) size.height = std::max<std::uint64_t>(1, height / views);
+  if (packing == Packing::grid) size = {std::max(1u, width / 2), std::max(1u, height / 2)};
   return size;
 }
 
 /// Returns whether each view has its own part of the packed image.
-inline bool has_separate_views(Packing packing) { return packing >= Packing::side_by_side && packing <= Packing::top_bottom_half; }
+inline bool has_separate_views(Packing packing) { return packing >= Packing::side_by_side && packing <= Packing::grid; }
 
 /// Returns whether the packed image must be displayed without scaling, pixel by pixel.
 inline bool is_interlaced(Packing packing) {

@@ -93,6 +93,7 @@ struct Frame {
   std::vector<Layer> layers{};
   std::uint64_t layers_version = 0;          ///< see RayScene::layers_version
   std::size_t eye_index = 0, eye_count = 1;  ///< index and number of the packet's eyes: data reused from image to image is stored per eye
+  bool is_first = true, is_last = true;      ///< first, last of the packets of one image; grids and passes stay until the last
 
   /// Triangles of the cursors shown through occluders (x-ray overlay): the first indices of these. Set by the cursor pass in prepare().
   Triangles* occluded_triangles = nullptr;

@@ -36,7 +36,9 @@ Outcome check(const FramePacket& packet, const RenderSettings& settings, const v
 
 }  // namespace
 
-Renderer::Renderer() : impl_(std::make_unique<Impl>()) { impl_->passes.resize(std::size(kPasses)); }
+Renderer::Renderer() : impl_(std::make_unique<Impl>()) {
+  impl_->passes.resize(std::size(kPasses)), impl_->needed_passes.resize(std::size(kPasses));
+}
 Renderer::~Renderer() = default;
 
 Result<std::unique_ptr<Renderer>> Renderer::create(const vk::DeviceOptions& options) {
@@ -49,7 +51,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const vk::DeviceOptions& opti
 std::vector<Pass*> Renderer::Impl::active_passes(std::vector<std::string>* names) const {
   std::vector<Pass*> list;
   for (std::size_t i = 0; i < passes.size(); ++i) {
-    if (!passes[i]) continue;
+    if (!passes[i] || !needed_passes[i]) continue;
     list.push_back(passes[i].get());
     if (names) names->push_back(kPasses[i]->name);
   }
@@ -97,11 +99,16 @@ std::uint64_t Renderer::Impl::reserved_bytes(const Frame& frame) const {
 /// Creates the passes that the packet needs, destroys the others, uploads their data, and fixes the rays and the targets.
 Outcome Renderer::Impl::prepare(Frame& frame) {
   targets.output_format = frame.settings.float_image ? kFloatOutputFormat : kOutputFormat;
-  residency->begin_frame(reserved_bytes(frame), budget_sharers);
+  if (frame.is_first) residency->begin_frame(reserved_bytes(frame), budget_sharers);
+  if (frame.is_first) wanted_passes.assign(passes.size(), false);
   for (std::size_t i = 0; i < passes.size(); ++i) {
-    if (!kPasses[i]->is_needed(frame)) {
-      if (passes[i]) retired_build_ms += passes[i]->build_ms();
-      passes[i].reset();
+    needed_passes[i] = kPasses[i]->is_needed(frame);
+    wanted_passes[i] = wanted_passes[i] || needed_passes[i];
+    if (!needed_passes[i]) {
+      if (passes[i] && frame.is_last && !wanted_passes[i]) {
+        retired_build_ms += passes[i]->build_ms();
+        passes[i].reset();
+      }
       continue;
     }
     if (!passes[i]) {
@@ -109,7 +116,7 @@ Outcome Renderer::Impl::prepare(Frame& frame) {
     }
     CATENA_CHECK(passes[i]->prepare(frame));
   }
-  residency->drop_unused();
+  if (frame.is_last) residency->drop_unused();
   Bounds bounds, of_rays, of_surfaces;
   TargetSet needed = target::output;
   for (Pass* pass : active_passes()) {
@@ -152,8 +159,11 @@ Outcome Renderer::Impl::record(vk::Commands& commands, Frame& frame, const std::
 }
 
 /// Draws one view into targets.output.
-Outcome Renderer::Impl::draw(const FramePacket& packet, const RenderSettings& settings, std::size_t eye, std::size_t eyes) {
+Outcome Renderer::Impl::draw(const FramePacket& packet, const RenderSettings& settings, std::size_t eye, std::size_t eyes, bool is_first,
+                             bool is_last) {
   Frame frame{*device, *residency, targets, packet, settings, {}};
+  frame.is_first = is_first;
+  frame.is_last = is_last;
   frame.eye_index = eye;
   frame.eye_count = eyes;
   CATENA_CHECK(prepare(frame));
@@ -205,6 +215,21 @@ Outcome Renderer::Impl::draw_eyes(const FramePacket& packet, const RenderSetting
   return commands.finish();
 }
 
+/// Draws the planes, then the packet itself, so that its depth and ids remain.
+Outcome Renderer::Impl::draw_planes(const FramePacket& packet, const RenderSettings& settings) {
+  if (!stereo_composer) stereo_composer.emplace(*device);
+  const std::size_t count = packet.planes.size();
+  CATENA_CHECK(stereo_composer->begin(packet.packing, count + 1, packet.width, packet.height));
+  eye_volumes.clear();
+  for (std::size_t k = count + 1; k-- > 0;) {
+    CATENA_CHECK(draw(k == 0 ? packet : *packet.planes[k - 1], settings, 0, 1, k == count, k == 0));
+    stereo_composer->store_view(k, targets.output);
+  }
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device));
+  CATENA_CHECK(stereo_composer->record(commands));
+  return commands.finish();
+}
+
 Outcome Renderer::draw(const FramePacket& packet, const RenderSettings& settings) {
   impl_->drawn_targets = 0;
   CATENA_CHECK(check(packet, settings, impl_->device->info()));
@@ -219,8 +244,9 @@ Result<Image8> Renderer::sample_rays(const FramePacket& packet, const RenderSett
 
 Outcome Renderer::draw_once(const FramePacket& packet, const RenderSettings& settings) {
   Impl& p = *impl_;
-  p.is_composed = !packet.eyes.empty();
+  p.is_composed = !packet.eyes.empty() || !packet.planes.empty();
   if (!p.is_composed) p.stereo_composer.reset(), p.eye_volumes.clear();
+  if (!packet.planes.empty()) return p.draw_planes(packet, settings);
   return p.is_composed ? p.draw_eyes(packet, settings) : p.draw(packet, settings);
 }
 

@@ -20,9 +20,10 @@ struct Renderer::Impl {
   std::vector<vk::Image>
       /// target::volume of the eyes that are not being rendered; the first eye's volume is in `targets` at the end of a frame.
       eye_volumes;
-  std::vector<std::unique_ptr<Pass>> passes;  ///< in the order of the list; null if the packet does not need it
-  double retired_build_ms = 0;                ///< build time of destroyed passes
-  TargetSet drawn_targets = 0;                ///< targets written by the last image
+  std::vector<std::unique_ptr<Pass>> passes;       ///< in the order of the list; null if the packet does not need it
+  std::vector<bool> needed_passes, wanted_passes;  ///< passes that the last view needs; that a view of the image so far needs
+  double retired_build_ms = 0;                     ///< build time of destroyed passes
+  TargetSet drawn_targets = 0;                     ///< targets written by the last image
   std::optional<StereoComposer> stereo_composer;
   std::optional<WindowPainter> window_painter;
   bool is_composed = false;                       ///< the last image is composed of several views
@@ -52,13 +53,16 @@ struct Renderer::Impl {
   /// Records the passes; adjacent passes with equal targets share one rendering scope.
   Outcome record(vk::Commands& commands, Frame& frame, const std::vector<Pass*>& list);
   /// Renders one view into targets.output.
-  Outcome draw(const FramePacket& packet, const RenderSettings& settings, std::size_t eye = 0, std::size_t eyes = 1);
+  Outcome draw(const FramePacket& packet, const RenderSettings& settings, std::size_t eye = 0, std::size_t eyes = 1, bool is_first = true,
+               bool is_last = true);
   /// Renders the half-opacity depth of the frame, if requested.
   Outcome draw_ray_depth(Frame& frame);
   /// Returns the number of texels set in a mask image.
   Result<std::uint64_t> count_marks(vk::Image& marks);
   /// Renders all eyes, the first one last, and composes them.
   Outcome draw_eyes(const FramePacket& packet, const RenderSettings& settings);
+  /// Renders the packet and its planes, and composes them.
+  Outcome draw_planes(const FramePacket& packet, const RenderSettings& settings);
   /// Paints the window image; if memory is short, frees the resident grids and tries a second time.
   Outcome paint(std::uint32_t width, std::uint32_t height, const UiItems& items);
 };

@@ -11,15 +11,6 @@ namespace {
 
 constexpr double kReferenceProgress = 0.25;  // progress when the reference is rendered
 
-/// Returns the packet as a single view, from its first eye.
-FramePacket first_eye(const FramePacket& packet) {
-  FramePacket one = packet;
-  one.view = packet.eyes.front();
-  one.eyes.clear();
-  one.packing = Packing::single;
-  return one;
-}
-
 }  // namespace
 
 std::size_t best_within(const std::vector<SettingsTrial>& tried, double ms) {
@@ -36,9 +27,9 @@ std::size_t best_within(const std::vector<SettingsTrial>& tried, double ms) {
 
 Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal, const SearchProgress& progress,
                                      const RenderTimeFn& timer) {
-  if (!packet.eyes.empty()) {
-    const double share = goal.kind == QualityGoal::Kind::time ? double(packet.eyes.size()) : 1;
-    return choose_quality(renderer, first_eye(packet), {goal.kind, goal.value / share, goal.single_image}, progress, timer);
+  if (packet.view_count() > 0) {
+    const double share = goal.kind == QualityGoal::Kind::time ? double(packet.view_count()) : 1;
+    return choose_quality(renderer, packet.first_view(), {goal.kind, goal.value / share, goal.single_image}, progress, timer);
   }
   if (!uses_raycast(packet)) return QualityChoice{balanced_settings(), 0, 0, true, 0};
   const bool has_error = goal.kind == QualityGoal::Kind::error, once = has_error && goal.single_image;
@@ -56,7 +47,7 @@ Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& pack
 }
 
 Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {
-  if (!packet.eyes.empty()) return estimate_rmse(renderer, first_eye(packet), settings);
+  if (packet.view_count() > 0) return estimate_rmse(renderer, packet.first_view(), settings);
   if (!uses_raycast(packet)) return 0.0;
   ErrorEstimator estimator(renderer, packet);
   // for coarse settings a reference with a longer step suffices
@@ -66,14 +57,14 @@ Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, cons
 }
 
 Result<double> half_step_difference(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {
-  if (!packet.eyes.empty()) return half_step_difference(renderer, first_eye(packet), settings);
+  if (packet.view_count() > 0) return half_step_difference(renderer, packet.first_view(), settings);
   if (!uses_raycast(packet)) return 0.0;
   return ErrorEstimator(renderer, packet).half_step_difference(settings);
 }
 
 Result<MeasuredSettings> measure_rmse(Renderer& renderer, const FramePacket& packet, const std::vector<RenderSettings>& settings,
                                       const std::function<bool(double last)>& should_continue) {
-  if (!packet.eyes.empty()) return measure_rmse(renderer, first_eye(packet), settings, should_continue);
+  if (packet.view_count() > 0) return measure_rmse(renderer, packet.first_view(), settings, should_continue);
   MeasuredSettings all;
   ErrorEstimator estimator(renderer, packet);
   CATENA_CHECK(estimator.begin(kMinReportedRmse));

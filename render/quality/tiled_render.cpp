@@ -127,7 +127,7 @@ Result<RenderTimes> draw_packed(Renderer& renderer, const FramePacket& packet, c
   CATENA_CHECK(draw_timed(renderer, packet, settings, times));
   if (!on_band) return times;
   CATENA_TRY(Samples samples, read(renderer, requested, settings.float_image, false));
-  const PackedSize size = packed_size(packet.packing, packet.eyes.size(), packet.width, packet.height);
+  const PackedSize size = packed_size(packet.packing, packet.view_count(), packet.width, packet.height);
   Band band{
       std::uint32_t(size.width), 0, std::uint32_t(size.height), std::move(samples.bytes.rgba), std::move(samples.floats.rgba), {}, {}};
   CATENA_CHECK(on_band({band.width, 0, 0, {}, {}, {}, {}}));
@@ -139,17 +139,13 @@ Result<RenderTimes> draw_packed(Renderer& renderer, const FramePacket& packet, c
 
 Result<RenderTimes> render_tiled(Renderer& renderer, const FramePacket& whole, const RenderSettings& base_settings, const TilePlan& plan,
                                  const BandChannels& requested, const std::function<Outcome(const Band&)>& on_band) {
-  if (!whole.eyes.empty() && whole.packing != Packing::single) {
+  if (whole.view_count() > 0 && whole.packing != Packing::single) {
     CATENA_ASSERT(plan.count() == 1 && plan.antialias == 1);
     return draw_packed(renderer, whole, base_settings, requested, on_band);
   }
   // a single eye is rendered as an ordinary view
   std::optional<FramePacket> one;
-  if (!whole.eyes.empty()) {
-    one = whole;
-    one->view = whole.eyes.front();
-    one->eyes.clear();
-  }
+  if (!whole.eyes.empty()) one = whole.first_view();
   const FramePacket& packet = one ? *one : whole;
   CATENA_ASSERT(packet.width == plan.width && packet.height == plan.height);
   const std::uint32_t n = plan.antialias;

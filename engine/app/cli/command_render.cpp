@@ -66,6 +66,12 @@ void add_render(CLI::App& program, CommandAction& chosen) {
   command->add_option("--view", options->view, "view along an axis, or iso, that fits the whole scene (default: the scene's camera)")
       ->type_name("VIEW");
   command->add_flag("--fit", options->fit, "fits the whole scene into the image, without turning the camera");
+  CLI::Option* layout =
+      command->add_option("--layout", options->layout, "ortho: axial, coronal and sagittal planes beside the 3D view")->type_name("LAYOUT");
+  command->add_option("--focus", options->focus, "point that the planes of --layout ortho share (default: the middle of the field)")
+      ->type_name("X Y Z")
+      ->expected(3)
+      ->needs(layout);
   command->add_option("--camera", options->camera, "camera key frames: t,px,py,pz,tx,ty,tz[,ux,uy,uz][,fovy]")->type_name("CAMERA.csv");
   command
       ->add_option("--head", options->head_path,

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "engine/app/render/frames.h"
 
+#include <cmath>
 #include <csignal>
 
 #include "engine/app/cli/command.h"
 #include "engine/base/clock.h"
+#include "engine/base/numbers.h"
 #include "engine/io/field_cache.h"
 #include "engine/scene/time_steps.h"
 #include "render/extract/extract_internal.h"
+#include "render/extract/plane_views.h"
 
 namespace catena::app {
 
@@ -25,7 +28,22 @@ Result<render::FramePacket> Frames::packet(int frame) {
   const render::View view = motion_.view_at(*base_view_, base_bounds_, static_cast<double>(size_.width) / size_.height, frame);
   render::set_view(scene_, view, packet);
   CATENA_CHECK(render::check_screen_view(packet, scene_.stereo));
+  if (!options_.layout.empty()) CATENA_CHECK(add_planes(packet));
   return packet;
+}
+
+Outcome Frames::add_planes(render::FramePacket& packet) {
+  std::optional<Vec3> focus;
+  if (!options_.focus.empty()) {
+    focus.emplace(0.0);
+    for (int i = 0; i < 3; ++i) {
+      const auto number = parse_double(options_.focus[static_cast<std::size_t>(i)]);
+      if (!number || !std::isfinite(*number)) return Error{"--focus: three finite numbers X Y Z were expected"};
+      (*focus)[i] = *number;
+    }
+  }
+  CATENA_TRY(const render::OrthoPlanes planes, render::find_ortho_planes(scene_));
+  return render::add_plane_views(scene_, planes, focus, {}, packet);
 }
 
 Result<double> Frames::draw(int frame, Outputs* outputs) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/app/cli/command.h"
 #include "engine/app/cli/options.h"
 #include "engine/app/haptics/probe_playback.h"
 #include "engine/app/haptics/signal_handlers.h"
@@ -45,6 +46,9 @@ class Frames {
   double first_ms = 0;               ///< Time from process start to the first pixels on the host, ms.
 
  private:
+  /// Adds the planes of --layout ortho.
+  Outcome add_planes(render::FramePacket& packet);
+
   scene::Scene& scene_;
   const RenderOptions& options_;
   const CameraMotion& motion_;

@@ -30,6 +30,12 @@ T machine(Result<T> result) {
 
 /// Size of the finished image. Stereo views in one image are rendered without tiles.
 Result<ImageSize> picture_size(const RenderOptions& o, const scene::Stereo& stereo, const ImageSize& size) {
+  if (!o.layout.empty()) {
+    if (render::stereo_view_count(stereo) > 1) return Error{"--layout ortho: orthogonal views are not shown in stereo"};
+    if (!o.depth.empty() || !o.ids.empty() || o.antialias > 1 || o.tile > 0)
+      return Error{"--layout ortho: excludes --depth, --ids, --antialias and --tile, which are for a single view"};
+    return ImageSize{2 * size.width, 2 * size.height};
+  }
   if (render::stereo_view_count(stereo) < 2) return size;
   const std::string mode = "with " + std::to_string(render::stereo_view_count(stereo)) + " views in one image";
   if (!o.depth.empty() || !o.ids.empty())
@@ -110,13 +116,17 @@ Outcome RenderRun::resolve() {
   if (!steps_.empty() && o_.frames == 0) o_.frames = static_cast<int>(steps_.size());
   CATENA_CHECK(check_frames(o_, steps_));
   CATENA_TRY(size_, parse_image_size(o_.size, kMaxTiledPixels));
+  if (!o_.layout.empty()) {
+    if (o_.layout != "ortho") return Error{"--layout " + in_quotes(o_.layout) + ": ortho was expected"};
+    size_ = {std::max(1u, size_.width / 2), std::max(1u, size_.height / 2)};
+  }
   if (!std::isfinite(o_.animation_phase)) return Error{"--animation-phase: expected a finite number"};
   if (o_.play_probe && o_.probe.empty()) return Error{"--play: there is no probe path; --probe PATH.csv was expected"};
   if (o_.play_probe) {
     CATENA_TRY(path_, read_probe_samples(o_.probe));
   }
   CATENA_TRY(motion_, CameraMotion::make(o_, o_.play_probe ? path_.back().t_s - path_.front().t_s : 0));
-  CATENA_TRY(const scene::NamedColors colors, o_.colors.to_named_colors());
+  CATENA_TRY(const scene::FileColors colors, o_.colors.to_file_colors());
   const std::int64_t load_start = now_ns();
   const int first_step = steps_.empty() ? o_.step : steps_.front();
   CATENA_TRY(scene_, open_scene(o_.source, o_.fields, colors, o_.grid, first_step));
@@ -171,7 +181,7 @@ Outcome RenderRun::prepare() {
   frames_->settings = quality_.settings;
   frames_->channels = required_band_channels(o_);
   const auto antialias = static_cast<std::uint32_t>(o_.antialias), tile = static_cast<std::uint32_t>(o_.tile);
-  frames_->plan = render::stereo_view_count(scene_->stereo) > 1
+  frames_->plan = render::stereo_view_count(scene_->stereo) > 1 || !o_.layout.empty()
                       ? render::TilePlan{size_.width, size_.height, 1, size_.width, size_.height, 0}
                       : render::plan_tiles(size_.width, size_.height, antialias, tile, quality_.goal || quality_.settings.fast,
                                            frames_->renderer->max_image_side());

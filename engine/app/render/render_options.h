@@ -39,6 +39,8 @@ struct RenderOptions {
   double gpu_memory_mb = 0;  ///< Limit of GPU memory, MB; 0: what the driver reports
   StereoOptions stereo;
   // Contents.
+  std::string layout;              ///< "ortho": orthogonal views beside the 3D view; empty: the 3D view
+  std::vector<std::string> focus;  ///< Common point of the orthogonal views, three numbers; empty: the middle of the field
   AnnotationOptions annotate;
   ColorOptions colors;
   bool validation = false;

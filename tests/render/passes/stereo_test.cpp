@@ -220,6 +220,10 @@ Rgba expected(Packing packing, const std::vector<Image8>& e, std::size_t x, std:
       return at(e[y / h], x, y % h);
     case Packing::top_bottom_half:
       return mean(e[y / (h / n)], x, n * (y % (h / n)), 1, n);
+    case Packing::grid: {
+      constexpr std::size_t kViews[] = {1, 0, 2, 3};
+      return at(e[kViews[x / w + 2 * (y / h)]], x % w, y % h);
+    }
     case Packing::anaglyph:
       return anaglyph(at(e[0], x, y), at(e[1], x, y), kDuboisLeft, kDuboisRight);
     case Packing::anaglyph_gray:

@@ -27,9 +27,7 @@ constexpr double kAsQuick = 1.1;              // factor on a time: a setting wit
 
 /// A small copy of the packet with the view of one eye.
 render::FramePacket small(render::FramePacket packet) {
-  if (!packet.eyes.empty()) packet.view = packet.eyes.front();
-  packet.eyes.clear();
-  packet.packing = render::Packing::single;
+  packet = packet.first_view();
   packet.background[3] = 0;
   const double scale = std::min(1.0, double(kFloorWidth) / packet.width);
   packet.width = std::max(16u, static_cast<std::uint32_t>(packet.width * scale));

@@ -143,9 +143,7 @@ TimedRun make_interleaved_render_run(render::Renderer& renderer, const render::F
 Outcome add_rendering(Workload& subject) {
   const Effort& effort = subject.effort;
   CATENA_TRY(render::FramePacket packet, render::make_frame(subject.scene, effort.width, effort.height));
-  if (!packet.eyes.empty()) packet.view = packet.eyes.front();
-  packet.eyes.clear();
-  packet.packing = render::Packing::single;
+  packet = packet.first_view();
   packet.overlay = {};
   packet.cursors.clear();
   packet.background[3] = 0;

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+#include "render/extract/plane_views.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/io/volume/units.h"
+#include "engine/scene/labels.h"
+#include "engine/scene/units.h"
+#include "render/extract/extract_internal.h"
+#include "render/extract/widget_shapes.h"
+
+namespace catena::render {
+
+namespace {
+
+constexpr double kMargin = 1.06, kOverlayOpacity = 0.5;
+constexpr Color kPlaneColors[] = {{1.0f, 0.5f, 0.45f}, {0.35f, 0.8f, 0.3f}, {0.95f, 0.85f, 0.25f}};  // of the planes' lines in the others
+constexpr double kLetterPt = 16, kNamePt = 12;
+
+/// Scalar fields that the scene shows, in the order of preference for the base.
+std::vector<scene::Entity> shown_fields(const scene::Scene& scene) {
+  std::vector<scene::Entity> fields;
+  const auto add = [&](scene::Entity field) {
+    const scene::FieldSource& source = scene.entities.get<scene::FieldSource>(field);
+    if (source.label) field = scene::find_field(scene, source.label->label_map);
+    if (field && std::ranges::find(fields, field) == fields.end()) fields.push_back(field);
+  };
+  for (const scene::Entity e : scene::visible_entities<scene::Slice>(scene.entities))
+    add(scene.entities.get<scene::Slice>(e).color_by.field);
+  for (const scene::Entity e : scene::visible_entities<scene::Volume>(scene.entities)) add(scene.entities.get<scene::Volume>(e).field);
+  for (const scene::Entity e : scene::visible_entities<scene::Isosurface>(scene.entities))
+    add(scene.entities.get<scene::Isosurface>(e).field);
+  return fields;
+}
+
+/// Assigns each world axis the grid axis that is nearest to it; every grid axis is used once.
+std::array<Vec3, 3> axes_near_world(const Mat3& linear) {
+  std::array<Vec3, 3> axes;
+  std::array<bool, 3> used{};
+  for (int world = 2; world >= 0; --world) {  // the vertical axis first
+    int best = -1;
+    double most = -1;
+    for (int column = 0; column < 3; ++column) {
+      const double along = std::fabs(direction(linear[column])[world]);
+      if (!used[static_cast<std::size_t>(column)] && along > most) best = column, most = along;
+    }
+    used[static_cast<std::size_t>(best)] = true;
+    const Vec3 axis = direction(linear[best]);
+    axes[static_cast<std::size_t>(world)] = axis[world] < 0 ? -1.0 * axis : axis;
+  }
+  return axes;
+}
+
+/// The frame whose image has these axes; sheared grids are made orthogonal.
+PlaneFrame make_plane_frame(const Vec3& right, const Vec3& up, std::string name, std::array<std::string, 4> letters) {
+  PlaneFrame frame;
+  frame.back = direction(cross(right, up));
+  frame.right = direction(right);
+  frame.up = cross(frame.back, frame.right);
+  frame.name = std::move(name);
+  frame.letters = std::move(letters);
+  return frame;
+}
+
+std::array<PlaneFrame, 3> make_plane_frames(const Mat3& linear, bool is_patient_space) {
+  const auto [x, y, z] = axes_near_world(linear);
+  if (!is_patient_space)
+    return {make_plane_frame(x, y, "x y", {"", "x", "y", ""}), make_plane_frame(x, z, "x z", {"", "x", "z", ""}),
+            make_plane_frame(y, z, "y z", {"", "y", "z", ""})};
+  return {make_plane_frame(-1.0 * x, y, "axial", {"R", "L", "A", "P"}), make_plane_frame(-1.0 * x, z, "coronal", {"R", "L", "S", "I"}),
+          make_plane_frame(-1.0 * y, z, "sagittal", {"A", "P", "S", "I"})};
+}
+
+/// Slice of the scene that shows the field; nullptr: none.
+const scene::Slice* slice_of(const scene::Scene& scene, scene::Entity field) {
+  for (const scene::Entity e : scene::visible_entities<scene::Slice>(scene.entities))
+    if (scene.entities.get<scene::Slice>(e).color_by.field == field) return &scene.entities.get<scene::Slice>(e);
+  return nullptr;
+}
+
+/// The field in the plane: with the colors of its slice in the scene, else of its labels, else gray over the window.
+SliceItem make_plane_slice(const scene::Scene& scene, scene::Entity field, bool is_base,
+                           const std::optional<std::array<double, 2>>& window) {
+  const field::AnyField& any = scene::rendered_field(scene, field);
+  SliceItem item;
+  item.grid = {any.scalar, any.scalar->grid()};
+  const bool labels = scene::find_label_map(scene, field) != nullptr;
+  const DisplayRange& range = field::display_range(*item.grid);
+  const scene::Slice* own = slice_of(scene, field);
+  scene::ColorBy colors = own != nullptr ? own->color_by : scene::ColorBy{};
+  if (own == nullptr && !labels) colors.named.map = "grey";
+  if (is_base && window) colors.named.range = *window;
+  for (const auto& row : scene::make_display_color_table(scene, field, colors.colors, colors.named, range.lo, range.hi))
+    item.colors.push_back({row.value, row.color.r, row.color.g, row.color.b});
+  if (labels) item.hidden_label = 0;
+  item.opacity = is_base ? 1.0f : own != nullptr ? static_cast<float>(own->opacity) : static_cast<float>(kOverlayOpacity);
+  item.is_clipped = false;
+  item.stack_order = is_base ? 0 : 1;
+  return item;
+}
+
+/// Height of the image that shows the whole box in every plane, so that all planes have one scale.
+double common_height(const OrthoPlanes& planes, double aspect) {
+  double height = 0;
+  for (const PlaneFrame& frame : planes.frames) {
+    double half_width = 0, half_height = 0;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 arm = planes.bounds.corner(i) - planes.bounds.center();
+      half_width = std::max(half_width, std::fabs(dot(arm, frame.right)));
+      half_height = std::max(half_height, std::fabs(dot(arm, frame.up)));
+    }
+    height = std::max({height, 2 * half_height, 2 * half_width / aspect});
+  }
+  return kMargin * height;
+}
+
+/// Lines of the two other planes, and of the texts.
+void add_marks(const OrthoPlanes& planes, std::size_t plane, const Vec3& focus, const std::string& unit, FramePacket& packet) {
+  const PlaneFrame& frame = planes.frames[plane];
+  WidgetShapes shapes(packet);
+  shapes.begin_object(0, 0);
+  const double reach = packet.view.height * std::max(1.0, double(packet.width) / packet.height);
+  for (std::size_t other = 0; other < 3; ++other) {
+    if (other == plane) continue;
+    const Vec3 along = direction(cross(frame.back, planes.frames[other].back));
+    shapes.tube({focus - reach * along, focus + reach * along}, 0.7, kPlaneColors[other]);
+  }
+  const std::pair<Anchor, Vec2> edges[] = {
+      {Anchor::left, {6, 0}}, {Anchor::right, {-6, 0}}, {Anchor::top, {0, 4}}, {Anchor::bottom, {0, -4}}};
+  for (std::size_t k = 0; k < 4; ++k)
+    packet.overlay.texts.push_back({frame.letters[k], edges[k].first, edges[k].second, kLetterPt, true, {}});
+  // along the axis of the world that is nearest to the normal
+  int axis = 0;
+  for (int i = 1; i < 3; ++i)
+    if (std::fabs(frame.back[i]) > std::fabs(frame.back[axis])) axis = i;
+  const double position = (frame.back[axis] < 0 ? -1 : 1) * dot(focus, frame.back);
+  packet.overlay.texts.push_back({fmt::format("{} {:.4g}{}{}", frame.name, position, unit.empty() ? "" : " ", unit),
+                                  Anchor::top_left,
+                                  {8, 6},
+                                  kNamePt,
+                                  false,
+                                  kPlaneColors[plane]});
+}
+
+}  // namespace
+
+Result<OrthoPlanes> find_ortho_planes(scene::Scene& scene) {
+  OrthoPlanes planes;
+  std::vector<scene::Entity> fields;
+  for (const scene::Entity field : shown_fields(scene)) {
+    const json::Node where = scene.entities.get<scene::FieldSource>(field).where;
+    CATENA_TRY(const field::AnyField any, scene::resolve_rendered_field(scene, field, where));
+    if (any.scalar) fields.push_back(field);
+  }
+  if (fields.empty()) return Error{"orthogonal views show a scalar field in three planes, but the scene shows none"};
+  const auto is_map = [&](scene::Entity field) { return scene::find_label_map(scene, field) != nullptr; };
+  const auto first = std::ranges::find_if_not(fields, is_map);
+  planes.base = first != fields.end() ? *first : fields.front();
+  for (const scene::Entity field : fields)
+    if (field != planes.base && (is_map(field) || slice_of(scene, field) != nullptr)) planes.overlays.push_back(field);
+  const field::Field& field = *scene::rendered_field(scene, planes.base).get();
+  planes.bounds = field.world_bounds();
+  const auto& file = scene.entities.get<scene::FieldSource>(planes.base).file;
+  const bool is_patient_space = file && field::read_units(file->path, file->grid).is_patient_space;
+  planes.frames = make_plane_frames(field.mapping().world_from_index_linear, is_patient_space);
+  return planes;
+}
+
+Outcome add_plane_views(const scene::Scene& scene, const OrthoPlanes& planes, const std::optional<Vec3>& focus,
+                        const std::optional<std::array<double, 2>>& window, FramePacket& packet) {
+  if (!packet.eyes.empty()) return Error{"orthogonal views are not shown in stereo; --stereo mono was expected"};
+  const Vec3 center = planes.bounds.center(), at = focus.value_or(center);
+  const double height = common_height(planes, double(packet.width) / packet.height);
+  packet.planes.clear();
+  for (std::size_t k = 0; k < planes.frames.size(); ++k) {
+    const PlaneFrame& frame = planes.frames[k];
+    auto plane = std::make_shared<FramePacket>();
+    plane->width = packet.width;
+    plane->height = packet.height;
+    plane->background = packet.background;
+    plane->objects = packet.objects;
+    plane->cursors = packet.cursors;
+    plane->view.target = center + dot(at - center, frame.back) * frame.back;
+    plane->view.position = plane->view.target + 2 * planes.bounds.diagonal() * frame.back;
+    plane->view.up = frame.up;
+    plane->view.orthographic = true;
+    plane->view.height = height;
+    plane->slices.push_back(make_plane_slice(scene, planes.base, true, window));
+    for (const scene::Entity field : planes.overlays) plane->slices.push_back(make_plane_slice(scene, field, false, {}));
+    for (SliceItem& slice : plane->slices) slice.point = at, slice.normal = frame.back;
+    plane->overlay.font = packet.overlay.font;
+    plane->overlay.scale = packet.overlay.scale;
+    add_marks(planes, k, at, scene::length_unit(scene), *plane);
+    packet.planes.push_back(std::move(plane));
+  }
+  packet.packing = Packing::grid;
+  return Done{};
+}
+
+}  // namespace catena::render
