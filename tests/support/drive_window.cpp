@@ -18,8 +18,8 @@ written() { until_ test -s "$1" || echo "never written $1"; }
 gone() { until_ test ! -e "$1" || echo "never gone $1"; }
 says() { until_ grep -q -- "$1" log || echo "never says $1"; }
 keys() { for k in "$@"; do xdotool key $k; sleep 0.25; done; }
-view() { "$CATENA" view "$@" & V=$!; until_ xdotool search --pid $V --name '^catena  ' || echo "never a window";
-  W=$(xdotool search --pid $V --name '^catena  ' | head -1); xdotool mousemove 600 300; sleep 0.3; }
+view() { "$CATENA" view "$@" & V=$!; until_ xdotool search --pid $V --name ' - Catena' || echo "never a window";
+  W=$(xdotool search --pid $V --name ' - Catena' | head -1); xdotool mousemove 600 300; sleep 0.3; }
 )";
 
 }  // namespace

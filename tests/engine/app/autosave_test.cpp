@@ -145,7 +145,7 @@ class ViewerAutosave : public test::DrivenWindow {
 // An edit without panels: changes the view, saves the scene under another name, and undoes the change.
 constexpr const char* kChange =
     "keys o ctrl+shift+s; sleep 0.3; xdotool type --delay 60 'copy'; keys Return; written copy.json\n"
-    "keys ctrl+z; titled 'copy.json [^ ]'\n";
+    "keys ctrl+z; titled 'copy.json [^ -]'\n";
 
 TEST_F(ViewerAutosave, IsOfferedAfterTheProcessWasKilled) {
   expect_played("view flow.json --size 900x600\n" + std::string(kChange) +
@@ -156,8 +156,8 @@ TEST_F(ViewerAutosave, IsOfferedAfterTheProcessWasKilled) {
                     "view copy.json --size 900x600\nsleep 2; keys Escape ctrl+q; wait $V || echo 'bad end'\n"
                     "cmp copy.json saved.json || echo changed\nls copy.json.unsaved-* || echo 'lost'\n"
                     // Restore, then save.
-                    "view copy.json --size 900x600\nsleep 2; keys Return; titled 'copy.json [^ ]'\n"
-                    "keys ctrl+s; titled 'copy.json  '; keys ctrl+q; wait $V || echo 'bad end'\n"
+                    "view copy.json --size 900x600\nsleep 2; keys Return; titled 'copy.json [^ -]'\n"
+                    "keys ctrl+s; titled 'copy.json - '; keys ctrl+q; wait $V || echo 'bad end'\n"
                     "ls copy.json.unsaved-* 2> /dev/null && echo 'still there'\n"
                     // No draft is offered after the save.
                     "view copy.json --size 900x600\nsleep 2; keys ctrl+q; wait $V\nexit $?\n",
@@ -171,8 +171,8 @@ TEST_F(ViewerAutosave, IsKeptAfterAnInterruptAndRemovedWhenDiscarded) {
                     "until_ sh -c 'ls copy.json.unsaved-*' || echo 'never kept'\n"
                     "kill -TERM $V; wait $V\nls copy.json.unsaved-* || echo 'lost'\n"
                     // The draft is discarded with the second button, to the right of Restore.
-                    "view copy.json --size 900x600\nsleep 2; keys Return; titled 'copy.json [^ ]'\n"
-                    "keys ctrl+q; sleep 0.3; keys Escape ctrl+z; titled 'copy.json  '; keys ctrl+q; wait $V || echo 'bad end'\n"
+                    "view copy.json --size 900x600\nsleep 2; keys Return; titled 'copy.json [^ -]'\n"
+                    "keys ctrl+q; sleep 0.3; keys Escape ctrl+z; titled 'copy.json - '; keys ctrl+q; wait $V || echo 'bad end'\n"
                     "ls copy.json.unsaved-* 2> /dev/null && echo 'still there'\nexit 0\n",
                 {"never", "lost", "bad end", "still there"});
 }

@@ -24,7 +24,9 @@ std::optional<Action> asked(int key, bool control = false, bool shift = false, b
 TEST(Commands, EachKeystrokeHasOneAction) {
   using enum Action;
   using Strokes = std::vector<std::pair<int, Modifiers>>;
-  const std::pair<Action, Strokes> kActions[] = {{open, {{'O', kControl}, {'O', kBoth}}},
+  const std::pair<Action, Strokes> kActions[] = {{open, {{'O', kControl}}},
+                                                 {add, {{'O', kBoth}}},
+                                                 {toggle_ortho_views, {{'4', kPlain}}},
                                                  {toggle_projection, {{'O', kPlain}, {'O', kShift}}},
                                                  {save, {{'S', kControl}}},
                                                  {save_as, {{'S', kBoth}}},

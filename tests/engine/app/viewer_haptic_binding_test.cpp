@@ -22,7 +22,8 @@ TEST_F(ViewerHapticBinding, HPlacesTheProbeUnderThePointerAndTheWheelPushes) {
        "for i in 1 2 3 4; do xdotool click 4; sleep 0.1; done; titled ' [1-9][.][0-9]* N  isosurface OK'\n"
        // Over a panel, the pointer does not move the probe.
        "xdotool mousemove 100 450; sleep 0.3; for i in 1 2 3 4 5 6 7 8; do xdotool click 5; done; sleep 0.5\n"
-       "titled ' [1-9][.][0-9]* N  isosurface OK'; keys Escape ctrl+s ctrl+q");
+       "titled ' [1-9][.][0-9]* N  isosurface OK'; keys Escape; sleep 0.5; keys ctrl+s ctrl+q");
+  EXPECT_NE(log().find("force 0 N"), std::string::npos) << "nothing holds the mouse after probe mode\n" << log();
   const std::string saved = test::read_file(folder_ / "ball.json");
   EXPECT_NE(saved.find(R"("type": "isosurface", "field": "d", "level": 1, "free": "above")"), std::string::npos) << saved;
 }

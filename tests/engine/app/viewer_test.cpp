@@ -103,7 +103,7 @@ TEST_F(Viewer, AChangedShaderIsReloadedAndABrokenOneIsReported) {
   test::write_file(folder_ / "green.frag",
                    "#version 460\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(0.0, 1.0, 0.0, 1.0); }\n");
   test::write_file(folder_ / "broken.frag", "#version 460\nvoid main() { nonsense; }\n");
-  play("--shaders shaders --screenshot green.png", "^catena  ",
+  play("--shaders shaders --screenshot green.png", " - Catena",
        "sleep 0.3\ncp green.frag shaders/passes/compose.frag\nsays 'compose.frag: reloaded from the file'\n"
        "cp broken.frag shaders/passes/compose.frag\nsays 'compose.frag:2: '");
   EXPECT_TRUE(has(log(), "catena: shaders/passes/compose.frag:2: 'nonsense'"));
@@ -141,7 +141,7 @@ TEST_F(Viewer, DrawsForTheRequestedSeconds) {
 TEST_F(Viewer, DragsOrbitTheViewAndMoveTheProbe) {
   if (!test::can_drive_windows()) GTEST_SKIP() << "no Xvfb or no xdotool here";
   const auto drive = [&](const std::string& events, const std::string& png) {
-    play("--screenshot " + png, "^catena  ", events + "\nsleep 0.5");
+    play("--screenshot " + png, " - Catena", events + "\nsleep 0.5");
     return log();
   };
   const std::string still = drive("", "still.png");

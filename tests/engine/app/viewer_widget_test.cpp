@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A cutting plane moved by the mouse in a real window, through all modes and into the saved scene; and dropped files.
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <set>
@@ -65,6 +66,34 @@ TEST_F(ViewerWidget, TheMouseDrivesTheCuttingPlaneThroughAllModes) {
   std::set<std::string> modes;
   for (std::size_t k = 0; k < table.rows(); ++k) modes.insert(table.text(k, "cut_mode"));
   for (const char* mode : {"explore", "translate", "rotate", "turn"}) EXPECT_TRUE(modes.count(mode)) << mode;
+}
+
+TEST_F(ViewerWidget, TheMouseDragsTheArrowAndACircleUnderThePointer) {
+  test::write_file(folder_ / "side.json", R"(// dragged
+{ "fields": {"d": {"analytic": "sphere", "resolution": 24}}, "isosurfaces": [{"field": "d", "level": 1}],
+  "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [1, 0, 0], "radius": 0.48}],
+  "clip": [{"widget": "cut", "side": "behind"}],
+  "camera": {"position": [0, -6, 0], "target": [0, 0, 0], "projection": "orthographic", "height": 4} })");
+  // 120 pixels a unit: the arrow from 320 to 403 at y = 240; then the circle about the view axis, a quarter turn
+  const std::string drag =
+      "drag() { xdotool mousemove $1 $2; sleep 0.3; xdotool mousedown 1; sleep 0.2; "
+      "for k in 1 2 3 4 5 6; do xdotool mousemove $(($1 + ($3 - $1) * k / 6)) $(($2 + ($4 - $2) * k / 6)); sleep 0.1; "
+      "done; sleep 0.3; xdotool mouseup 1; sleep 0.3; }\n";
+  play("side.json --size 640x480 --no-panels --quality draft",
+       "sleep 1\n" + drag + "drag 390 240 450 240\nkeys ctrl+s; sleep 0.7; cp side.json moved.json\n" +
+           "drag 421 199 339 199\nkeys ctrl+s; sleep 0.7; cp side.json turned.json\n" +
+           "keys ctrl+z ctrl+z; sleep 0.5; keys ctrl+s; sleep 0.7\nxdotool key ctrl+q");
+  const auto widget_of = [&](const char* name) { return test::value_of(json::read(folder_ / name)).find("widgets")->items[0]; };
+  const auto centre = test::value_of(json::require_vec3(widget_of("moved.json"), "center"));
+  EXPECT_NEAR(centre.x, 0.5, 0.01);
+  EXPECT_LT(std::hypot(centre.y, centre.z), 1e-9) << "along the normal only";
+  const json::Node turned = widget_of("turned.json");
+  const json::Node* q = turned.find("orientation");
+  ASSERT_NE(q, nullptr);
+  const Quat rotation(q->items[0].number, q->items[1].number, q->items[2].number, q->items[3].number);
+  EXPECT_GT(rotate(rotation, {0, 0, 1}).z, 0.99) << "a quarter turn";
+  EXPECT_EQ(test::read_file(folder_ / "turned.json").find("// dragged"), 0u);
+  EXPECT_NE(widget_of("side.json").find("normal"), nullptr) << "each drag is one undo step";
 }
 
 TEST_F(ViewerWidget, ADroppedFileIsOpened) { drop("plane.json", "ball.json"); }

@@ -58,7 +58,7 @@ TEST_F(ViewerWindow, QuitAsksBeforeUnsavedEditsAreLost) {
   // to another file.
   play(scene_ + " --size 900x600",
        "keys o ctrl+shift+s; sleep 0.3; xdotool type --delay 60 'copy'; keys Return; written copy.json\n"
-       "keys ctrl+z; titled 'copy.json [^ ]'\n"
+       "keys ctrl+z; titled 'copy.json [^ -]'\n"
        "keys ctrl+q; sleep 0.5; kill -0 $V && echo 'still there'\n"
        "keys Escape; sleep 0.3; kill -0 $V && echo 'still open'\n"
        "keys ctrl+q; sleep 0.5; keys Return");

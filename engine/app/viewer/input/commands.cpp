@@ -42,7 +42,7 @@ constexpr KeyChord alone(int key) { return {key, Held::no, Held::no}; }
 
 // in the order of the list of keys
 constexpr CommandRow kCommandRows[] = {
-    by_pointer(kEye, "left drag", "orbit"),
+    by_pointer(kEye, "left drag", "orbit; on a widget's arrow, circle, handle or line: move the widget"),
     by_pointer(kEye, "middle, shift+left", "pan"),
     by_pointer(kEye, "wheel", "zoom"),
     {Action::view_along_plus_x, "+x", alone(GLFW_KEY_1), kNoChord, kEye, "look along +x"},
@@ -58,6 +58,8 @@ constexpr CommandRow kCommandRows[] = {
      kEye,
      "fit the whole scene into the image, from the same direction"},
     {Action::toggle_projection, "Orthographic", {GLFW_KEY_O}, kNoChord, kEye, "orthographic or perspective"},
+    {Action::toggle_ortho_views, "Orthogonal views", alone(GLFW_KEY_4), kNoChord, kEye,
+     "three planes beside the 3D view; there: left drag moves their common point, wheel: next voxel, right drag: window and level"},
     {Action::reset_view, "First view", {GLFW_KEY_R}, kNoChord, kEye, "return to the first view"},
     {Action::toggle_turntable, "Turntable", {GLFW_KEY_T}, kNoChord, kEye, "start the turntable; T or the mouse stops it"},
     {Action::toggle_fly,
@@ -84,7 +86,9 @@ constexpr CommandRow kCommandRows[] = {
      "with a headset: register a haptic device in the room by touching three points; again: cancel"},
     by_pointer(kHand, "device button 1", "grab widgets, select, or as stated by \"active_when\" in the scene"),
 
-    {Action::open, "Open...", with_control(GLFW_KEY_O), kNoChord, kScene, "open a file; a file can also be dropped on the window"},
+    {Action::open, "Open...", with_control(GLFW_KEY_O, Held::no), kNoChord, kScene,
+     "open a file; a file can also be dropped on the window"},
+    {Action::add, "Add...", with_control(GLFW_KEY_O, Held::yes), kNoChord, nullptr, "add a file to the scene"},
     {Action::save, "Save", with_control(GLFW_KEY_S, Held::no), kNoChord, kScene, "save, including a changed view"},
     {Action::save_as, "Save as...", with_control(GLFW_KEY_S, Held::yes), kNoChord, nullptr, "save as"},
     {Action::undo, "Undo", with_control(GLFW_KEY_Z, Held::no), kNoChord, kScene, "undo"},

@@ -19,6 +19,7 @@ namespace catena::app {
 enum class Action : std::uint8_t {
   // Program.
   open,
+  add,
   save,
   save_as,
   save_image,
@@ -41,6 +42,7 @@ enum class Action : std::uint8_t {
   view_along_minus_y,
   view_along_minus_z,
   toggle_projection,
+  toggle_ortho_views,
   toggle_turntable,
   toggle_fly,
   next_stereo_mode,
@@ -63,6 +65,10 @@ struct Edit {
 };
 /// Opens a file in place of the scene.
 struct OpenFile {
+  std::string path;
+};
+/// Adds what a file shows to the scene.
+struct AddFile {
   std::string path;
 };
 /// Opens a dropped file, or asks the user if it could be added to the scene.
@@ -118,7 +124,7 @@ struct SetRecording {
   std::string path;  ///< Path of a .catlog with every tick from the next one on; empty: stop recording.
 };
 
-using Command = std::variant<Action, Edit, OpenFile, DropFile, DroppedFileChoice, SaveAs, CancelSave, UnsavedChangesChoice,
+using Command = std::variant<Action, Edit, OpenFile, AddFile, DropFile, DroppedFileChoice, SaveAs, CancelSave, UnsavedChangesChoice,
                              FileConflictChoice, RecoveryChoice, SetStereoMode, SetQuality, EstimateImageError, MeasureCosts,
                              ObserveTrackingError, BindHaptics, RemoveItem, SelectDevice, ShowTimeStep, SetRecording>;
 using Commands = std::vector<Command>;

@@ -144,6 +144,7 @@ Outcome HapticSession::switch_scene(scene::Scene& scene, const Bounds& bounds) {
   update_link_names(scene);
   servo_->set_program(program_);
   move_mouse(scene, initial_probe_, 0);
+  mouse_has_moved_ = false;
   return recorded;
 }
 
@@ -229,12 +230,15 @@ bool HapticSession::pull_state(scene::Scene& scene) {
   // a state of an older program refers to other links
   if (latest_state_.program_epoch != program_->epoch) return false;
   scene::update_cursor(scene, latest_state_);
-  scene.entities.get<scene::Cursor>(scene.cursor).pseudo_haptic = device_.device->capabilities().max_force_n <= 0;
+  auto& cursor = scene.entities.get<scene::Cursor>(scene.cursor);
+  cursor.pseudo_haptic = device_.device->capabilities().max_force_n <= 0;
+  cursor.visible = cursor.visible && (!is_mouse() || mouse_has_moved_);
   scene::update_widgets(scene, latest_state_);
   return looks_different(before, latest_state_);
 }
 
 void HapticSession::move_mouse(const scene::Scene& scene, const Vec3& world, std::uint32_t buttons) {
+  mouse_has_moved_ = true;
   if (mouse_ != nullptr) mouse_->move_to(device_from_world(scene.workspace, world), buttons);
 }
 

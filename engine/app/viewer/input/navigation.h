@@ -7,6 +7,7 @@
 ///          depth stays. The wheel moves the probe less against the force (compliant_motion)
 ///   fly (V): left drag looks around, wheel changes the speed; the keys are FlyKeys (camera_motion.h)
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -32,6 +33,13 @@ struct Input {
   std::vector<std::string> dropped_files{};  ///< Paths.
 };
 
+/// Orthogonal views beside the 3D view.
+struct OrthoViews {
+  bool is_on = false;                             ///< Requested by the user; shown if the scene has a scalar field, without stereo.
+  std::optional<Vec3> focus{};                    ///< Common point of the planes, world units; nothing: the middle of the field.
+  std::optional<std::array<double, 2>> window{};  ///< Values shown as black and white; nothing: the display range.
+};
+
 /// State of view and probe.
 struct Navigation {
   render::View view, home;  ///< Current view, and the view that reset_view returns to.
@@ -51,6 +59,7 @@ struct Navigation {
   bool fly = false;
   double fly_speed = 1;    ///< Factor on kFlyDiagonalsPerS.
   bool turntable = false;  ///< The camera rotates by itself.
+  OrthoViews ortho{};
 };
 
 /// The changes made by an input.

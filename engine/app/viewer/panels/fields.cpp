@@ -69,8 +69,8 @@ void show_as(PanelContext& context, scene::Entity entity, ShowAs as) {
   const auto drawn = scene::resolve_rendered_field(scene, entity, scene.entities.get<scene::FieldSource>(entity).where);
   if (!drawn) return context.state.show_message(drawn.error().message, true);
   const SortedSamples values = context.state.appearance.histograms.find_or_request(scene, entity);
-  const std::string item = make_item_json(scene, entity, *drawn, as, values ? *values : std::vector<float>());
-  context.edits.set(new_item_pointer(as), item, std::string("new ") + to_string(as));
+  context.edits.set(make_item_edits(scene, entity, *drawn, as, values ? *values : std::vector<float>()),
+                    std::string("new ") + to_string(as));
 }
 
 void draw_buttons(PanelContext& context, scene::Entity entity, const field::AnyField& shown) {

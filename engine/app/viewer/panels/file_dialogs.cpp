@@ -128,18 +128,19 @@ bool is_answer(Browser& browser, std::string& path) {
   return false;
 }
 
-void draw_open(PanelContext& context) {
+/// Draws the dialog that opens a file, or adds one to the scene.
+template <class Chosen>
+void draw_open(PanelContext& context, const char* title, bool& asked) {
   static Browser browser;
-  ViewState& state = context.state;
-  if (!begin("Open", state.dialogs.show_open, browser, context, "")) return;
+  if (!begin(title, asked, browser, context, "")) return;
   bool chosen = draw_list(browser);
   chosen = draw_typed(browser) || chosen;
-  chosen = ImGui::Button("Open", {110, 0}) || chosen;
+  chosen = ImGui::Button(title, {110, 0}) || chosen;
   ImGui::SameLine();
   const bool leaves = cancelled();
   std::string path;
   if (chosen && is_answer(browser, path)) {
-    context.push_command(OpenFile{path});
+    context.push_command(Chosen{path});
     ImGui::CloseCurrentPopup();
   } else if (leaves) {
     ImGui::CloseCurrentPopup();
@@ -184,7 +185,8 @@ void draw_save(PanelContext& context) {
 }  // namespace
 
 void draw_file_dialogs(PanelContext& context) {
-  draw_open(context);
+  draw_open<OpenFile>(context, "Open", context.state.dialogs.show_open);
+  draw_open<AddFile>(context, "Add", context.state.dialogs.show_add);
   draw_save(context);
 }
 

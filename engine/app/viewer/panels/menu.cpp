@@ -21,6 +21,7 @@ void draw_file_menu(PanelContext& context) {
     draw_recent_files(context);
     ImGui::EndMenu();
   }
+  entry(context, Action::add, menu_label(Action::add), false, !context.state.is_untitled);
   entry(context, Action::save);
   entry(context, Action::save_as);
   ImGui::Separator();
@@ -57,6 +58,7 @@ void draw_view_menu(PanelContext& context) {
     ImGui::EndMenu();
   }
   entry(context, Action::toggle_projection, controls.view.orthographic);
+  entry(context, Action::toggle_ortho_views, controls.ortho.is_on);
   ImGui::Separator();
   entry(context, Action::toggle_turntable, controls.turntable);
   entry(context, Action::toggle_fly, controls.fly);

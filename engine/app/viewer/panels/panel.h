@@ -65,9 +65,9 @@ struct PendingLeave {
 
 /// Modal dialogs; each stays pending until it is answered.
 struct PendingDialogs {
-  bool show_open = false, show_save_as = false;  ///< Open these dialogs.
-  std::optional<PendingLeave> unsaved_changes;   ///< Action waiting for the unsaved changes dialog.
-  std::optional<std::string> dropped_file;       ///< A data file dropped on an open scene: open it, or add it.
+  bool show_open = false, show_add = false, show_save_as = false;  ///< Open these dialogs.
+  std::optional<PendingLeave> unsaved_changes;                     ///< Action waiting for the unsaved changes dialog.
+  std::optional<std::string> dropped_file;                         ///< A data file dropped on an open scene: open it, or add it.
   /// The scene's file was changed or removed by another program, and is to be saved.
   std::optional<scene::Document::DiskState> file_conflict;
   std::optional<OrphanedAutosave> recovery;  ///< Autosave of an earlier run.

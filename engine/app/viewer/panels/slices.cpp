@@ -20,40 +20,56 @@ TextEdits with_links(const scene::Scene& scene, const scene::Slice& slice, TextE
   return edits;
 }
 
+constexpr int kFree = 3;  // choice after the axes
+
+std::vector<std::string> cutting_planes(const scene::Scene& scene) {
+  std::vector<std::string> names;
+  scene.entities.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
+    if (widget.spec.kind == widget::Kind::cutting_plane) names.push_back(entity_name(scene, e));
+  });
+  return names;
+}
+
 void draw_plane(Edits& edits, const scene::Scene& scene, const scene::Slice& slice, const field::Field& field) {
   const std::string pointer = item_pointer(slice.where);
-  if (slice.where.find("widget") != nullptr) {
-    ImGui::TextDisabled("the plane follows a widget");
-    return;
-  }
   const Bounds box = field.world_bounds();
   const json::Node* axis = slice.where.find("axis");
   const bool free = axis == nullptr;
-  int which = free ? 3 : axis->string == "x" ? 0 : axis->string == "y" ? 1 : 2;
-  ImGui::SetNextItemWidth(90);
-  if (ImGui::Combo("##axis", &which, "x\0y\0z\0free\0")) {
-    const Vec3 middle = 0.5 * (box.lo + box.hi);
-    const auto edit = [&](const char* key, std::optional<std::string> value) {
-      return scene::Document::Edit{pointer + "/" + key, std::move(value)};
+  int which = axis != nullptr ? static_cast<int>(std::string_view("xyz").find(axis->string)) : kFree;
+  std::vector<std::string> choices{"x", "y", "z", "free"};
+  for (const std::string& widget : cutting_planes(scene)) {
+    if (slice.widget && entity_name(scene, slice.widget) == widget) which = static_cast<int>(choices.size());
+    choices.push_back("plane of " + widget);
+  }
+  std::string chosen = choices[static_cast<std::size_t>(which)];
+  ImGui::SetNextItemWidth(slice.widget ? -FLT_MIN : 90);
+  if (choose_from_list("##axis", choices, chosen)) {
+    which = static_cast<int>(std::ranges::find(choices, chosen) - choices.begin());
+    TextEdits edit;
+    for (const char* key : {"axis", "at", "point", "normal", "widget"}) edit.push_back({pointer + "/" + key, std::nullopt});
+    const auto set = [&](const char* key, std::string value) {
+      std::ranges::find(edit, pointer + "/" + key, &scene::Document::Edit::pointer)->value = std::move(value);
     };
-    if (which == 3) {
-      edits.set({edit("axis", std::nullopt), edit("at", std::nullopt), edit("point", scene::to_json(slice.point)),
-                 edit("normal", scene::to_json(slice.normal))},
-                "slice");
-      return;
+    if (which > kFree) {
+      set("widget", scene::to_json(cutting_planes(scene)[static_cast<std::size_t>(which - kFree - 1)]));
+      return edits.set(edit, "slice");
     }
+    if (which == kFree) {
+      set("point", scene::to_json(slice.point));
+      set("normal", scene::to_json(slice.normal));
+      return edits.set(edit, "slice");
+    }
+    const Vec3 middle = 0.5 * (box.lo + box.hi);
     Vec3 at(0.0), normal(0.0);
     normal[which] = 1;
     at[which] =
         free ? std::clamp(slice.point[which], box.lo[which], box.hi[which]) : round_within(middle[which], box.lo[which], box.hi[which]);
-    edits.set(with_links(scene, slice,
-                         {edit("point", std::nullopt), edit("normal", std::nullopt),
-                          edit("axis", scene::to_json(std::string(1, "xyz"[which]))), edit("at", scene::to_json(at[which]))},
-                         at, normal),
-              "slice");
-    return;
+    set("axis", scene::to_json(std::string(1, "xyz"[which])));
+    set("at", scene::to_json(at[which]));
+    return edits.set(with_links(scene, slice, std::move(edit), at, normal), "slice");
   }
-  show_short_tooltip("axis normal to the slice; free: any point and normal");
+  show_short_tooltip("axis normal to the slice; free: any point and normal; or the plane of a cutting plane widget");
+  if (slice.widget) return;
   if (!free) {
     ImGui::SameLine();
     const double lo = box.lo[which], hi = box.hi[which];

@@ -7,6 +7,7 @@
 #include "engine/base/clock.h"
 #include "render/extract/extract.h"
 #include "render/extract/extract_internal.h"
+#include "render/extract/plane_views.h"
 #include "render/quality/quality.h"
 
 namespace catena::app {
@@ -17,13 +18,18 @@ constexpr std::uint32_t kMinPixels = 16;  // minimum image size in each directio
 
 Result<render::FramePacket> FrameBuilder::make_packet(std::uint32_t width, std::uint32_t height) const {
   scene::Scene& scene = scene_.scene();
-  const auto eye = render::view_size(render::stereo_packing(scene.stereo), render::stereo_view_count(scene.stereo),
-                                     std::max(kMinPixels, width), std::max(kMinPixels, height));
+  std::optional<render::OrthoPlanes> planes;
+  if (navigation_.ortho.is_on && scene.stereo.mode == scene::StereoMode::mono)
+    if (auto found = render::find_ortho_planes(scene)) planes = std::move(*found);
+  const auto eye = planes ? render::view_size(render::Packing::grid, 4, std::max(kMinPixels, width), std::max(kMinPixels, height))
+                          : render::view_size(render::stereo_packing(scene.stereo), render::stereo_view_count(scene.stereo),
+                                              std::max(kMinPixels, width), std::max(kMinPixels, height));
   // with a mouse-driven probe, the drop line shows its depth
   const auto drop_line = [&]() -> bool& { return scene.entities.get<scene::Cursor>(scene.cursor).drop_line; };
   const bool stated = std::exchange(drop_line(), drop_line() || navigation_.probe_mode);
   auto packet = render::make_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
   drop_line() = stated;
+  if (packet && planes) CATENA_CHECK(render::add_plane_views(scene, *planes, navigation_.ortho.focus, navigation_.ortho.window, *packet));
   return packet;
 }
 

@@ -206,6 +206,8 @@ bool Gui::close_popup() {
 
 void Gui::hide_pointer() { ImGui::SetMouseCursor(ImGuiMouseCursor_None); }
 
+void Gui::show_hand_pointer() { ImGui::SetMouseCursor(ImGuiMouseCursor_Hand); }
+
 bool Gui::is_busy() const { return ImGui::IsAnyItemActive() || ImGui::GetIO().WantTextInput; }
 
 }  // namespace catena::app

@@ -49,6 +49,8 @@ class Gui {
   bool close_popup();
   /// Hides the pointer over the window for this frame.
   void hide_pointer();
+  /// Shows a hand as the pointer in this frame.
+  void show_hand_pointer();
   /// Returns whether a widget of the GUI is active or takes text input.
   bool is_busy() const;
 

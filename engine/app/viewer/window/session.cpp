@@ -160,17 +160,17 @@ void Session::poll_time_steps() {
 void Session::show_time_step(int step) { context_.state.show_error(context_.state.playback.show(context_.scene, step)); }
 
 void Session::update_title() {
-  const double since_s = s_since(last_title_ns_);
-  if (last_title_ns_ != 0 && since_s < kTitleS) return;
+  if (last_title_ns_ != 0 && s_since(last_title_ns_) < kTitleS) return;
   const HapticSession& hand = context_.haptic_session;
   const HapticState& haptic_state = hand.latest_state();
   const scene::Document& document = context_.scene.document();
-  const int pictures = context_.frame_times.count();
   const std::string name = context_.state.is_untitled ? "untitled" : std::filesystem::path(document.path()).filename().string();
-  std::string title = fmt::format("catena  {}{}  {:.0f} fps  {:.2f} N", name, document.is_modified() ? " \u2022" : "",
-                                  last_title_ns_ == 0 ? 0 : (pictures - frames_at_last_title_) / since_s, norm(haptic_state.force_n));
-  const auto links = std::min(static_cast<std::size_t>(haptic_state.link_count), hand.link_names().size());
-  for (std::size_t k = 0; k < links; ++k) title += fmt::format("  {} {}", hand.link_names()[k], to_string(haptic_state.links[k].status));
+  std::string title = fmt::format("{}{} - Catena", name, document.is_modified() ? " \u2022" : "");
+  if (!hand.is_mouse() || context_.navigation.probe_mode) {
+    title += fmt::format("  {:.2f} N", norm(haptic_state.force_n));
+    const auto links = std::min(static_cast<std::size_t>(haptic_state.link_count), hand.link_names().size());
+    for (std::size_t k = 0; k < links; ++k) title += fmt::format("  {} {}", hand.link_names()[k], to_string(haptic_state.links[k].status));
+  }
   if (const std::string text = hand.device().device->status_text(); !text.empty()) title += "  " + text;
   if (hand.recording().is_recording()) title += hand.recording().has_failed() ? "  the recording has stopped" : "  [recording]";
   if (!hand.is_mouse()) title += hand.forces_enabled() ? "  [forces on]" : "  [forces off]";
@@ -178,10 +178,8 @@ void Session::update_title() {
   if (stereo != scene::StereoMode::mono) title += fmt::format("  [{}]", scene::to_string(stereo));
   if (context_.navigation.probe_mode) title += "  [probe mode]";
   if (const std::string headset = viewport_.headset_status(); !headset.empty()) title += "  [" + headset + "]";
-  title += "  [" + context_.scheduler.status_text() + "]";
   context_.window.set_title(title);
   last_title_ns_ = now_ns();
-  frames_at_last_title_ = pictures;
 }
 
 bool Session::should_continue() const {

@@ -9,6 +9,7 @@
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/input/camera_controller.h"
 #include "engine/app/viewer/input/tracked_head.h"
+#include "engine/app/viewer/input/widget_drag.h"
 #include "engine/app/viewer/scene/scene_files.h"
 #include "engine/app/viewer/scene/time_step_watcher.h"
 #include "engine/app/viewer/window/progressive_scheduler.h"
@@ -57,6 +58,8 @@ class Session {
   NavigationChanges process_input(double wait_s);
   NavigationChanges process_segment(Input piece);
   Input route_to_viewport(Input input);
+  bool drag_widget(const Input& input);
+  std::optional<NavigationChanges> process_plane_input(const Input& input);
   Gui::Frame make_gui_frame();
 
   // Commands (session_input.cpp).
@@ -65,6 +68,7 @@ class Session {
   void perform(Action action);
   void begin_probe_mode();
   void end_probe_mode();
+  void explain_unfelt(const std::string& item, const Vec3& at);
   void bind_haptics(const std::string& item, std::optional<Vec3> at);
   void remove_item(const std::string& item, const std::string& what);
   void dismiss();
@@ -79,6 +83,15 @@ class Session {
   TimeStepWatcher step_watcher_;
   std::optional<InterruptHandler>& interrupt_;
   WidgetEdits widget_edits_;
+  /// Widget dragged with the mouse.
+  struct DraggedWidget {
+    std::string name;
+    WidgetDrag drag;
+  };
+  std::optional<DraggedWidget> dragged_widget_;
+  std::optional<Viewport::PlaneAt> plane_;  ///< Plane of orthogonal views under the pointer, or in which the present drag began.
+  bool plane_pressed_ = false;              ///< A button was down in the segment before.
+  bool left_was_down_ = false;              ///< The left button was down in the segment before.
   BandAnimationClock band_clock_;
   bool has_animated_bands_ = false, bands_animated_ = true;
   std::int64_t start_ns_ = 0;                 ///< Start of the loop.
@@ -89,7 +102,6 @@ class Session {
   bool gui_captures_pointer_ = false;         ///< The pressed mouse buttons were pressed on the GUI.
   int settle_frames_ = 0;                     ///< GUI frames to come without events, until sizes have settled.
   std::int64_t last_title_ns_ = 0;
-  int frames_at_last_title_ = 0;  ///< Number of frames when the title was last updated.
 };
 
 }  // namespace catena::app

@@ -7,6 +7,7 @@
 #include "engine/app/viewer/window/session.h"
 #include "engine/base/clock.h"
 #include "engine/scene/time_steps.h"
+#include "render/extract/plane_views.h"
 
 namespace catena::app {
 
@@ -47,6 +48,7 @@ void Session::execute(const Command& command) {
   std::visit(Overloaded{[&](Action action) { perform(action); },
                         [&](const Edit& edit) { state.show_error(scene.apply(edit.edits, edit.undo_label, edit.undo_group)); },
                         [&](const OpenFile& file) { files_.open(file.path); },
+                        [&](const AddFile& file) { files_.add(file.path); },
                         [&](const DropFile& file) { files_.open_dropped(file.path); },
                         [&](const SaveAs& file) { files_.save_as(file.path); },
                         [&](CancelSave) { files_.cancel_save(); },
@@ -84,6 +86,9 @@ void Session::perform(Action action) {
     case Action::open:
       state.dialogs.show_open = true;
       return;
+    case Action::add:
+      state.dialogs.show_add = true;
+      return;
     case Action::save:
       return files_.save();
     case Action::save_as:
@@ -118,6 +123,13 @@ void Session::perform(Action action) {
       return show_time_step(scene.scene().time.step + 1);
     case Action::previous_time_step:
       return show_time_step(scene.scene().time.step - 1);
+    case Action::toggle_ortho_views: {
+      if (!context_.options.use_headset && !context_.navigation.ortho.is_on)
+        if (const auto planes = render::find_ortho_planes(scene.scene()); !planes) return state.show_message(planes.error().message, true);
+      if (!context_.options.use_headset) toggle(context_.navigation.ortho.is_on);
+      content_changed_ = true;
+      return;
+    }
     case Action::toggle_probe_mode:
       return context_.navigation.probe_mode ? end_probe_mode() : begin_probe_mode();
     case Action::register_device:
@@ -135,14 +147,20 @@ void Session::perform(Action action) {
     case Action::toggle_projection:
     case Action::toggle_turntable:
     case Action::toggle_fly:
-      content_changed_ = camera_.handle(action, state.image_area.width / state.image_area.height) || content_changed_;
+      content_changed_ = camera_.handle(action, viewport_.view_area().width / viewport_.view_area().height) || content_changed_;
       return;
   }
 }
 
 void Session::end_probe_mode() {
-  context_.navigation.probe_mode = false;
-  if (context_.haptic_session.is_mouse()) context_.state.show_message("the probe stays at its position; H moves it");
+  Navigation& controls = context_.navigation;
+  controls.probe_mode = false;
+  if (!context_.haptic_session.is_mouse()) return;
+  // nothing holds the mouse: the probe goes back to where the chain holds it, so that no force is left
+  controls.buttons = 0;
+  controls.probe = controls.last_proxy.value_or(controls.probe);
+  context_.haptic_session.move_mouse(context_.scene.scene(), controls.probe, controls.buttons);
+  context_.state.show_message("the probe stays at its position; H moves it");
 }
 
 /// Moves the probe onto the item under the pointer. If the chain is empty, a link on that item is added.
@@ -157,11 +175,25 @@ void Session::begin_probe_mode() {
       bind_haptics(item, under->world);
     else
       context_.state.show_message("the chain is empty: point at an object in the image and press H, or click Feel beside the object");
+  } else if (under) {
+    explain_unfelt(item, under->world);
   }
   if (!context_.haptic_session.is_mouse()) return;
   controls.pointer_hit = under ? std::optional(under->world) : std::nullopt;
   app::begin_probe_mode(controls);
   context_.haptic_session.move_mouse(context_.scene.scene(), controls.probe, controls.buttons);
+}
+
+/// Says why the item under the pointer is not felt, if no link lies on it.
+void Session::explain_unfelt(const std::string& item, const Vec3& at) {
+  SceneModel& scene = context_.scene;
+  if (item.empty() || item.starts_with("widgets")) return;
+  const double edge = scene.bounds.longest_edge();
+  const auto binding = app::make_haptic_binding(scene.scene(), item, at, context_.navigation.view.position, edge > 0 ? edge : 4);
+  if (!binding) return context_.state.show_message("this is not felt: " + binding.error().message);
+  if (find_bound_link(scene.scene(), *binding).empty())
+    context_.state.show_message("this is not felt: no link of the chain lies on " + binding->description +
+                                "; the button Feel in its panel adds one");
 }
 
 /// Adds a link on the item. `at`: a visible point of the item.
@@ -275,13 +307,45 @@ NavigationChanges Session::process_segment(Input piece) {
   Navigation& controls = context_.navigation;
   if (stops_turntable(piece)) controls.turntable = false;
   Input input = route_to_viewport(piece);
+  if (const auto changed = process_plane_input(input)) return *changed;
+  const Area view = viewport_.view_area();
+  input.x -= view.x;
+  input.y -= view.y;
+  input.width = view.width;
+  input.height = view.height;
   if (controls.probe_mode && context_.haptic_session.is_mouse()) {
     // over a panel the probe stays where it is, so that moving the pointer to a panel does not move it
     if (!context_.state.pointer_on_image && !context_.state.pointer_pressed) input.dx = input.dy = input.wheel = 0;
     const auto under = viewport_.pick_under_pointer();
     controls.pointer_hit = under ? std::optional(under->world) : std::nullopt;
   }
+  if (drag_widget(input)) input.dx = input.dy = 0;
   return apply(controls, input);
+}
+
+/// Moves the widget part that was under the pointer at the press; the moves of one press are one undo step. True: the input belongs to it.
+bool Session::drag_widget(const Input& input) {
+  const bool was_down = std::exchange(left_was_down_, input.left), pressed = input.left && !was_down;
+  SceneModel& model = context_.scene;
+  if (!input.left) dragged_widget_.reset();
+  const bool can = pressed && !input.shift && !input.control;
+  if (!dragged_widget_ && !can) return false;
+  const render::Camera camera = render::make_camera(context_.navigation.view, input.width, input.height, Bounds());
+  if (can) {
+    const auto part = viewport_.widget_at(input.x, input.y);
+    if (!part) return false;
+    dragged_widget_ = {entity_name(model.scene(), part->widget),
+                       WidgetDrag(model.scene().entities.get<scene::Widget>(part->widget), *part, camera)};
+    ++context_.state.edit.gesture;
+  }
+  if (input.dx == 0 && input.dy == 0) return true;
+  const std::string& name = dragged_widget_->name;
+  const scene::Entity entity = scene::find_widget(std::as_const(model).scene(), name);
+  if (!entity) return true;
+  const widget::Pose pose = dragged_widget_->drag.pose_at(camera, input.x + input.dx, input.y + input.dy);
+  execute(Edit{make_pose_edits(std::as_const(model).scene().entities.get<scene::Widget>(entity), pose), "move " + name,
+               "move " + name + std::to_string(context_.state.edit.gesture)});
+  return true;
 }
 
 /// Removes input that belongs to the GUI: a drag belongs to the area in which it began.
@@ -301,12 +365,21 @@ Input Session::route_to_viewport(Input input) {
     input.dx = input.dy = input.wheel = 0;
     input.left = input.middle = input.right = false;
   }
-  // from here on in coordinates of the image area
-  input.x -= state.image_area.x;
-  input.y -= state.image_area.y;
-  input.width = state.image_area.width;
-  input.height = state.image_area.height;
   return input;
+}
+
+/// Applies input over a plane of a page of orthogonal views; a drag belongs to the view in which it began. Nothing: the input belongs to
+/// the 3D view.
+std::optional<NavigationChanges> Session::process_plane_input(const Input& input) {
+  const bool pressed = input.left || input.middle || input.right;
+  if (!pressed || !std::exchange(plane_pressed_, pressed)) plane_ = viewport_.plane_at(input.x, input.y);
+  plane_pressed_ = pressed;
+  if (!plane_ || gui_captures_pointer_ || (!pressed && gui_.covers(input.x, input.y))) return std::nullopt;
+  // the plane may have moved since the press
+  if (const auto now = viewport_.plane_at(plane_->area.x + 1, plane_->area.y + 1)) plane_ = now;
+  const NavigationChanges changed = apply_to_plane(context_.navigation, input, *plane_->plane, plane_->area);
+  content_changed_ = content_changed_ || changed.view;
+  return NavigationChanges{false, changed.probe};
 }
 
 }  // namespace catena::app

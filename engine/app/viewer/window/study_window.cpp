@@ -76,7 +76,7 @@ void StudyWindow::show_scene(const LoadedScene& loaded) {
   context_.scene.bounds = loaded.bounds;
   camera_.adopt_scene(loaded);
   viewport_.reset();
-  context_.scene.set_validator([&haptic_session = context_.haptic_session](scene::Scene& scene) { return haptic_session.validate(scene); });
+  context_.scene.set_validator(SceneModel::make_validator(context_.haptic_session));
   place_probe_under_pointer();
   needs_redraw_ = true;
 }

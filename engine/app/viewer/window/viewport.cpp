@@ -287,6 +287,10 @@ std::optional<Failure> Viewport::show(const std::function<void()>& make_panels) 
   gui.begin();
   // the probe glyph replaces the pointer while the mouse moves the probe
   if (context_.navigation.probe_mode && context_.haptic_session.is_mouse() && context_.state.pointer_on_image) gui.hide_pointer();
+  const ViewState& state = context_.state;
+  if (const Area area = view_area(); state.pointer_on_image && !state.pointer_pressed && area.contains(state.pointer_x, state.pointer_y) &&
+                                     widget_at(state.pointer_x - area.x, state.pointer_y - area.y))
+    gui.show_hand_pointer();
   make_panels();
   render::UiItems items = gui.end();
   items.image_area =
@@ -331,8 +335,13 @@ void Viewport::update_field_probes() {
   is_pick_stale_ = !can;
   state.pointer_samples = {};
   if (!can) return;
-  const double x = (state.pointer_x - state.image_area.x) / state.image_area.width * shown->width;
-  const double y = (state.pointer_y - state.image_area.y) / state.image_area.height * shown->height;
+  if (const auto in_plane = plane_at(state.pointer_x, state.pointer_y)) {
+    state.pointer_samples = at(plane_point(*in_plane->plane, in_plane->area, state.pointer_x, state.pointer_y), {});
+    return;
+  }
+  const Area area = view_area();
+  const double x = (state.pointer_x - area.x) / area.width * shown->width;
+  const double y = (state.pointer_y - area.y) / area.height * shown->height;
   const auto texel = presenter_->pick(x, y);
   if (!texel) return;
   if (const auto place = pick(*shown, x, y, texel->depth, texel->id))
@@ -340,17 +349,50 @@ void Viewport::update_field_probes() {
 }
 
 std::optional<PickHit> Viewport::pick_at(double window_x, double window_y) const {
-  const Area& area = context_.state.image_area;
-  if (context_.state.is_untitled || !area.contains(window_x, window_y)) return std::nullopt;
+  if (context_.state.is_untitled || !context_.state.image_area.contains(window_x, window_y)) return std::nullopt;
+  if (const auto in_plane = plane_at(window_x, window_y))
+    return PickHit{plane_point(*in_plane->plane, in_plane->area, window_x, window_y), 0, false};
+  const Area area = view_area();
   return frame_builder_.pick_at((window_x - area.x) / area.width, (window_y - area.y) / area.height);
+}
+
+Area Viewport::view_area() const {
+  const auto& shown = frame_builder_.last_packet();
+  return shown && !shown->planes.empty() ? page_view_area(context_.state.image_area, 0) : context_.state.image_area;
+}
+
+std::optional<Viewport::PlaneAt> Viewport::plane_at(double window_x, double window_y) const {
+  const auto& shown = frame_builder_.last_packet();
+  const Area& page = context_.state.image_area;
+  if (!shown || shown->planes.empty() || !page.contains(window_x, window_y)) return std::nullopt;
+  const int view = page_view_at(page, window_x, window_y);
+  if (view == 0) return std::nullopt;
+  return PlaneAt{shown->planes[static_cast<std::size_t>(view - 1)], page_view_area(page, view)};
+}
+
+bool Viewport::shows_single_view() const {
+  // each image of a side-by-side pair has its own pointer position
+  const auto& shown = frame_builder_.last_packet();
+  return shown && !context_.state.is_untitled && !shows_headset_eye_ &&
+         (shown->eyes.empty() || !render::has_separate_views(shown->packing));
+}
+
+std::optional<WidgetPart> Viewport::widget_at(double x, double y) const {
+  if (context_.navigation.probe_mode || context_.navigation.fly || !shows_single_view()) return std::nullopt;
+  const Area area = view_area();
+  const render::Camera camera = render::make_camera(context_.navigation.view, area.width, area.height, Bounds());
+  const auto part = find_widget_part(std::as_const(context_.scene).scene(), context_.scene.bounds, camera, x, y);
+  if (!part) return std::nullopt;
+  const auto seen = frame_builder_.pick_at(x / area.width, y / area.height);
+  const auto depth = [&](const Vec3& p) { return dot(camera.position - p, camera.back); };
+  const bool hidden = seen && (!seen->is_volume || seen->opacity >= kHalfOpaque) &&
+                      depth(seen->world) < depth(part->point) - part->pixel * kWidgetTolerancePx;
+  return hidden ? std::nullopt : part;
 }
 
 std::optional<PickHit> Viewport::pick_under_pointer() const {
   const ViewState& state = context_.state;
-  // each image of a side-by-side pair has its own pointer position
-  const auto& shown = frame_builder_.last_packet();
-  const bool apart = shown && !shown->eyes.empty() && render::has_separate_views(shown->packing);
-  return state.pointer_on_image && !apart ? pick_at(state.pointer_x, state.pointer_y) : std::nullopt;
+  return state.pointer_on_image && shows_single_view() ? pick_at(state.pointer_x, state.pointer_y) : std::nullopt;
 }
 
 std::optional<Vec3> Viewport::find_visible_point(const std::string& item) const {
@@ -360,7 +402,7 @@ std::optional<Vec3> Viewport::find_visible_point(const std::string& item) const 
     for (const render::MeshItem& mesh : shown->meshes) triangles += mesh.geometry->triangles.size() / 3;
   const int lattice = triangles > 200000 ? 8 : 24;
   if (const auto here = pick_under_pointer(); here && item_label(here->id) == item) return here->world;
-  const Area& area = context_.state.image_area;
+  const Area area = view_area();
   std::optional<Vec3> place;
   double minimum = 2;
   for (int j = 0; j < lattice; ++j)

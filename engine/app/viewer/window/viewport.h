@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "engine/app/viewer/input/plane_views.h"
+#include "engine/app/viewer/input/widget_drag.h"
 #include "engine/app/viewer/window/frame_builder.h"
 #include "engine/app/viewer/window/shader_reload.h"
 #include "engine/app/viewer/window/viewer_context.h"
@@ -75,6 +77,19 @@ class Viewport {
   /// Returns what lies under the pointer, ignoring the probe; nothing if the pointer is not on the image, or if the image shows several
   /// eyes side by side.
   std::optional<PickHit> pick_under_pointer() const;
+  /// Returns the area of the 3D view, window coordinates: the image area, or its part in a page of orthogonal views.
+  Area view_area() const;
+  /// Returns the plane of a page of orthogonal views at a position of the window, and its area; nothing elsewhere.
+  struct PlaneAt {
+    std::shared_ptr<const render::FramePacket> plane;
+    Area area;
+  };
+  std::optional<PlaneAt> plane_at(double window_x, double window_y) const;
+  /// Returns the widget part that a press of the left button at a position of the 3D view would drag: a visible one, and none in probe
+  /// mode.
+  std::optional<WidgetPart> widget_at(double x, double y) const;
+  /// Returns whether the window shows one image of one camera, so that its positions are those of the camera's image.
+  bool shows_single_view() const;
   /// Returns a visible point of the item ("isosurfaces[0]"): under the pointer, or else the one nearest to the image center on a grid of
   /// sample points. Nothing if none is found.
   std::optional<Vec3> find_visible_point(const std::string& item) const;

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "engine/app/viewer/input/plane_views.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/field/field_display_range.h"
+#include "engine/field/grid/grid.h"
+
+namespace catena::app {
+
+namespace {
+
+/// Distance of neighboring voxels along a direction.
+double voxel_step(const field::ScalarGrid& grid, const Vec3& direction) {
+  double step = 0;
+  for (int i = 0; i < 3; ++i) step = std::max(step, std::fabs(dot(grid.mapping().world_from_index_linear[i], direction)));
+  return step;
+}
+
+void change_window(OrthoViews& views, const render::SliceItem& slice, const Input& input, const Area& area) {
+  const DisplayRange& range = field::display_range(*slice.grid);
+  const double whole = range.lo < range.hi ? range.hi - range.lo : 1;
+  const auto [lo, hi] = views.window.value_or(std::array{range.lo, range.lo + whole});
+  const double width = std::max(1e-3 * whole, hi - lo + 2 * whole * input.dx / area.width);
+  const double level = 0.5 * (lo + hi) + whole * input.dy / area.height;
+  views.window = {level - 0.5 * width, level + 0.5 * width};
+}
+
+}  // namespace
+
+Area page_view_area(const Area& page, int view) {
+  constexpr int kCells[] = {1, 0, 2, 3};
+  const double width = 0.5 * page.width, height = 0.5 * page.height;
+  return {page.x + kCells[view] % 2 * width, page.y + kCells[view] / 2 * height, width, height};
+}
+
+int page_view_at(const Area& page, double x, double y) {
+  constexpr int kViews[] = {1, 0, 2, 3};
+  return kViews[(x >= page.x + 0.5 * page.width ? 1 : 0) + (y >= page.y + 0.5 * page.height ? 2 : 0)];
+}
+
+Vec3 plane_point(const render::FramePacket& plane, const Area& area, double x, double y) {
+  const render::Camera camera = render::make_camera(plane.view, area.width, area.height, Bounds());
+  const render::Ray ray = render::pixel_ray(camera, x - area.x, y - area.y);
+  const render::SliceItem& slice = plane.slices.front();
+  return ray.origin + dot(slice.point - ray.origin, slice.normal) / dot(ray.direction, slice.normal) * ray.direction;
+}
+
+NavigationChanges apply_to_plane(Navigation& controls, const Input& input, const render::FramePacket& plane, const Area& area) {
+  NavigationChanges changed;
+  const render::SliceItem& slice = plane.slices.front();
+  const Vec3 at = plane_point(plane, area, input.x + input.dx, input.y + input.dy);
+  const bool moved = input.dx != 0 || input.dy != 0;
+  const std::uint32_t buttons = input.space || (controls.probe_mode && input.left) ? 1u : 0u;
+  changed.probe = buttons != controls.buttons;
+  controls.buttons = buttons;
+  if (controls.probe_mode && moved) {
+    controls.probe = at;
+    changed.probe = true;
+  } else if (input.left && !controls.probe_mode) {
+    controls.ortho.focus = at;
+    changed.view = true;
+  } else if (input.right && moved) {
+    change_window(controls.ortho, slice, input, area);
+    changed.view = true;
+  }
+  if (input.wheel != 0) {
+    const Vec3 step = input.wheel * voxel_step(*slice.grid, slice.normal) * slice.normal;
+    controls.ortho.focus = slice.point + step;
+    if (controls.probe_mode) controls.probe += step, changed.probe = true;
+    changed.view = true;
+  }
+  return changed;
+}
+
+}  // namespace catena::app

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Panel of the lights: direction, color, intensity, frame, and new lights.
+#include <fmt/format.h>
+
+#include "engine/app/viewer/panels/color_widgets.h"
+
+namespace catena::app {
+
+namespace {
+
+void draw_light(Edits& edits, const scene::Light& light, std::size_t index) {
+  const std::string pointer = fmt::format("/lights/{}", index);
+  ImGui::PushID(static_cast<int>(index));
+  if (ImGui::TreeNodeEx("##light", ImGuiTreeNodeFlags_DefaultOpen, "light %zu", index + 1)) {
+    edit_color(edits, "colour", light.color, pointer + "/color");
+    edit_slider(edits, "intensity", light.intensity, 0, 3, pointer + "/intensity", "%.2f");
+    edit_vector(edits, "direction", pointer + "/direction", light.direction, 0.01);
+    bool follows = light.follows_camera;
+    if (ImGui::Checkbox("fixed to the camera", &follows))
+      edits.set(pointer + "/fixed_to", scene::to_json(std::string_view(follows ? "camera" : "scene")), "frame of the light");
+    if (ImGui::Button("Remove")) edits.remove(pointer, "remove the light");
+    ImGui::TreePop();
+  }
+  ImGui::PopID();
+}
+
+void draw_lights(PanelContext& context) {
+  const auto& lights = context.scene.scene().lights;
+  if (lights.empty()) ImGui::TextDisabled("a headlight, as no light is stated");
+  for (std::size_t i = 0; i < lights.size(); ++i) draw_light(context.edits, lights[i], i);
+  if (ImGui::Button("Add a light"))
+    context.edits.set("/lights/-", R"({"direction": [-0.5, 0.7, 1], "fixed_to": "camera", "intensity": 0.8})", "add a light");
+}
+
+}  // namespace
+
+Panel lights_panel() { return {"Lights", false, draw_lights}; }
+
+}  // namespace catena::app
