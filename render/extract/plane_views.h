@@ -10,7 +10,6 @@
 #include <optional>
 #include <string>
 
-#include "engine/base/export.h"
 #include "engine/base/result.h"
 #include "engine/scene/scene.h"
 #include "render/frame/frame_packet.h"
@@ -33,11 +32,11 @@ struct OrthoPlanes {
 };
 
 /// Finds the fields and frames. An Error if the scene shows no scalar field.
-CATENA_EXPORT Result<OrthoPlanes> find_ortho_planes(scene::Scene& scene);
+Result<OrthoPlanes> find_ortho_planes(scene::Scene& scene);
 
 /// Turns the packet of the 3D view into a page of four views of its size: adds the packets of the planes through `focus`; nothing: the
 /// middle of the base field. `window`: values shown as black and white; nothing: the display range. Call it after prepare_frame().
-CATENA_EXPORT Outcome add_plane_views(const scene::Scene& scene, const OrthoPlanes& planes, const std::optional<Vec3>& focus,
-                                      const std::optional<std::array<double, 2>>& window, FramePacket& packet);
+Outcome add_plane_views(const scene::Scene& scene, const OrthoPlanes& planes, const std::optional<Vec3>& focus,
+                        const std::optional<std::array<double, 2>>& window, FramePacket& packet);
 
 }  // namespace catena::render

@@ -221,8 +221,11 @@ Outcome Renderer::Impl::draw_planes(const FramePacket& packet, const RenderSetti
   const std::size_t count = packet.planes.size();
   CATENA_CHECK(stereo_composer->begin(packet.packing, count + 1, packet.width, packet.height));
   eye_volumes.clear();
+  // translucent slices of a plane overwrite the volume image
+  RenderSettings anew = settings;
+  anew.reuse_rays = false;
   for (std::size_t k = count + 1; k-- > 0;) {
-    CATENA_CHECK(draw(k == 0 ? packet : *packet.planes[k - 1], settings, 0, 1, k == count, k == 0));
+    CATENA_CHECK(draw(k == 0 ? packet : *packet.planes[k - 1], anew, 0, 1, k == count, k == 0));
     stereo_composer->store_view(k, targets.output);
   }
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device));

@@ -110,12 +110,13 @@ TEST(Commands, TheListOfKeysHasEachKeystrokeOnce) {
 }
 
 TEST(Commands, ThePrintedListOfKeys) {
-  EXPECT_EQ(key_help(), R"keys(left drag            orbit
+  EXPECT_EQ(key_help(), R"keys(left drag            orbit, or move the widget under the pointer
 middle, shift+left   pan
 wheel                zoom
 1, 2, 3              look along +x, +y, +z at the whole scene; with shift along -x, -y, -z
 A, Home              fit the whole scene into the image, from the same direction
 O                    orthographic or perspective
+4                    orthogonal views; in them, left drag: cross-hair, wheel: next voxel, right drag: window and level
 R                    return to the first view
 T                    start the turntable; T or the mouse stops it
 V                    fly: W S A D or arrows, E up, Q down, shift faster, left drag turns, wheel: speed; V or Esc ends flying
@@ -125,7 +126,7 @@ space                button 1 of the probe
 F                    forces of a haptic device on or off (initially off)
 G                    with a headset: register a haptic device in the room by touching three points; again: cancel
 device button 1      grab widgets, select, or as stated by "active_when" in the scene
-Ctrl+O               open a file; a file can also be dropped on the window
+Ctrl+O, Ctrl+Shift+O open a file; a file can also be dropped on the window, add a file to the scene
 Ctrl+S, Ctrl+Shift+S save, including a changed view, save as
 Ctrl+Z, Ctrl+Y       undo, redo
 K                    play or stop the time steps

@@ -20,6 +20,7 @@ using test::value_of;
 /// front and top. `sform`: world from voxel, row by row.
 std::string nifti(const std::array<float, 12>& sform) {
   test::NiftiFile file({20, 16, 12}, 16, 32);
+  file.put(123, std::uint8_t{2});  // millimeters
   file.put(254, std::int16_t{1});
   for (std::size_t k = 0; k < 12; ++k) file.put(280 + 4 * k, sform[k]);
   for (int k = 0; k < 12; ++k)

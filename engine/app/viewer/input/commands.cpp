@@ -42,7 +42,7 @@ constexpr KeyChord alone(int key) { return {key, Held::no, Held::no}; }
 
 // in the order of the list of keys
 constexpr CommandRow kCommandRows[] = {
-    by_pointer(kEye, "left drag", "orbit; on a widget's arrow, circle, handle or line: move the widget"),
+    by_pointer(kEye, "left drag", "orbit, or move the widget under the pointer"),
     by_pointer(kEye, "middle, shift+left", "pan"),
     by_pointer(kEye, "wheel", "zoom"),
     {Action::view_along_plus_x, "+x", alone(GLFW_KEY_1), kNoChord, kEye, "look along +x"},
@@ -59,7 +59,7 @@ constexpr CommandRow kCommandRows[] = {
      "fit the whole scene into the image, from the same direction"},
     {Action::toggle_projection, "Orthographic", {GLFW_KEY_O}, kNoChord, kEye, "orthographic or perspective"},
     {Action::toggle_ortho_views, "Orthogonal views", alone(GLFW_KEY_4), kNoChord, kEye,
-     "three planes beside the 3D view; there: left drag moves their common point, wheel: next voxel, right drag: window and level"},
+     "orthogonal views; in them, left drag: cross-hair, wheel: next voxel, right drag: window and level"},
     {Action::reset_view, "First view", {GLFW_KEY_R}, kNoChord, kEye, "return to the first view"},
     {Action::toggle_turntable, "Turntable", {GLFW_KEY_T}, kNoChord, kEye, "start the turntable; T or the mouse stops it"},
     {Action::toggle_fly,

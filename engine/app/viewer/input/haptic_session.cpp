@@ -229,10 +229,11 @@ bool HapticSession::pull_state(scene::Scene& scene) {
   if (!servo_->receive(latest_state_)) return false;
   // a state of an older program refers to other links
   if (latest_state_.program_epoch != program_->epoch) return false;
+  const auto cursor = [&]() -> scene::Cursor& { return scene.entities.get<scene::Cursor>(scene.cursor); };
+  const bool was_visible = cursor().visible;  // initially true if the scene states a position
   scene::update_cursor(scene, latest_state_);
-  auto& cursor = scene.entities.get<scene::Cursor>(scene.cursor);
-  cursor.pseudo_haptic = device_.device->capabilities().max_force_n <= 0;
-  cursor.visible = cursor.visible && (!is_mouse() || mouse_has_moved_);
+  cursor().pseudo_haptic = device_.device->capabilities().max_force_n <= 0;
+  cursor().visible = was_visible || !is_mouse() || mouse_has_moved_;
   scene::update_widgets(scene, latest_state_);
   return looks_different(before, latest_state_);
 }
