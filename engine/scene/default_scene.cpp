@@ -165,6 +165,8 @@ Result<DefaultScene> make_default_scene(const std::string& path, const std::stri
   result.request.path = data_file.path;
   result.request.step = data_file.step;
   if (!data_file.found) return Error{one_line(path + ": there is no such file")};
+  if (data_file.kind != FileKind::field && colors.makes_volume())
+    return Error{one_line(path + ": opacities are those of a volume, which the file does not have; a scalar field was expected")};
   if (data_file.kind == FileKind::mesh) {
     if (!colors.is_default()) return Error{one_line(path + ": a mesh has no values; a data file was expected with a colour map")};
     CATENA_TRY(result.mesh, mesh::load_mesh(data_file.path, {}, data_file.step));

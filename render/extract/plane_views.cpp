@@ -107,8 +107,8 @@ double common_height(const OrthoPlanes& planes, double aspect) {
   double height = 0;
   for (const PlaneFrame& frame : planes.frames) {
     double half_width = 0, half_height = 0;
-    for (int i = 0; i < 8; ++i) {
-      const Vec3 arm = planes.bounds.corner(i) - planes.bounds.center();
+    for (const Vec3& corner : planes.corners) {
+      const Vec3 arm = corner - planes.center;
       half_width = std::max(half_width, std::fabs(dot(arm, frame.right)));
       half_height = std::max(half_height, std::fabs(dot(arm, frame.up)));
     }
@@ -162,7 +162,11 @@ Result<OrthoPlanes> find_ortho_planes(scene::Scene& scene) {
   for (const scene::Entity field : fields)
     if (field != planes.base && (is_map(field) || slice_of(scene, field) != nullptr)) planes.overlays.push_back(field);
   const field::Field& field = *scene::rendered_field(scene, planes.base).get();
-  planes.bounds = field.world_bounds();
+  Bounds box;
+  box.extend(field.index_box().lo);
+  box.extend(field.index_box().hi);
+  for (int i = 0; i < 8; ++i) planes.corners[static_cast<std::size_t>(i)] = field.mapping().world_from_index(box.corner(i));
+  planes.center = field.mapping().world_from_index(box.center());
   const auto& file = scene.entities.get<scene::FieldSource>(planes.base).file;
   const bool is_patient_space = file && field::read_units(file->path, file->grid).is_patient_space;
   planes.frames = make_plane_frames(field.mapping().world_from_index_linear, is_patient_space);
@@ -172,7 +176,7 @@ Result<OrthoPlanes> find_ortho_planes(scene::Scene& scene) {
 Outcome add_plane_views(const scene::Scene& scene, const OrthoPlanes& planes, const std::optional<Vec3>& focus,
                         const std::optional<std::array<double, 2>>& window, FramePacket& packet) {
   if (!packet.eyes.empty()) return Error{"orthogonal views are not shown in stereo; --stereo mono was expected"};
-  const Vec3 center = planes.bounds.center(), at = focus.value_or(center);
+  const Vec3 center = planes.center, at = focus.value_or(center);
   const double height = common_height(planes, double(packet.width) / packet.height);
   packet.planes.clear();
   for (std::size_t k = 0; k < planes.frames.size(); ++k) {
@@ -184,7 +188,7 @@ Outcome add_plane_views(const scene::Scene& scene, const OrthoPlanes& planes, co
     plane->objects = packet.objects;
     plane->cursors = packet.cursors;
     plane->view.target = center + dot(at - center, frame.back) * frame.back;
-    plane->view.position = plane->view.target + 2 * planes.bounds.diagonal() * frame.back;
+    plane->view.position = plane->view.target + 2 * norm(planes.corners[7] - planes.corners[0]) * frame.back;
     plane->view.up = frame.up;
     plane->view.orthographic = true;
     plane->view.height = height;

@@ -28,7 +28,8 @@ struct OrthoPlanes {
   scene::Entity base;                   ///< base field
   std::vector<scene::Entity> overlays;  ///< fields drawn over it
   std::array<PlaneFrame, 3> frames;     ///< frames of the planes
-  Bounds bounds;                        ///< bounds of the base field
+  std::array<Vec3, 8> corners;          ///< corners of the base field
+  Vec3 center{0.0};                     ///< their middle
 };
 
 /// Finds the fields and frames. An Error if the scene shows no scalar field.

@@ -43,6 +43,9 @@ Outcome Frames::add_planes(render::FramePacket& packet) {
     }
   }
   CATENA_TRY(const render::OrthoPlanes planes, render::find_ortho_planes(scene_));
+  Bounds box;
+  for (const Vec3& corner : planes.corners) box.extend(corner);
+  if (focus && !box.contains(*focus)) return Error{"--focus: the point is outside of the field; a point inside was expected"};
   return render::add_plane_views(scene_, planes, focus, {}, packet);
 }
 

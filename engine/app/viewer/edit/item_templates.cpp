@@ -230,6 +230,8 @@ Result<std::string> make_widget_json(const scene::Scene& scene, const std::strin
   scene::Widget widget;
   widget.spec.kind = kind;
   widget.spec.pose.points = {two_ends ? middle - half : middle, middle + half};
+  for (Vec3& point : widget.spec.pose.points)
+    for (int i = 0; i < 3; ++i) point[i] = round_within(point[i], 0, max_abs(size) > 0 ? max_abs(size) : 1, 20000);
   if (kind == Kind::cutting_plane) widget.spec.pose.orientation = facing(to_camera);
   if (kind == Kind::isolevel && !(widget.field = field_of_isolevel(scene)))
     return Error{"an isolevel needs a scalar field, which the scene does not have"};

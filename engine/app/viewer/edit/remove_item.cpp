@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "engine/app/viewer/edit/haptic_binding.h"
+#include "engine/app/viewer/edit/histogram_cache.h"
 #include "engine/base/json_edit.h"
 #include "engine/scene/references.h"
 #include "engine/scene/ruler.h"
@@ -221,7 +222,9 @@ TextEdits make_remove_widget_edits(const scene::Scene& scene, const std::string&
     } else {
       edits.push_back({pointer + "/widget", std::nullopt});
       edits.push_back({pointer + "/point", scene::to_json(pose.points[0])});
-      edits.push_back({pointer + "/normal", scene::to_json(scene::plane_normal(pose))});
+      Vec3 normal = scene::plane_normal(pose);
+      for (int i = 0; i < 3; ++i) normal[i] = round_within(normal[i], 0, 1, 1e12);  // no rounding errors of the rotation
+      edits.push_back({pointer + "/normal", scene::to_json(normal)});
     }
   });
   for (scene::Document::Edit& edit : edits_without(text, gone)) edits.push_back(std::move(edit));

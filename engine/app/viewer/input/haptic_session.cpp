@@ -231,9 +231,14 @@ bool HapticSession::pull_state(scene::Scene& scene) {
   if (latest_state_.program_epoch != program_->epoch) return false;
   const auto cursor = [&]() -> scene::Cursor& { return scene.entities.get<scene::Cursor>(scene.cursor); };
   const bool was_visible = cursor().visible;  // initially true if the scene states a position
+  if (!was_visible && is_mouse() && !mouse_has_moved_) {
+    // a mouse that has not been used feels nothing
+    latest_state_.force_n = Vec3(0.0);
+    for (LinkReport& link : latest_state_.links) link.active = false;
+    return false;
+  }
   scene::update_cursor(scene, latest_state_);
   cursor().pseudo_haptic = device_.device->capabilities().max_force_n <= 0;
-  cursor().visible = was_visible || !is_mouse() || mouse_has_moved_;
   scene::update_widgets(scene, latest_state_);
   return looks_different(before, latest_state_);
 }

@@ -124,9 +124,11 @@ void Session::perform(Action action) {
     case Action::previous_time_step:
       return show_time_step(scene.scene().time.step - 1);
     case Action::toggle_ortho_views: {
-      if (!context_.options.use_headset && !context_.navigation.ortho.is_on)
+      if (context_.options.use_headset || scene.scene().stereo.mode != scene::StereoMode::mono)
+        return state.show_message("orthogonal views are not shown in stereo; F2 selects the stereo mode", true);
+      if (!context_.navigation.ortho.is_on)
         if (const auto planes = render::find_ortho_planes(scene.scene()); !planes) return state.show_message(planes.error().message, true);
-      if (!context_.options.use_headset) toggle(context_.navigation.ortho.is_on);
+      toggle(context_.navigation.ortho.is_on);
       content_changed_ = true;
       return;
     }
