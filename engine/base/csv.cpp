@@ -127,6 +127,13 @@ Result<NumberTable> parse_csv(std::string_view text, const std::string& file, co
   return table;
 }
 
+std::string quoted_csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
 Result<NumberTable> read_csv(const std::string& path, const std::vector<std::string_view>& required,
                              const std::vector<std::string_view>& optional) {
   CATENA_TRY(const std::string text, read_text_file(path, "a CSV file with the header " + expected_header(required, optional)));

@@ -28,6 +28,9 @@ struct NumberTable {
   const std::vector<double>* find(std::string_view column) const;
 };
 
+/// Returns the text as a cell of a CSV table: in quotes if it contains a comma, a quote or a line break.
+std::string quoted_csv_cell(const std::string& text);
+
 /// Reads a table from a file, or parses it from `text` (`file` is the name for messages). Every column of `required` must be present. An
 /// entry of `optional` may be a group such as "qw,qx": all of its columns must be present or none. Errors: a column that is unknown,
 /// duplicate or missing; a cell that is not a finite number; a row with the wrong number of cells; no rows; a table larger than the memory

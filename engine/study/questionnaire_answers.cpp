@@ -5,18 +5,11 @@
 
 #include <filesystem>
 
+#include "engine/base/csv.h"
 #include "engine/base/text.h"
 
 namespace catena::study {
 namespace {
-
-std::string quoted_cell(std::string text) {
-  text = one_line(std::move(text));
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
 
 /// Returns the text of a CSV cell, without quotes if it is quoted.
 std::string words_of_cell(std::string_view cell) {
@@ -38,7 +31,7 @@ std::string answers_file(const std::string& folder, int subject) {
 std::string_view answers_header() { return "question,answer\n"; }
 
 std::string answer_row(const std::string& question, const std::string& answer) {
-  return quoted_cell(question) + "," + quoted_cell(answer) + "\n";
+  return quoted_csv_cell(one_line(question)) + "," + quoted_csv_cell(one_line(answer)) + "\n";
 }
 
 Result<Answers> read_answers(const std::string& path, const Study& study) {
@@ -54,7 +47,8 @@ Result<Answers> read_answers(const std::string& path, const Study& study) {
   if (!remaining.starts_with(answers_header())) return Error{path + ":1: the header is missing; \"question,answer\" was expected"};
   for (remaining.remove_prefix(answers_header().size()); !remaining.empty(); remaining.remove_prefix(remaining.find('\n') + 1)) {
     const std::size_t number = answers.texts.size();
-    const std::string question = number < study.questions.size() ? quoted_cell(study.questions[number].name) + "," : std::string();
+    const std::string question =
+        number < study.questions.size() ? quoted_csv_cell(one_line(study.questions[number].name)) + "," : std::string();
     if (question.empty() || !remaining.starts_with(question))
       return Error{fmt::format("{}:{}: the row is not an answer to question {} of the study", path, number + 2, number + 1)};
     answers.texts.push_back(words_of_cell(remaining.substr(question.size(), remaining.find('\n') - question.size())));

@@ -137,7 +137,7 @@ void add_marks(const OrthoPlanes& planes, std::size_t plane, const Vec3& focus, 
   for (int i = 1; i < 3; ++i)
     if (std::fabs(frame.back[i]) > std::fabs(frame.back[axis])) axis = i;
   const double position = (frame.back[axis] < 0 ? -1 : 1) * dot(focus, frame.back);
-  packet.overlay.texts.push_back({fmt::format("{} {:.4g}{}{}", frame.name, position, unit.empty() ? "" : " ", unit),
+  packet.overlay.texts.push_back({fmt::format("{} {:.4g}{}", frame.name, position, scene::unit_suffix(unit)),
                                   Anchor::top_left,
                                   {8, 6},
                                   kNamePt,

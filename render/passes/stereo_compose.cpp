@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "render/frame/grid_cells.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {
@@ -133,9 +134,9 @@ Outcome StereoComposer::record_view(vk::Commands& commands, std::size_t view) {
     if (packing_ == Packing::top_bottom_half) data.block_y = n;
   }
   if (packing_ == Packing::grid) {
-    constexpr std::uint32_t kCells[] = {1, 0, 2, 3};  // the first view is at the top right
+    const int cell = grid_cell(int(k));
     area.extent = {area.extent.width / 2, area.extent.height / 2};
-    area.offset = {std::int32_t(kCells[k % 4] % 2 * area.extent.width), std::int32_t(kCells[k % 4] / 2 * area.extent.height)};
+    area.offset = {std::int32_t(cell % 2 * area.extent.width), std::int32_t(cell / 2 * area.extent.height)};
   }
   data.first = {float(area.offset.x), float(area.offset.y)};
   CATENA_CHECK(vk::write_uniform(*device_, data_[view], data));

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "engine/app/cli/json_writer.h"
+#include "engine/base/csv.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 
@@ -46,12 +47,8 @@ std::string json_cell(const MeasureCell& cell) {
 }
 
 std::string csv_cell(const MeasureCell& cell) {
-  const std::string text = cell_text(
-      cell, [](double v) { return to_text(v); }, "");
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
+  return quoted_csv_cell(cell_text(
+      cell, [](double v) { return to_text(v); }, ""));
 }
 
 std::string with_unit(const MeasureFact& fact) { return fact.unit.empty() ? fact.name : fact.name + " [" + fact.unit + "]"; }

@@ -152,8 +152,8 @@ std::vector<scene::Document::Edit> make_item_edits(const scene::Scene& scene, sc
     surface = make_unique_name(map + "_labels", [&](const std::string& n) { return bool(scene::find_field(scene, n)); });
     edits.push_back({"/fields/" + surface, "{\"label\": \"*\", \"of\": " + scene::to_json(map) + "}"});
   }
-  edits.push_back(
-      {pointer, "{\"field\": " + scene::to_json(surface) + ", \"level\": 0.5, \"color_by\": {\"field\": " + scene::to_json(map) + "}}"});
+  edits.push_back({pointer, "{\"field\": " + scene::to_json(surface) + ", \"level\": " + scene::to_json(field::kLabelLevel) +
+                                ", \"color_by\": {\"field\": " + scene::to_json(map) + "}}"});
   return edits;
 }
 

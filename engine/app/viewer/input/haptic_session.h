@@ -127,8 +127,8 @@ class HapticSession {
   HapticDeviceSetup device_;
   std::string device_name_ = "mouse";
   haptics::MouseDevice* mouse_ = nullptr;  ///< Points to device_.device if that is the mouse, which the frame thread moves; else null.
-  bool mouse_has_moved_ =
-      false;  ///< The user has moved the probe of a mouse in this scene: until then it is not rendered and feels nothing.
+  /// The user has moved the probe of a mouse in this scene; until then it is not rendered and feels nothing.
+  bool mouse_has_moved_ = false;
   Recording recording_;
   std::optional<CrashGuard> crash_guard_;
   std::unique_ptr<haptics::Servo> servo_;

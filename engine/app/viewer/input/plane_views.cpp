@@ -6,6 +6,7 @@
 
 #include "engine/field/field_display_range.h"
 #include "engine/field/grid/grid.h"
+#include "render/frame/grid_cells.h"
 
 namespace catena::app {
 
@@ -30,14 +31,13 @@ void change_window(OrthoViews& views, const render::SliceItem& slice, const Inpu
 }  // namespace
 
 Area page_view_area(const Area& page, int view) {
-  constexpr int kCells[] = {1, 0, 2, 3};
+  const int cell = render::grid_cell(view);
   const double width = 0.5 * page.width, height = 0.5 * page.height;
-  return {page.x + kCells[view] % 2 * width, page.y + kCells[view] / 2 * height, width, height};
+  return {page.x + cell % 2 * width, page.y + cell / 2 * height, width, height};
 }
 
 int page_view_at(const Area& page, double x, double y) {
-  constexpr int kViews[] = {1, 0, 2, 3};
-  return kViews[(x >= page.x + 0.5 * page.width ? 1 : 0) + (y >= page.y + 0.5 * page.height ? 2 : 0)];
+  return render::grid_cell((x >= page.x + 0.5 * page.width ? 1 : 0) + (y >= page.y + 0.5 * page.height ? 2 : 0));
 }
 
 Vec3 plane_point(const render::FramePacket& plane, const Area& area, double x, double y) {
