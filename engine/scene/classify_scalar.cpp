@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <unordered_set>
 
@@ -32,6 +33,9 @@ constexpr double kPlateau = 0.1, kPlateaus = 0.9, kMinPlateau = 0.02;
 // scans
 constexpr double kBrightFrom = 0.3, kBrightLeast = 0.0002, kBrightMost = 0.04, kRough = 0.6;
 constexpr double kEmpty = 0.6;
+constexpr double kEitherSign = 0.05, kStrongQuantile = 0.95;                           // statistics
+constexpr double kDecadeSpread = std::numbers::e, kDecadeTail = 10;                    // decades
+constexpr double kNoisy = 1.2, kSeparated = 0.7, kCorrelated = 0.3, kTwoLevels = 0.9;  // two phases
 
 /// Sums over pairs of neighboring voxels in the sampled blocks.
 struct Neighbours {
@@ -39,6 +43,7 @@ struct Neighbours {
   std::array<std::size_t, 3> pairs{}, equal{};  // by axis: pairs with both voxels in the foreground
   std::size_t touching = 0;                     // pairs with at least one voxel in the foreground
   std::size_t slopes = 0, unit_slopes = 0;
+  double products = 0, squares = 0;  // of deviations from the mean: two voxels apart, and of a voxel with itself
 };
 
 double share(std::size_t part, std::size_t all) { return all == 0 ? 0 : static_cast<double>(part) / static_cast<double>(all); }
@@ -52,9 +57,13 @@ int bin_of(double value, double lo, double hi) {
 
 /// Otsu's threshold: the last bin of the lower class where the between-class variance is largest. The middle of all bins within
 /// kAsGood of that maximum, as in a gap between the classes.
-int otsu_bin(const Bins& bins) {
-  double all = 0, sum = 0;
-  for (int i = 0; i < kKindBins; ++i) all += double(bins[i]), sum += double(i) * double(bins[i]);
+struct OtsuThreshold {
+  int bin;            // last bin of the lower class
+  double separation;  // between-class variance / variance
+};
+OtsuThreshold find_otsu_threshold(const Bins& bins) {
+  double all = 0, sum = 0, squares = 0;
+  for (int i = 0; i < kKindBins; ++i) all += double(bins[i]), sum += i * double(bins[i]), squares += double(i) * i * double(bins[i]);
   double below = 0, below_sum = 0, best = -1;
   std::array<double, kKindBins> variance{};
   for (int i = 0; i + 1 < kKindBins; ++i) {
@@ -68,7 +77,8 @@ int otsu_bin(const Bins& bins) {
   const auto is_best = [&](double between) { return between >= kAsGood * best; };
   const auto first = std::find_if(variance.begin(), variance.end(), is_best);
   const auto last = std::find_if(variance.rbegin(), variance.rend(), is_best).base() - 1;
-  return static_cast<int>((first - variance.begin() + (last - variance.begin())) / 2);
+  const double spread = all * squares - sum * sum;
+  return {static_cast<int>((first - variance.begin() + (last - variance.begin())) / 2), spread > 0 ? best / spread : 0};
 }
 
 void measure_values(std::vector<float>& values, ScalarStats& facts) {
@@ -76,11 +86,14 @@ void measure_values(std::vector<float>& values, ScalarStats& facts) {
   std::unordered_set<float> distinct;
   facts.is_integral = true;
   facts.min_value = values.front();
-  std::size_t air = 0, soft = 0;
+  std::size_t air = 0, soft = 0, negative = 0;
+  std::vector<float> magnitudes;
   for (const float v : values) {
     facts.min_value = std::min(facts.min_value, double(v));
     if (v != std::nearbyint(v)) facts.is_integral = false;
     if (distinct.size() <= kMaxLabels) distinct.insert(v);
+    negative += v < 0;
+    if (v != 0) magnitudes.push_back(std::fabs(v));
     air += v >= kAirLo && v <= kAirHi;
     soft += v >= kSoftLo && v <= kSoftHi;
   }
@@ -90,7 +103,12 @@ void measure_values(std::vector<float>& values, ScalarStats& facts) {
   facts.empty_share = share(static_cast<std::size_t>(std::count(values.begin(), values.end(), static_cast<float>(facts.min_value))), n);
   facts.lo = quantile(values, 0.001);
   facts.hi = quantile(values, 0.999);
-  const double brightest = quantile(values, 0.9999);
+  facts.negative_share = share(negative, magnitudes.size());
+  if (!magnitudes.empty()) facts.strong_magnitude = quantile(magnitudes, kStrongQuantile);
+  facts.low = quantile(values, 0.16);
+  facts.median = quantile(values, 0.5);
+  facts.high = quantile(values, 0.84);
+  facts.brightest = quantile(values, 0.9999);
   facts.background = facts.threshold = facts.lo;
   if (!(facts.lo < facts.hi)) return;
 
@@ -99,12 +117,22 @@ void measure_values(std::vector<float>& values, ScalarStats& facts) {
   const auto largest_bin = std::max_element(bins.begin(), bins.end()) - bins.begin();
   if (share(bins[largest_bin], n) > kBackgroundFull && double(largest_bin) < kBackgroundEnd * kKindBins)
     facts.background = facts.lo + (double(largest_bin) + 0.5) / kKindBins * (facts.hi - facts.lo);
-  facts.threshold = facts.lo + (otsu_bin(bins) + 1.0) / kKindBins * (facts.hi - facts.lo);
+  const OtsuThreshold otsu = find_otsu_threshold(bins);
+  facts.threshold = facts.lo + (otsu.bin + 1.0) / kKindBins * (facts.hi - facts.lo);
+  facts.separation = otsu.separation;
 
   for (const float v : values) facts.mean += std::clamp(double(v), facts.lo, facts.hi) / static_cast<double>(n);
+  const double bright_threshold = facts.background + kBrightFrom * (facts.brightest - facts.background);
+  if (bright_threshold > facts.lo) {
+    Bins below{};
+    for (const float v : values)
+      if (v <= bright_threshold) ++below[bin_of(v, facts.lo, bright_threshold)];
+    const OtsuThreshold body = find_otsu_threshold(below);
+    facts.body_threshold = facts.lo + (body.bin + 1.0) / kKindBins * (bright_threshold - facts.lo);
+    facts.body_separation = body.separation;
+  }
   std::size_t near_background = 0, low = 0, high = 0, bright = 0;
   const double width = kBackgroundWidth * (facts.hi - facts.lo), tenth = kPlateau * (facts.hi - facts.lo);
-  const double bright_threshold = facts.background + kBrightFrom * (brightest - facts.background);
   for (const float v : values) {
     near_background += std::fabs(v - facts.background) < width;
     low += v <= facts.lo + tenth;
@@ -125,7 +153,10 @@ void measure_neighbours(const std::vector<float>& block, const field::Mapping& m
     for (int y = 0; y < kEdge; ++y)
       for (int x = 0; x + 2 < kEdge; ++x) {
         const double a = at(x, y, z), b = at(x + 1, y, z), c = at(x + 2, y, z);
-        if (!std::isfinite(a) || !std::isfinite(b) || !std::isfinite(c) || !is_foreground(b)) continue;
+        if (!std::isfinite(a) || !std::isfinite(b) || !std::isfinite(c)) continue;
+        sums.products += (a - facts.mean) * (c - facts.mean);
+        sums.squares += 0.5 * ((a - facts.mean) * (a - facts.mean) + (c - facts.mean) * (c - facts.mean));
+        if (!is_foreground(b)) continue;
         sums.first += 0.5 * (std::fabs(b - a) + std::fabs(c - b));
         sums.second += std::fabs(a - 2 * b + c);
       }
@@ -195,6 +226,7 @@ ScalarStats compute_scalar_stats(const field::ScalarGrid& grid, const field::Uni
   for (int axis = 0; axis < 3; ++axis) facts.equal_share = std::min(facts.equal_share, share(sums.equal[axis], sums.pairs[axis]));
   facts.region_share = share(std::accumulate(sums.equal.begin(), sums.equal.end(), std::size_t{0}), sums.touching);
   facts.roughness = sums.first > 0 ? sums.second / sums.first : 0;
+  facts.correlation = sums.squares > 0 ? sums.products / sums.squares : 0;
   facts.distance_share = share(sums.unit_slopes, sums.slopes);
   return facts;
 }
@@ -209,16 +241,34 @@ DataKind classify_scalar(const ScalarStats& f) {
   if (f.is_integral && f.distinct_values > 1 && f.distinct_values <= kMaxLabels && f.equal_share >= kEqualNeighbours &&
       f.region_share >= kRegions)
     return DataKind::label_map;
+  if (f.is_patient_space && !f.is_integral && f.negative_share >= kEitherSign && f.negative_share <= 1 - kEitherSign)
+    return DataKind::statistic;
   if (f.plateau_share >= kPlateaus || (!f.is_integral && f.equal_share >= kEqualNeighbours)) return DataKind::solid;
   if (!f.is_patient_space && !f.has_mask && f.min_value >= 0 && f.min_value < f.hi && f.empty_share >= kEmpty) return DataKind::cloud;
-  if (is_rough && f.bright_share >= kBrightLeast && f.bright_share <= kBrightMost) return DataKind::angiogram;
+  const bool has_decades =
+      f.low > 0 && (f.high >= kDecadeSpread * f.median || f.median >= kDecadeSpread * f.low) && f.brightest >= kDecadeTail * f.median;
+  if (!f.is_patient_space && is_rough && f.min_value >= 0 && has_decades) return DataKind::decades;
+  const bool has_bright_parts = f.bright_share >= kBrightLeast && f.bright_share <= kBrightMost;
+  if (!f.is_patient_space && is_rough && has_bright_parts && f.body_separation >= kTwoLevels) return DataKind::inclusions;
+  if (is_rough && has_bright_parts) return DataKind::angiogram;
   if (f.is_patient_space && is_rough) return DataKind::mr;
+  if (f.roughness >= kNoisy && f.separation >= kSeparated && f.correlation >= kCorrelated) return DataKind::two_phases;
   return DataKind::simulation;
 }
 
 std::string_view to_string(DataKind kind) {
-  constexpr std::string_view words[] = {"a level set",  "a CT",       "a label map", "a solid body",
-                                        "an angiogram", "an MR scan", "a cloud",     "a simulation"};
+  constexpr std::string_view words[] = {"a level set",
+                                        "a CT",
+                                        "a label map",
+                                        "a statistic",
+                                        "a solid body",
+                                        "a quantity over several powers of ten",
+                                        "a body with inclusions",
+                                        "an angiogram",
+                                        "an MR scan",
+                                        "a cloud",
+                                        "two phases",
+                                        "a simulation"};
   return words[static_cast<int>(kind)];
 }
 
@@ -240,6 +290,16 @@ std::string explain_kind(DataKind kind, const ScalarStats& f) {
     case DataKind::solid:
       return f.plateau_share >= kPlateaus ? percent(f.plateau_share) + " of the values are near the ends of the range"
                                           : percent(f.equal_share) + " of all neighbours are equal";
+    case DataKind::statistic:
+      return "the values are in patient space, and " + percent(f.negative_share) + " of those other than 0 are negative";
+    case DataKind::decades:
+      return fmt::format("the median is {}, but a few values are above {}", format_readable(f.median), format_readable(f.brightest));
+    case DataKind::inclusions:
+      return percent(f.bright_share) + " of the values are bright, and the others are on both sides of " +
+             format_readable(f.body_threshold);
+    case DataKind::two_phases:
+      return fmt::format("the data are noisy, and a threshold of {} explains {} of their variance", format_readable(f.threshold),
+                         percent(f.separation));
     case DataKind::angiogram:
       return "only " + percent(f.bright_share) + " of the values are bright, and the data are rough";
     case DataKind::mr:

@@ -12,6 +12,7 @@
 #include "engine/base/haptic_state.h"
 #include "engine/base/json.h"
 #include "engine/base/plane.h"
+#include "engine/base/threshold.h"
 #include "engine/field/analytic/analytic.h"
 #include "engine/geometry/flow/vortex_cores.h"
 #include "engine/io/curves/load_curves.h"
@@ -81,6 +82,7 @@ struct NamedColors {
   std::string map;                             ///< Name of the map; empty: the default map of the colored object
   std::optional<std::array<double, 2>> range;  ///< [min, max] of the values; empty: range of the data
   ValueMapping mapping{};                      ///< Scale between the points; also used by explicit color tables and by opacities
+  Threshold threshold{};                       ///< Values that are shown; also used with explicit color tables
   bool operator==(const NamedColors&) const = default;
   /// Returns whether nothing was specified.
   bool is_default() const { return *this == NamedColors{}; }
@@ -118,13 +120,26 @@ struct TransferFunction {
   std::string file;                             ///< Transfer file it was read from; empty: the scene file itself
 };
 
+/// Opacity requested for labels of a label map.
+struct LabelOpacity {
+  std::string labels;  ///< Number, range of numbers "A-B", or name, in which * stands for any letters
+  double opacity = 1;  ///< Opacity of the surface, 0 (not drawn) to 1
+};
+
 /// Colors and opacities requested for a data file instead of those chosen from its values. At most one of `opacities` and `preset` is set.
 struct FileColors {
   NamedColors named{};                                      ///< Color map, range and scale
   std::vector<TransferFunction::OpacityPoint> opacities{};  ///< Opacities of a volume, values rising; empty: chosen from the data
   std::string preset{};                                     ///< Name of a preset (opacity_presets.h); empty: none
-  /// Returns whether nothing was requested.
-  bool is_default() const { return named.is_default() && !makes_volume(); }
+  bool is_symmetric = false;                                ///< The range of the colors is symmetric about 0; without a range in `named`
+  std::vector<LabelOpacity> label_opacities{};              ///< Opacities of labels; the last one that names a label holds
+  /// Another data file, drawn over the first one: labels, or a statistic. The other members are then those of its colors.
+  std::string overlay{};
+  bool is_overlay = false;  ///< The file is drawn over another one
+  /// Returns whether anything was requested.
+  bool is_given() const { return !is_default() || !overlay.empty() || !label_opacities.empty(); }
+  /// Returns whether nothing was requested but an overlay and opacities of labels.
+  bool is_default() const { return named.is_default() && !makes_volume() && !is_symmetric; }
   /// Returns whether a volume was requested.
   bool makes_volume() const { return !opacities.empty() || !preset.empty(); }
 };

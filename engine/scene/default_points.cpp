@@ -73,6 +73,7 @@ Result<std::string> default_points_members(const curves::PointSet& set, const st
     text += ", \"color_by\": {\"value\": " + json::serialize_string(column->name);
     NamedColors specified = colors;
     specified.range = range;
+    if (specified.map.empty()) specified.map = kDefaultVolumeColorMap;
     text += color_members(specified) + "}";
   }
   return text + "}]" +

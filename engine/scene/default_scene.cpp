@@ -19,6 +19,7 @@
 #include "engine/scene/default_points.h"
 #include "engine/scene/default_visualization.h"
 #include "engine/scene/labels.h"
+#include "engine/scene/merge.h"
 #include "engine/scene/readers.h"
 #include "engine/scene/time_steps.h"
 
@@ -139,6 +140,21 @@ void show_fibres(DataFile& file, DefaultScene& default_scene, DefaultVisualizati
   }
 }
 
+/// Shows the labels of a map by groups of equal opacity.
+Outcome group_by_opacity(const std::string& path, const std::string& name, const field::ScalarGrid& grid, const FileColors& colors,
+                         DefaultVisualization& visualization) {
+  LabelTable table;
+  if (const std::string file = find_label_table(path); !file.empty()) {
+    CATENA_TRY(table, read_label_table(file));
+  }
+  const auto counts = field::count_labels(grid);
+  CATENA_ASSERT(counts);
+  auto groups = group_labels(*counts, table, colors.label_opacities);
+  if (!groups) return Error{one_line(path + ": " + groups.error().message)};
+  show_label_groups(name, *groups, visualization);
+  return Done{};
+}
+
 std::string curves_note(const curves::CurveSet& set) {
   return fmt::format("{} curve{}, coloured by direction: red for x, green for y, blue for z{}{}", set.line_count(),
                      set.line_count() == 1 ? "" : "s", set.note.empty() ? "" : "; ", set.note);
@@ -155,9 +171,8 @@ void remove_locations(Scene& scene) {
   scene.entities.each<T>([](Entity, T& part) { remove_locations(part.where); });
 }
 
-}  // namespace
-
-Result<DefaultScene> make_default_scene(const std::string& path, const std::string& grid, const FileColors& colors, int step) {
+/// Loads one data file and writes its default scene.
+Result<DefaultScene> scene_of_one_file(const std::string& path, const std::string& grid, const FileColors& colors, int step) {
   DefaultScene result;
   result.scene_path = path + ".json";
   const std::string file = json::serialize_string(std::filesystem::path(path).filename().string());
@@ -170,7 +185,7 @@ Result<DefaultScene> make_default_scene(const std::string& path, const std::stri
   if (data_file.kind == FileKind::mesh) {
     if (!colors.is_default()) return Error{one_line(path + ": a mesh has no values; a data file was expected with a colour map")};
     CATENA_TRY(result.mesh, mesh::load_mesh(data_file.path, {}, data_file.step));
-    result.text = "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": " + file + "}],\n" + default_mesh_background() + "\n}\n";
+    result.text = "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": " + file + "}]\n}\n";
     return result;
   }
   if (data_file.kind == FileKind::curves) {
@@ -178,13 +193,13 @@ Result<DefaultScene> make_default_scene(const std::string& path, const std::stri
       return Error{one_line(path + ": curves are coloured by direction; a data file was expected with a colour map")};
     CATENA_TRY(result.curves, curves::load_curves(data_file.path, data_file.step));
     result.note = curves_note(*result.curves);
-    result.text = "{\n  \"curves\": [{\"name\": \"curves\", \"file\": " + file + "}],\n" + default_mesh_background() + "\n}\n";
+    result.text = "{\n  \"curves\": [{\"name\": \"curves\", \"file\": " + file + "}]\n}\n";
     return result;
   }
   if (data_file.kind == FileKind::points) {
     CATENA_TRY(result.points, curves::load_points(data_file.path, data_file.step));
     CATENA_TRY(const std::string parts, default_points_members(*result.points, file, colors.named, result.note));
-    result.text = "{\n" + parts + ",\n" + default_mesh_background() + "\n}\n";
+    result.text = "{\n" + parts + "\n}\n";
     return result;
   }
   if (io::needs_layout(path))
@@ -205,6 +220,8 @@ Result<DefaultScene> make_default_scene(const std::string& path, const std::stri
   result.note = name + " " + visualization.note;
   result.text = "{\n  \"fields\": {" + name + ": {\"file\": " + file;
   if (!result.request.grid.empty()) result.text += ", \"grid\": " + json::serialize_string(result.request.grid);
+  if (!visualization.is_label_map && !colors.label_opacities.empty())
+    return Error{one_line(path + ": opacities of labels are those of a label map; a map of whole numbers was expected")};
   if (visualization.is_label_map) {
     result.request.interpolation = field::Interpolation::nearest;
     result.field.scalar = result.field.scalar->grid()->with_interpolation(result.request.interpolation);
@@ -214,6 +231,7 @@ Result<DefaultScene> make_default_scene(const std::string& path, const std::stri
       result.text += ", \"labels\": {\"file\": " + json::serialize_string(table_name) + "}";
       result.note += "; names from " + sanitize_for_terminal(table_name);
     }
+    if (!colors.label_opacities.empty()) CATENA_CHECK(group_by_opacity(path, name, *result.field.scalar->grid(), colors, visualization));
   }
   if (visualization.ignore_mask) {
     result.text += ", \"valid\": null";
@@ -230,6 +248,25 @@ Result<DefaultScene> make_default_scene(const std::string& path, const std::stri
   result.text += std::string("},\n") +
                  (result.field.times.size() > 1 || is_pattern(path) ? fmt::format("  \"time\": {{\"step\": {}}},\n", step) : "") +
                  visualization.scene_members + "\n}\n";
+  return result;
+}
+
+}  // namespace
+
+Result<DefaultScene> make_default_scene(const std::string& path, const std::string& grid, const FileColors& colors, int step) {
+  if (colors.overlay.empty()) return scene_of_one_file(path, grid, colors, step);
+  FileColors below, above = colors;
+  below.overlay = colors.overlay;
+  above.overlay.clear();
+  above.is_overlay = true;
+  CATENA_TRY(DefaultScene result, scene_of_one_file(path, grid, below, step));
+  CATENA_TRY(const DefaultScene overlay, scene_of_one_file(colors.overlay, {}, above, 0));
+  CATENA_TRY(const MergedScene merged, merge_scene(result.text, result.scene_path, overlay.text, overlay.scene_path));
+  for (const Document::Edit& edit : merged.edits)
+    if (edit.value) {
+      CATENA_TRY(result.text, json::set_value(result.text, result.scene_path, edit.pointer, *edit.value));
+    }
+  result.note += "; " + sanitize_for_terminal(std::filesystem::path(colors.overlay).filename().string()) + ": " + overlay.note;
   return result;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/document.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "engine/base/json_edit.h"
@@ -17,7 +18,7 @@ Result<Document> Document::open(const std::string& path, const std::vector<Field
   document.path_ = path;
   document.overrides_ = overrides;
   if (path.ends_with(".json")) {
-    if (!colors.is_default()) return Error{one_line(path + ": a scene sets its own colours; a data file was expected with a colour map")};
+    if (colors.is_given()) return Error{one_line(path + ": a scene sets its own colours; a data file was expected with a colour map")};
     if (!grid.empty()) return Error{one_line(path + ": a scene names its own grids; a data file was expected with the name of a grid")};
     CATENA_TRY(document.saved_, read_text_file(path, "a scene file (JSON)", kMaxJsonBytes));
   } else {
@@ -28,13 +29,13 @@ Result<Document> Document::open(const std::string& path, const std::vector<Field
     document.loaded_ = std::make_shared<const DefaultScene>(std::move(default_scene));
   }
   document.versions_.push_back({document.saved_, {}, {}});
-  CATENA_CHECK(parse_scene(document.saved_, document.path_, overrides));
+  CATENA_CHECK(document.check(document.saved_, document.path_));
   return document;
 }
 
 Result<Document> Document::create(const std::string& text, const std::string& path) {
-  CATENA_CHECK(parse_scene(text, path));
   Document document;
+  CATENA_CHECK(document.check(text, path));
   document.path_ = path;
   document.saved_ = text;
   document.versions_.push_back({text, {}, {}});
@@ -42,7 +43,7 @@ Result<Document> Document::create(const std::string& text, const std::string& pa
 }
 
 Result<Scene> Document::read() const {
-  CATENA_TRY(Scene scene, parse_scene(text(), path_, overrides_));
+  CATENA_TRY(Scene scene, parse_scene(text(), path_, overrides_, known_files_));
   if (const auto loaded = std::exchange(loaded_, nullptr)) adopt_loaded_data(*loaded, scene);
   return scene;
 }
@@ -72,9 +73,16 @@ Outcome Document::apply(const std::vector<Edit>& edits, const std::string& what,
   return push_version(std::move(edited), what, drag);
 }
 
+Outcome Document::check(const std::string& text, const std::string& path) {
+  CATENA_TRY(const Scene scene, parse_scene(text, path, overrides_, known_files_));
+  for (const std::string& file : scene.referenced_files)
+    if (std::ranges::find(known_files_, file) == known_files_.end()) known_files_.push_back(file);
+  return Done{};
+}
+
 Outcome Document::push_version(std::string edited, const std::string& what, const std::string& drag) {
   if (edited == text()) return Done{};
-  CATENA_CHECK(parse_scene(edited, path_, overrides_));
+  CATENA_CHECK(check(edited, path_));
   versions_.resize(current_ + 1);
   if (current_ > 0 && !drag.empty() && versions_[current_].drag == drag) {
     versions_[current_].text = std::move(edited);
@@ -134,7 +142,7 @@ Outcome Document::save(const std::string& path) {
     CATENA_TRY(std::string moved, relocate_text(version.text, path_, path, overrides_));
     texts.push_back(std::move(moved));
   }
-  CATENA_CHECK(parse_scene(texts[current_], path));
+  CATENA_CHECK(parse_scene(texts[current_], path, {}, known_files_));
 
   CATENA_TRY(OutputFile file, OutputFile::open(path));
   file.write(texts[current_]);

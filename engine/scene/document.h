@@ -90,10 +90,13 @@ class Document {
   struct Version {
     std::string text, label, drag;
   };
+  /// Checks a text, and adds its files to those that are known.
+  Outcome check(const std::string& text, const std::string& path);
   Outcome push_version(std::string text, const std::string& what, const std::string& drag);
 
   std::string path_, saved_;
   std::vector<FieldOverride> overrides_;
+  std::vector<std::string> known_files_;  ///< Files that existed when the text first named them; edits work while they are missing
   std::vector<Version> versions_;
   std::size_t current_ = 0;
   mutable std::shared_ptr<const DefaultScene> loaded_;  ///< Data for the first read() of a data file's scene

@@ -12,6 +12,12 @@ Key visible_key() {
   return schema::boolean("visible", "Visibility in the image; haptics and objects that refer to a hidden object are unaffected.")
       .with_default("true");
 }
+Key threshold_key() {
+  return schema::any_of("threshold", {schema::vector("", 2, "value", ""), schema::table("", 2, "value", "")},
+                        "Range `[LO, HI]` of the values that are shown, or two such ranges; whatever has another value is left out.")
+      .with_range_text("not falling")
+      .with_default("all values");
+}
 Key opacity_key(const std::string& help) { return schema::number("opacity", "", help).within(0, 1); }
 
 Keys color_scale_keys(std::string_view map, const std::string& range) {
@@ -45,7 +51,8 @@ Keys transfer_keys() {
        schema::table("gradient_opacity", 2, "value/world, 1",
                      "Rows `[gradient, factor]`; the factor multiplies the extinction where the gradient has this magnitude.")
            .with_range_text("factor 0 to 1")
-           .with_default("1 everywhere")});
+           .with_default("1 everywhere"),
+       threshold_key()});
 }
 
 /// Reads the colors of values: the object "color_by", {"field", "quantity" or "value", "color", "range", "mapping", "transfer"}.
@@ -111,7 +118,9 @@ Key color_by_key(ColorTarget subjects) {
                                   "Quantity that gives the colours, instead of `field` or `value`: arc length along the curve."));
   } else
     keys[0] = keys[0].required();
-  return schema::object("color_by", schema::concatenate(keys, color_scale_keys()), "Colouring by values.");
+  keys = schema::concatenate(keys, color_scale_keys());
+  if (subjects != ColorTarget::rays) keys.push_back(threshold_key());
+  return schema::object("color_by", std::move(keys), "Colouring by values.");
 }
 
 Outcome read_plain_color(const json::Node& item, Color& out) {
@@ -147,6 +156,7 @@ schema::Members color_scale_members(const std::vector<TransferFunction::ColorPoi
   if (colors.empty() && named.range) out.emplace_back("range", to_json(*named.range));
   if (named.mapping.kind != ValueMapping::Kind::linear) out.emplace_back("mapping", to_json(to_string(named.mapping.kind)));
   if (named.mapping.linear_below > 0) out.emplace_back("linear_below", to_json(named.mapping.linear_below));
+  if (!named.threshold.empty()) out.emplace_back("threshold", to_json(named.threshold));
   return out;
 }
 

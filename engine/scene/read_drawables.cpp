@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "engine/base/numbers.h"
+#include "engine/base/output_file.h"
 #include "engine/base/text.h"
 #include "engine/io/formats.h"
 #include "engine/io/volume/unsupported_formats.h"
@@ -198,6 +199,10 @@ std::string file_problem(const std::string& path, bool known, const std::string&
   if (!fs::exists(path, code)) return problem(" does not exist");
   if (!fs::is_regular_file(path, code) && !(folders && fs::is_directory(path, code))) return problem(" is not a file");
   return {};
+}
+
+bool is_known_file(const Scene& scene, const std::string& path) {
+  return std::ranges::any_of(scene.known_files, [&](const std::string& known) { return is_same_file(known, path); });
 }
 
 Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key) {

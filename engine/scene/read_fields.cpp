@@ -139,11 +139,12 @@ Outcome read_series(const json::Node& node, int scene_step, LoadRequest& request
   return Done{};
 }
 
-Outcome read_file_source(const std::string& scene_path, int scene_step, const json::Node& node, bool replaced, FieldSource& source) {
+Outcome read_file_source(const Scene& scene, const json::Node& node, bool replaced, FieldSource& source) {
+  const std::string& scene_path = scene.path;
   CATENA_TRY(const std::string file, json::require_string(node, "file"));
   LoadRequest request;
   request.path = resolve_path(scene_path, file);
-  if (!io::needs_layout(file)) CATENA_CHECK(read_series(node, scene_step, request, source));
+  if (!io::needs_layout(file)) CATENA_CHECK(read_series(node, scene.time.step, request, source));
   if (io::needs_layout(file)) {
     CATENA_CHECK(layout_table().read(scene_path, node, request.raw.emplace()));
   } else {
@@ -162,7 +163,7 @@ Outcome read_file_source(const std::string& scene_path, int scene_step, const js
     CATENA_CHECK(read_array_keys(node, request));
   }
   CATENA_TRY(const std::string package, json::get_string(node, "package", {}));
-  if (const std::string problem = field_fault(request.path); !replaced && !problem.empty())
+  if (const std::string problem = field_fault(request.path); !replaced && !problem.empty() && !is_known_file(scene, request.path))
     return json::error_at(*node.find("file"), "field " + in_quotes(node.label) + ": file " + problem +
                                                   (package.empty() ? "" : "; the Debian package " + in_quotes(package) + " contains it"));
   source.file = std::move(request);
@@ -249,7 +250,7 @@ Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
   return Done{};
 }
 
-Outcome read_source(const std::string& scene_path, int scene_step, const json::Node& node, bool replaced, FieldSource& source) {
+Outcome read_source(const Scene& scene, const json::Node& node, bool replaced, FieldSource& source) {
   CATENA_CHECK(json::expect_object(node, node.label));
   source.where = node;
   const bool file = node.find("file") != nullptr, analytic = node.find("analytic") != nullptr, label = node.find("label") != nullptr;
@@ -257,7 +258,7 @@ Outcome read_source(const std::string& scene_path, int scene_step, const json::N
   if (file == analytic || label)
     return json::error_at(node, "field " + in_quotes(node.label) + " has " + (file || analytic ? "several" : "none") +
                                     " of \"file\", \"analytic\" and \"label\"; exactly one of them was expected");
-  return file ? read_file_source(scene_path, scene_step, node, replaced, source) : read_analytic_source(node, source);
+  return file ? read_file_source(scene, node, replaced, source) : read_analytic_source(node, source);
 }
 
 // ---- --field NAME=FILE[:GRID] ----
@@ -338,7 +339,7 @@ Outcome read_fields(Scene& scene, const json::Node* fields, const std::vector<Fi
       const auto has_name = [&name = name](const FieldOverride& o) { return o.name == name; };
       const bool replaced = std::any_of(overrides.begin(), overrides.end(), has_name);
       FieldSource source;
-      CATENA_CHECK(read_source(scene.path, scene.time.step, node, replaced, source));
+      CATENA_CHECK(read_source(scene, node, replaced, source));
       const Entity entity = scene.entities.create();
       scene.entities.emplace<Name>(entity, {name});
       scene.entities.emplace<FieldSource>(entity, std::move(source));

@@ -117,7 +117,7 @@ Keys grid_source_keys() {
                      "Box to which the grid is cropped for rendering and haptics. Of a `.vdb` file only the blocks of voxels that the box "
                      "meets are read.")
           .with_default("the whole grid"),
-      schema::object("labels", labels_keys(), "Names and colours of the labels of a label map.").with_default("none")};
+      transform_key(), schema::object("labels", labels_keys(), "Names and colours of the labels of a label map.").with_default("none")};
 }
 
 Outcome read_grid_source(const std::string& scene_path, const json::Node& node, FieldSource& source) {
@@ -128,6 +128,7 @@ Outcome read_grid_source(const std::string& scene_path, const json::Node& node, 
   CATENA_CHECK(schema::read_value(*schema::find(keys, "interpolation"), node, interpolation));
   source.file->interpolation = interpolation;
   CATENA_CHECK(schema::read_value(*schema::find(keys, "level_of_detail"), node, source.file->level));
+  CATENA_CHECK(read_transform(scene_path, node, source.file->transform));
   const json::Node* crop = node.find("crop");
   return crop != nullptr ? read_crop(*crop, source.file->crop) : Done{};
 }

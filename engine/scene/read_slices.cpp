@@ -82,7 +82,7 @@ const Table<Slice>& slice_table() {
           return read_plane(scene, item, "slice", slice.point, slice.normal, slice.widget);
         },
         [](const Scene& scene, const Slice& slice) { return plane_members(scene, slice.point, slice.normal, slice.widget); });
-    t.group(color_scale_keys(), read_colors,
+    t.group(schema::concatenate(color_scale_keys(), {threshold_key()}), read_colors,
             [](const Scene&, const Slice& slice) { return color_scale_members(slice.color_by.colors, slice.color_by.named); });
     t.bind(opacity_key("Opacity of the slice."), &Slice::opacity);
     t.custom(schema::object("contours", contours_table().keys(), "Contour lines, with exactly one of `levels`, `count` and `spacing`."),

@@ -42,6 +42,27 @@ Result<std::optional<Pair>> read_range(const json::Node& object) {
   return std::optional<Pair>({lo, hi});
 }
 
+/// Reads "threshold": [lo, hi], or two such ranges that rise.
+Result<Threshold> read_threshold(const json::Node& object) {
+  const json::Node* node = object.find("threshold");
+  if (node == nullptr) return Threshold();
+  const auto refused = [](const json::Node& at) {
+    return json::error_at(at, "\"threshold\" is no range; [lo, hi] with lo <= hi, or two such ranges one above the other, were expected");
+  };
+  if (node->kind != json::Kind::array || node->items.empty()) return refused(*node);
+  const bool is_one = node->items.front().kind == json::Kind::number;
+  Threshold threshold;
+  for (std::size_t i = 0; i < (is_one ? 1 : node->items.size()); ++i) {
+    const json::Node& row = is_one ? *node : node->items[i];
+    if (row.kind != json::Kind::array || row.items.size() != 2 || i == kMaxThresholdRanges) return refused(row);
+    CATENA_TRY(const double lo, json::as_number(row.items[0], "threshold"));
+    CATENA_TRY(const double hi, json::as_number(row.items[1], "threshold"));
+    if (lo > hi || (!threshold.empty() && lo <= threshold.back()[1])) return refused(row);
+    threshold.push_back({lo, hi});
+  }
+  return threshold;
+}
+
 /// Reads "mapping" and "linear_below"; nullopt if neither is given.
 Result<std::optional<ValueMapping>> read_mapping(const json::Node& object) {
   const json::Node* below = object.find("linear_below");
@@ -212,8 +233,10 @@ Result<std::vector<ColorPoint>> read_color_table(const json::Node& node, std::st
 
 Result<ColorScale> read_color_scale(const std::string& scene_path, const json::Node& object) {
   ColorScale scale;
+  CATENA_TRY(const Threshold threshold, read_threshold(object));
   if (object.find("transfer") == nullptr) {
     CATENA_CHECK(read_colors(object, scale.colors, scale.named));
+    scale.named.threshold = threshold;
     TransferFunction explicit_values;
     explicit_values.colors = scale.colors;
     explicit_values.named = scale.named;
@@ -226,18 +249,22 @@ Result<ColorScale> read_color_scale(const std::string& scene_path, const json::N
                           "\"transfer\": " + in_quotes(transfer.file) + " holds no colours; \"color\" was expected in it");
   scale.colors = std::move(transfer.colors);
   scale.named = std::move(transfer.named);
+  scale.named.threshold = threshold;
   return scale;
 }
 
 Result<TransferFunction> read_transfer(const std::string& scene_path, const json::Node& object) {
+  CATENA_TRY(const Threshold threshold, read_threshold(object));
   if (object.find("transfer") == nullptr) {
     TransferFunction transfer;
     CATENA_CHECK(read_colors(object, transfer.colors, transfer.named));
+    transfer.named.threshold = threshold;
     CATENA_CHECK(read_opacities(object, transfer));
     CATENA_CHECK(check_mapping(object, transfer));
     return transfer;
   }
   CATENA_TRY(TransferFunction transfer, read_transfer_file(scene_path, object));
+  transfer.named.threshold = threshold;
   if (const json::Node* unit = object.find("opacity_unit")) {
     if (transfer.opacities.empty())
       return json::error_at(*unit, "\"opacity_unit\" is given, but the transfer file holds no \"opacity\"; one in it was expected");

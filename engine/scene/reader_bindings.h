@@ -66,7 +66,8 @@ inline Result<std::string> read_path(const Scene& scene, const json::Node& item,
   }
   steps.step = scene.time.step;
   const bool known = std::ranges::any_of(endings, [&](std::string_view ending) { return has_extension(path, ending); });
-  if (const std::string fault = file_problem(path, known, "a " + join_alternatives(endings) + " file"); !fault.empty())
+  if (const std::string fault = file_problem(path, known, "a " + join_alternatives(endings) + " file");
+      !fault.empty() && !is_known_file(scene, path))
     return json::error_at(*item.find("file"), kind + " " + in_quotes(name) + ": file " + fault);
   return path;
 }

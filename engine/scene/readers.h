@@ -57,6 +57,8 @@ Outcome read_plane(const Scene& scene, const json::Node& item, const std::string
 /// Returns an empty string if `path` is an existing file (or folder, with `folders`) and `known`, its type, is true; else the problem, with
 /// `expected` as what was expected.
 std::string file_problem(const std::string& path, bool known, const std::string& expected, bool folders = false);
+/// Returns whether the scene may name the file although it does not exist at the moment (Scene::known_files).
+bool is_known_file(const Scene& scene, const std::string& path);
 
 /// Returns the path of a file named in the scene; relative paths start at the scene file's folder.
 std::string resolve_path(const std::string& scene_path, const std::string& file);
@@ -67,6 +69,10 @@ Outcome read_time(Scene& scene, const json::Node& node);
 Outcome read_fields(Scene& scene, const json::Node* fields, const std::vector<FieldOverride>& overrides);
 /// Keys of a grid's source besides those of its file: "interpolation" and "labels". The source already has its file.
 Keys grid_source_keys();
+/// Key "transform" of a field from a file: its matrix, or the file that holds it.
+Key transform_key();
+/// Reads "transform"; `out` is empty if the field has none.
+Outcome read_transform(const std::string& scene_path, const json::Node& node, std::optional<field::FieldTransform>& out);
 Outcome read_grid_source(const std::string& scene_path, const json::Node& node, FieldSource& source);
 /// Keys of a label surface as a source: "label", "of", "smooth".
 Keys label_keys();
@@ -109,6 +115,8 @@ void bind_field(schema::StructSchema<T, C>& table, const Key& key, Access access
 Key clip_key();
 Key visible_key();
 Key opacity_key(const std::string& help);
+/// Key "threshold" of objects that leave out values; read_color_scale and read_transfer read it.
+Key threshold_key();
 /// Keys "point", "normal", "axis", "at" and "widget", as read by read_plane.
 Keys plane_keys();
 /// Returns the members that state a plane: its widget, else "axis" and "at" if it is across an axis, else "point" and "normal".
@@ -175,6 +183,7 @@ std::string write_seeds(const Scene& scene, const Seeds& seeds);
 ///   "color"     a table [[value, r, g, b], ...], or the name of a color map (color_maps.h)
 ///   "range"     [min, max], the values between which a named map is stretched; default: the range of the data
 ///   "mapping"   "linear", "log" or "symlog", with "linear_below": the scale between the points, also of opacities
+///   "threshold" [min, max], the values that are shown; not where "color_by" colors volumes and isosurfaces
 ///   "transfer"  instead of "color": a file, relative to the scene's. Either an object with a volume's keys, or a color map exported by
 ///               ParaView (read_paraview.cpp). "range" next to it stretches its tables from their own ends to the range
 /// and a volume, or a transfer file, has also

@@ -27,6 +27,7 @@ inline constexpr double kMaxSize = 1e30;
 struct Scene {
   std::string path;                           ///< Path it was read from, as it was given
   std::vector<std::string> referenced_files;  ///< All files that the text and the overrides name, as the scene opens them
+  std::vector<std::string> known_files;       ///< Files that need not exist at the moment, see parse_scene()
   /// Messages: "FILE:LINE: ..." about problems of the loaded data, and for a data file the classification of its data.
   std::vector<std::string> notes;
   EntityStore entities;  ///< Fields, visible objects, links, widgets
@@ -79,7 +80,9 @@ CATENA_EXPORT TuningTargets image_targets(std::string_view quality);
 /// was expected.
 CATENA_EXPORT Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides = {});
 /// Parses and checks the text of a scene file; relative file names start at the folder of `path`, which also names the text in messages.
-CATENA_EXPORT Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides = {});
+/// `known_files`: files that need not exist at the moment, because the scene has named them before.
+CATENA_EXPORT Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides = {},
+                                        const std::vector<std::string>& known_files = {});
 /// Creates the scene of a data file. Scalar grids are shown by the kind of data (default_visualization.h), vector grids as streamlines,
 /// triangle meshes as they are, curves in the colors of their directions, points as balls; the camera is fitted. `grid`: the grid to show;
 /// empty: the first usable scalar grid, else the first vector grid. `colors` may specify a color map and a range: a scalar grid is then a

@@ -89,11 +89,13 @@ void place_by_pointer(json::Node& node, const std::string& name, const std::stri
   }
 }
 
-Result<Scene> scene_of_root(const json::Node& root, const std::string& path, const std::vector<FieldOverride>& overrides) {
+Result<Scene> scene_of_root(const json::Node& root, const std::string& path, const std::vector<FieldOverride>& overrides,
+                            const std::vector<std::string>& known_files = {}) {
   CATENA_CHECK(schema::check_names(root, schema::FileKind::scene));
   CATENA_CHECK(check_sizes(root));
   Scene scene;
   scene.path = path;
+  scene.known_files = known_files;
   scene.cursor = scene.entities.create();
   scene.entities.emplace<Cursor>(scene.cursor);
   CATENA_CHECK(read_root(scene, root, overrides));
@@ -103,9 +105,10 @@ Result<Scene> scene_of_root(const json::Node& root, const std::string& path, con
 
 }  // namespace
 
-Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides) {
+Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides,
+                          const std::vector<std::string>& known_files) {
   CATENA_TRY(const json::Node root, json::parse(text, path));
-  return scene_of_root(root, path, overrides);
+  return scene_of_root(root, path, overrides, known_files);
 }
 
 Result<Scene> parse_scene_object(std::string_view text, const std::string& name, const std::vector<FieldOverride>& overrides) {

@@ -26,6 +26,9 @@ std::string to_json(const Vec3& v) { return schema::write_value(v); }
 std::string to_json(const Quat& q) { return schema::write_value(std::vector<double>{q.w, q.x, q.y, q.z}); }
 std::string to_json(const Color& c) { return schema::write_value(c); }
 std::string to_json(const std::array<double, 2>& range) { return schema::write_value(range); }
+std::string to_json(const Threshold& threshold) {
+  return threshold.size() == 1 ? to_json(threshold.front()) : table_of(threshold, [](const auto& range) { return to_json(range); });
+}
 std::string to_json(const std::vector<Vec3>& points) { return schema::write_value(points); }
 std::string to_json(const std::vector<double>& values) { return schema::write_value(values); }
 std::string to_json(const std::vector<TransferFunction::ColorPoint>& table) {

@@ -23,6 +23,7 @@ std::string to_json(const Vec3& v);                                             
 std::string to_json(const Quat& q);                                                ///< [w, x, y, z]
 std::string to_json(const Color& c);                                               ///< [r, g, b]
 std::string to_json(const std::array<double, 2>& range);                           ///< [min, max]
+std::string to_json(const Threshold& threshold);                                   ///< [min, max], or two of them
 std::string to_json(const std::vector<Vec3>& points);                              ///< [[x, y, z], ...]
 std::string to_json(const std::vector<double>& values);                            ///< [a, b, ...]
 std::string to_json(const std::vector<TransferFunction::ColorPoint>& table);       ///< "color": [[value, r, g, b], ...]

@@ -16,8 +16,8 @@ namespace {
 constexpr double kMaxSamples = 1 << 18;
 // a sample is visible if a slab of kThickness x domain length has at least this opacity
 constexpr double kMinOpacity = 0.02, kThickness = 1.0 / 25;
-constexpr double kOutlierShare = 0.002;        // share of the points that the view may leave outside
-constexpr double kHeight = 0.8, kWidth = 0.9;  // shares of the image that the data fill
+constexpr double kOutlierShare = 0.002;                      // share of the points that the view may leave outside
+constexpr double kHeight = 0.88, kWidth = 0.94, kFovy = 30;  // shares of the image that the data fill; degrees
 constexpr double kImagePt = 576, kBarPt = 92, kHorizontalBarPt = 52, kTitlePt = 30, kAxesShare = 0.84, kLetterPt = 6.7;
 constexpr std::size_t kNumberLetters = 6;
 constexpr double kMinDataShare = 0.3;  // minimum share of the image for the data, beside bars and titles
@@ -148,7 +148,19 @@ bool is_patient(const scene::Scene& scene) {
   return patient;
 }
 
-Vec3 first_direction(const scene::Scene& scene, const std::vector<FitPoints>& clouds) {
+/// Returns the direction from which a single slice is seen as an image, if the scene shows nothing else.
+std::optional<Vec3> image_direction(const scene::Scene& scene, const FramePacket& packet) {
+  const bool others = !packet.volumes.empty() || !packet.isosurfaces.empty() || !packet.meshes.empty() || !packet.tubes.empty() ||
+                      !packet.glyphs.empty() || !packet.spheres.empty();
+  if (packet.slices.size() != 1 || others) return std::nullopt;
+  const Vec3 normal = direction(packet.slices.front().normal);
+  // x to the right, or y; of a patient the right side is on the left
+  const Vec3 before = is_patient(scene) ? Vec3(-0.1, 1.0, -1.1) : Vec3(0.9, -1.0, 1.1);
+  return dot(normal, before) < 0 ? -1.0 * normal : normal;
+}
+
+Vec3 first_direction(const scene::Scene& scene, const FramePacket& packet, const std::vector<FitPoints>& clouds) {
+  if (const auto along = image_direction(scene, packet)) return *along;
   if (is_patient(scene)) return Vec3(0.4, 1.0, 0.3);
   Bounds all;
   for (const FitPoints& cloud : clouds)
@@ -318,11 +330,13 @@ View make_auto_view(const scene::Scene& scene, const FramePacket& packet) {
   // everything is clipped away: the bounds without clipping
   if (std::ranges::all_of(clouds, [](const FitPoints& cloud) { return cloud.points.empty(); }))
     clouds.push_back({corners_of(packet_bounds(packet))});
-  const Vec3 direction = first_direction(scene, clouds);
+  const Vec3 to_camera = first_direction(scene, packet, clouds);
+  constexpr double kSteep = 0.9;
+  const Vec3 up = std::fabs(direction(to_camera).z) > kSteep ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
   // a box or axes around everything drawn must be visible, too
   if (scene.bounding_box || scene.axes) clouds.push_back({corners_of(packet_bounds(packet))});
   const Room left = room(scene, packet);
-  View view = fit_view(clouds, static_cast<double>(packet.width) / packet.height, left.share.x, left.share.y, direction);
+  View view = fit_view(clouds, static_cast<double>(packet.width) / packet.height, left.share.x, left.share.y, to_camera, kFovy, up);
   if (left.shift != 0) {
     const Vec3 shift = left.shift * view.height * make_camera(view, packet.width, packet.height, {}).right;
     view.position += shift;

@@ -5,9 +5,10 @@
 /// Sampled on at most about 2^18 voxels, in rows along x; of each row the first and the last position are used, for a surface along every
 /// axis. The results are cached beside the entity (scene.cache).
 ///
-/// The view: from the front, filling 80 % of the image's height or 90 % of its width, less where a scalar bar, a title or axes take up
+/// The view: from the front, filling 88 % of the image's height or 94 % of its width, less where a scalar bar, a title or axes take up
 /// space; beside the labels of a legend slightly off-center.
 ///   patient   data in a patient's coordinates (engine/io/volume/units.h): from +y, slightly from the side and from above
+///   image       a single slice and nothing else: along its normal, y or z up; of a patient as radiologists look
 ///   flat      one edge of the bounds is shorter than 0.4 of the middle one: along that edge
 ///   others    default_view_direction()
 #pragma once

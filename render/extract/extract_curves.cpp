@@ -9,6 +9,7 @@
 #include "engine/base/text.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/visibility.h"
+#include "render/extract/colored_tubes.h"
 #include "render/extract/extract_internal.h"
 #include "render/extract/legends.h"
 
@@ -145,12 +146,10 @@ Result<FlatCurves> flat_curves(scene::Scene& scene, const scene::CurvesSource& d
     const DisplayRange range = field::display_range(all, value->shown());
     CATENA_CHECK(scene::check_mapping(*drawn.color_by, range.lo));
     flat.colors = scene::make_color_table(drawn.color_by->colors, drawn.color_by->named, range.lo, range.hi);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      std::vector<Color> colors;
-      colors.reserve(values[i].size());
-      for (const double v : values[i]) colors.push_back(sample_color_table(flat.colors, v));
-      flat.tubes[i].colors = std::move(colors);
-    }
+    std::vector<TubeItem> colored;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      add_colored_tubes(flat.tubes[i], values[i], flat.colors, drawn.color_by->named.threshold, colored);
+    flat.tubes = std::move(colored);
   }
   return flat;
 }

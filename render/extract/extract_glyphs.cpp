@@ -151,7 +151,7 @@ double value_at(const field::AnyField& shown, const Vec3& p, field::Cursor& curs
   return sample.inside ? sample.value : none;
 }
 
-/// Makes the color table and sets each glyph's color.
+/// Makes the color table, sets each glyph's color and leaves out the glyphs outside the threshold.
 Result<ColorTable> color_glyphs(const scene::Scene& scene, const scene::GlyphSet& set, const std::vector<Vec3>& places,
                                 const std::vector<double>& speeds, std::vector<Glyph>& glyphs) {
   std::vector<double> values = speeds;
@@ -164,7 +164,12 @@ Result<ColorTable> color_glyphs(const scene::Scene& scene, const scene::GlyphSet
   const DisplayRange range = field::display_range(values, shown);
   CATENA_CHECK(scene::check_mapping(*set.color_by, range.lo));
   ColorTable table = scene::make_color_table(set.color_by->colors, set.color_by->named, range.lo, range.hi);
-  for (std::size_t i = 0; i < glyphs.size(); ++i) glyphs[i].color = sample_color_table(table, values[i]);
+  std::vector<Glyph> shown_glyphs;
+  for (std::size_t i = 0; i < glyphs.size(); ++i) {
+    if (!is_within(set.color_by->named.threshold, values[i])) continue;
+    shown_glyphs.push_back({glyphs[i].tail, glyphs[i].tip, sample_color_table(table, values[i])});
+  }
+  glyphs = std::move(shown_glyphs);
   return table;
 }
 

@@ -107,7 +107,7 @@ Result<FlatPoints> flat_points(scene::Scene& scene, const scene::PointsSource& d
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = k * set.points.size() / count;
     const float radius = radii != nullptr ? (*radii)[i] : fitted;
-    if (!(radius > 0)) continue;
+    if (!(radius > 0) || (values != nullptr && !is_within(drawn.color_by->named.threshold, double((*values)[i])))) continue;
     balls->offsets.push_back(set.points[i]);
     balls->radii.push_back(radius);
     balls->colors.push_back(values != nullptr ? sample_color_table(flat.colors, double((*values)[i])) : drawn.color);

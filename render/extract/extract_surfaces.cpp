@@ -15,6 +15,7 @@
 #include "render/extract/extract.h"
 #include "render/extract/extract_internal.h"
 #include "render/extract/legends.h"
+#include "render/extract/threshold.h"
 
 namespace catena::render {
 
@@ -32,6 +33,7 @@ TransferTable make_transfer_table(const scene::TransferFunction& transfer, const
     for (const auto& o : transfer.opacities) table.extinctions.push_back({o.value, -std::log1p(-o.alpha) / unit});
   table.colors = refine_for_symlog(table.colors, table.linear_below, kOffset);
   table.extinctions = refine_for_symlog(table.extinctions, table.linear_below, kOffset);
+  if (!transfer.named.threshold.empty()) table.extinctions = cut_extinctions(table.extinctions, transfer.named.threshold);
   return table;
 }
 
@@ -57,8 +59,9 @@ Outcome ask_for_copy(const mesh::TriangleMesh& mesh, const scene::SurfaceMesh& s
   return Done{};
 }
 
-Result<std::vector<Color>> vertex_colors(const scene::Scene& scene, const mesh::TriangleMesh& mesh, const field::AnyField& shown,
-                                         const scene::SurfaceMesh& surface) {
+/// Colors the vertices by the field's values there, and cuts the triangles to the threshold.
+Outcome color_triangles(const scene::Scene& scene, const mesh::TriangleMesh& mesh, const field::AnyField& shown,
+                        const scene::SurfaceMesh& surface, MeshGeometry& geometry) {
   const scene::ColorBy& by = *surface.color_by;
   std::vector<double> values;
   values.reserve(mesh.vertices().size());
@@ -78,10 +81,10 @@ Result<std::vector<Color>> vertex_colors(const scene::Scene& scene, const mesh::
   CATENA_CHECK(scene::check_mapping(by, range.lo));
   const auto table = scene::make_display_color_table(scene, by.field, by.colors, by.named, range.lo, range.hi);
   const bool labels = scene::find_label_map(scene, by.field) != nullptr;
-  std::vector<Color> colors;
-  colors.reserve(values.size());
-  for (const double value : values) colors.push_back(labels && value == 0 ? surface.color : sample_color_table(table, value));
-  return colors;
+  if (!by.named.threshold.empty()) cut_triangles(geometry, values, by.named.threshold);
+  geometry.colors.reserve(values.size());
+  for (const double value : values) geometry.colors.push_back(labels && value == 0 ? surface.color : sample_color_table(table, value));
+  return Done{};
 }
 
 // ---- slices ----
@@ -160,9 +163,7 @@ Outcome prepare_meshes(scene::Scene& scene) {
     for (const mesh::Triangle& t : mesh->triangles()) geometry->triangles.insert(geometry->triangles.end(), t.begin(), t.end());
     for (std::uint32_t v = 0; surface.smooth_shading && v < geometry->vertices.size(); ++v)
       geometry->normals.push_back(mesh->vertex_normal(v));
-    if (shown.get()) {
-      CATENA_TRY(geometry->colors, vertex_colors(scene, *mesh, shown, surface));
-    }
+    if (shown.get()) CATENA_CHECK(color_triangles(scene, *mesh, shown, surface, *geometry));
     plain = {std::move(geometry), mesh->version(), field_version};
   }
   return Done{};
@@ -227,6 +228,7 @@ Outcome extract_slices(const scene::Scene& scene, FramePacket& packet) {
          scene::make_display_color_table(scene, slice.color_by.field, slice.color_by.colors, slice.color_by.named, range.lo, range.hi))
       item.colors.push_back({row.value, row.color.r, row.color.g, row.color.b});
     if (scene::find_label_map(scene, slice.color_by.field) != nullptr) item.hidden_label = 0;
+    item.threshold = slice.color_by.named.threshold;
     item.stack_order = static_cast<int>(
         std::count_if(packet.slices.begin(), packet.slices.end(), [&](const SliceItem& before) { return is_same_plane(before, item); }));
     item.opacity = static_cast<float>(slice.opacity);

@@ -11,6 +11,7 @@
 #include "engine/scene/color_maps.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/streamlines.h"
+#include "render/extract/colored_tubes.h"
 #include "render/extract/extract_internal.h"
 
 namespace catena::render {
@@ -194,19 +195,29 @@ Result<FlattenedStreamlines> Flattener::finish() {
   flat_.colors = shown_.get() == nullptr ? scene::make_color_table(by.colors, by.named, range.lo, range.hi)
                                          : scene::make_display_color_table(scene_, by.field, by.colors, by.named, range.lo, range.hi);
   std::size_t first = 0;
-  for (TubeItem& tube : flat_.tubes) {
+  std::vector<TubeItem> tubes;
+  std::vector<std::vector<double>> arc_lengths;
+  for (std::size_t line = 0; line < flat_.tubes.size(); ++line) {
+    const TubeItem& tube = flat_.tubes[line];
     const std::span<double> values = std::span(values_).subspan(first, tube.points.size());
     first += values.size();
     // a line ends on the face of the domain; rounding may put its end outside, where the field has no value
     if (values.size() > 1 && std::isnan(values.front())) values.front() = values[1];
     if (values.size() > 1 && std::isnan(values.back())) values.back() = values[values.size() - 2];
-    std::vector<Color> colors;
-    colors.reserve(values.size());
-    for (const double value : values) colors.push_back(sample_color_table(flat_.colors, value));
-    tube.colors = std::move(colors);
+    const std::vector<LinePart> parts = add_colored_tubes(tube, values, flat_.colors, by.named.threshold, tubes);
+    if (!flat_.arc_lengths.empty())
+      for (const LinePart& part : parts) arc_lengths.push_back(entries_of<double>(part, flat_.arc_lengths[line]));
   }
-  for (std::size_t i = 0; i < flat_.arrows.size(); ++i)
-    flat_.arrows[i].color = sample_color_table(flat_.colors, value_->at(arrow_places_[i]));
+  flat_.tubes = std::move(tubes);
+  flat_.arc_lengths = std::move(arc_lengths);
+  std::vector<ArrowItem> arrows;
+  for (std::size_t i = 0; i < flat_.arrows.size(); ++i) {
+    const double value = value_->at(arrow_places_[i]);
+    if (!is_within(by.named.threshold, value)) continue;
+    arrows.push_back(flat_.arrows[i]);
+    arrows.back().color = sample_color_table(flat_.colors, value);
+  }
+  flat_.arrows = std::move(arrows);
   return std::move(flat_);
 }
 

@@ -81,7 +81,15 @@ const scene::Slice* slice_of(const scene::Scene& scene, scene::Entity field) {
   return nullptr;
 }
 
-/// The field in the plane: with the colors of its slice in the scene, else of its labels, else gray over the window.
+/// Volume of the scene that shows the field; nullptr: none.
+const scene::Volume* volume_of(const scene::Scene& scene, scene::Entity field) {
+  for (const scene::Entity e : scene::visible_entities<scene::Volume>(scene.entities))
+    if (scene.entities.get<scene::Volume>(e).field == field) return &scene.entities.get<scene::Volume>(e);
+  return nullptr;
+}
+
+/// The field in the plane: with the colors of its slice in the scene, else of its labels, else gray over the window; over the base also
+/// with the colors and the threshold of its volume.
 SliceItem make_plane_slice(const scene::Scene& scene, scene::Entity field, bool is_base,
                            const std::optional<std::array<double, 2>>& window) {
   const field::AnyField& any = scene::rendered_field(scene, field);
@@ -92,10 +100,15 @@ SliceItem make_plane_slice(const scene::Scene& scene, scene::Entity field, bool 
   const scene::Slice* own = slice_of(scene, field);
   scene::ColorBy colors = own != nullptr ? own->color_by : scene::ColorBy{};
   if (own == nullptr && !labels) colors.named.map = "grey";
+  if (const scene::Volume* volume = own == nullptr && !is_base && !labels ? volume_of(scene, field) : nullptr) {
+    colors.colors = volume->transfer.colors;
+    colors.named = volume->transfer.named;
+  }
   if (is_base && window) colors.named.range = *window;
   for (const auto& row : scene::make_display_color_table(scene, field, colors.colors, colors.named, range.lo, range.hi))
     item.colors.push_back({row.value, row.color.r, row.color.g, row.color.b});
   if (labels) item.hidden_label = 0;
+  item.threshold = colors.named.threshold;
   item.opacity = is_base ? 1.0f : own != nullptr ? static_cast<float>(own->opacity) : static_cast<float>(kOverlayOpacity);
   item.is_clipped = false;
   item.stack_order = is_base ? 0 : 1;
@@ -157,10 +170,18 @@ Result<OrthoPlanes> find_ortho_planes(scene::Scene& scene) {
   }
   if (fields.empty()) return Error{"orthogonal views show a scalar field in three planes, but the scene shows none"};
   const auto is_map = [&](scene::Entity field) { return scene::find_label_map(scene, field) != nullptr; };
-  const auto first = std::ranges::find_if_not(fields, is_map);
+  // labels, and values of which a threshold shows a part, lie over an image
+  const auto lies_over = [&](scene::Entity field) {
+    const scene::Slice* slice = slice_of(scene, field);
+    const scene::Volume* volume = volume_of(scene, field);
+    return is_map(field) || (slice != nullptr && !slice->color_by.named.threshold.empty()) ||
+           (volume != nullptr && !volume->transfer.named.threshold.empty());
+  };
+  const auto first = std::ranges::find_if_not(fields, lies_over);
   planes.base = first != fields.end() ? *first : fields.front();
   for (const scene::Entity field : fields)
-    if (field != planes.base && (is_map(field) || slice_of(scene, field) != nullptr)) planes.overlays.push_back(field);
+    if (field != planes.base && (is_map(field) || slice_of(scene, field) != nullptr || volume_of(scene, field) != nullptr))
+      planes.overlays.push_back(field);
   const field::Field& field = *scene::rendered_field(scene, planes.base).get();
   Bounds box;
   box.extend(field.index_box().lo);

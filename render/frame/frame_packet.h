@@ -13,6 +13,7 @@
 #include "engine/base/bounds.h"
 #include "engine/base/color.h"
 #include "engine/base/plane.h"
+#include "engine/base/threshold.h"
 #include "engine/base/vec.h"
 #include "render/frame/overlay_items.h"
 #include "render/frame/packing.h"
@@ -171,6 +172,7 @@ struct SliceItem {
   bool is_clipped = true;                         ///< cut by the clip planes
   int stack_order = 0;                            ///< number of earlier slices in the same plane; this slice is drawn over them
   std::optional<double> hidden_label{};           ///< label that is transparent: values within 0.5 of it are not drawn
+  Threshold threshold{};                          ///< values that are drawn
   bool operator==(const SliceItem&) const = default;
 };
 

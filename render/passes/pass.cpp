@@ -27,6 +27,17 @@ bool fits(const vk::Image& image, VkFormat format, std::uint32_t width, std::uin
 
 std::vector<VkFormat> opaque_formats() { return {kOpaqueFormat, kDepthValueFormat, kIdFormat}; }
 
+Result<vk::Image> create_placeholder_id(vk::Device& device) {
+  vk::ImageInfo info;
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  info.format = kIdFormat;
+  CATENA_TRY(vk::Image image, vk::Image::create(device, info));
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(device));
+  commands.transition(image, vk::kFragmentRead);
+  CATENA_CHECK(commands.finish());
+  return image;
+}
+
 Outcome Targets::ensure(vk::Device& device, std::uint32_t width, std::uint32_t height, TargetSet needed) {
   constexpr VkImageUsageFlags color = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   constexpr VkImageUsageFlags read = VK_IMAGE_USAGE_TRANSFER_SRC_BIT;

@@ -58,6 +58,9 @@ inline constexpr VkFormat kFloatOutputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  /
 /// Returns the color formats of a pipeline that renders into target::opaque, in the order of its outputs.
 std::vector<VkFormat> opaque_formats();
 
+/// Returns an id image of one texel, to be bound where a pass has no ids.
+Result<vk::Image> create_placeholder_id(vk::Device& device);
+
 /// Images shared by the passes, created when first needed and re-created when the size changes.
 struct Targets {
   vk::Image opaque_color, opaque_depth, opaque_id, depth_buffer, volume, output, occluded_overlay;

@@ -2,6 +2,7 @@
 #include "render/passes/slice.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 #include "render/passes/passes.h"
@@ -55,13 +56,7 @@ Result<SliceDrawer> SliceDrawer::create(vk::Device& device) {
   SliceDrawer self;
   self.device_ = &device;
   CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
-  vk::ImageInfo info;
-  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
-  info.format = kIdFormat;
-  CATENA_TRY(self.placeholder_id_, vk::Image::create(device, info));
-  CATENA_TRY(vk::Commands commands, vk::Commands::begin(device));
-  commands.transition(self.placeholder_id_, vk::kFragmentRead);
-  CATENA_CHECK(commands.finish());
+  CATENA_TRY(self.placeholder_id_, create_placeholder_id(device));
   return self;
 }
 
@@ -106,6 +101,9 @@ Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice&
   data.half_width = 0.5f * item.line_width;
   data.depth_bias = float(kDepthResolution * (kSurfaceDepthBias + item.stack_order));
   data.hidden_label = item.hidden_label ? float(*item.hidden_label) : NAN;
+  const auto to_float = [](double value) { return float(std::clamp(value, -double(FLT_MAX), double(FLT_MAX))); };
+  const Threshold ranges = item.threshold.empty() ? Threshold{{-FLT_MAX, FLT_MAX}} : item.threshold;
+  data.threshold = {to_float(ranges.front()[0]), to_float(ranges.front()[1]), to_float(ranges.back()[0]), to_float(ranges.back()[1])};
   CATENA_CHECK(vk::write_uniform(*device_, slice.slice_data_, data));
   CATENA_CHECK(vk::write_uniform(*device_, slice.layer_data_, layer_data(rays, item.opacity)));
 

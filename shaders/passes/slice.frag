@@ -56,7 +56,9 @@ bool value_at(vec3 p, out float value, out vec3 gradient) {
     value = mix(y.x, y.y, f.x);
     gradient = (1.0 - frame.grids[0].nearest) * vec3(y.y - y.x, mix(along_y.x, along_y.y, f.x), mix(zy.x, zy.y, f.x));
   }
-  return !(abs(value - slice.hidden_label) < 0.5);
+  const vec4 bounds = slice.threshold;
+  const bool is_shown = (value >= bounds.x && value <= bounds.y) || (value >= bounds.z && value <= bounds.w);
+  return is_shown && !(abs(value - slice.hidden_label) < 0.5);
 }
 
 bool is_clipped(vec2 q, float t) {

@@ -33,6 +33,7 @@ struct SliceData {
   // Shift towards the camera, as a share of the distance, to be over surfaces and earlier slices in the same plane.
   float depth_bias;
   float hidden_label;  // values within 0.5 of it are not drawn; NaN: no value is hidden
+  vec4 threshold;      // only values from x to y and from z to w are drawn
 };
 
 CATENA_SHARED_END

@@ -63,8 +63,8 @@ Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::
   CATENA_TRY(const std::vector<scene::FieldOverride> overrides, parse_field_overrides(field_options));
   if (is_scene_file(path)) {
     if (!grid.empty()) return Error{path + ": --grid applies only to a data file; a scene names its grids"};
-    if (!colors.is_default())
-      return Error{path + ": --colormap, --range, --mapping, --opacity and --preset apply only to a data file; a scene states its colours"};
+    if (colors.is_given())
+      return Error{path + ": options of colours, labels and --over apply only to a data file; a scene states them itself"};
     auto scene = scene::read_scene(path, overrides);
     if (scene) print_scene_notes(*scene);
     return scene;

@@ -35,10 +35,11 @@ void add_render(CLI::App& program, CommandAction& chosen) {
       ->add_option("--ids", options->ids,
                    "id image to write: the opaque object of each pixel, 16-bit grey, 0 for none; --stats and the file name the objects")
       ->type_name("FILE.png");
-  command->add_option("--antialias", options->antialias, "samples per pixel along each axis")
+  command
+      ->add_option("--antialias", options->antialias,
+                   "samples per pixel along each axis (default: 1, with contours antialiased from their neighbours; 1: no antialiasing)")
       ->type_name("N")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str();
+      ->check(CLI::Range(1, 16));
   command->add_option("--tile", options->tile, "size of a tile along each axis (default: chosen from the size)")
       ->type_name("SAMPLES")
       ->check(CLI::Range(8, 16384));

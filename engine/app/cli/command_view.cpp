@@ -29,6 +29,7 @@ struct ViewArguments {
   RealtimeChoice realtime;
   AnnotationOptions annotate;
   StereoOptions stereo;
+  ColorOptions colors;
 };
 
 /// Returns the inputs and outputs of the whole run that the command line and the scene name.
@@ -53,6 +54,7 @@ Outcome open_window(const ViewArguments& given, int& exit_code) {
   CATENA_TRY(const ImageSize size, parse_image_size(o.size));
   ViewOptions options;
   options.grid_name = o.grid;
+  CATENA_TRY(options.colors, o.colors.to_file_colors());
   CATENA_TRY(options.overrides, parse_field_overrides(o.fields));
   options.apply_overrides = [annotations = o.annotate, stereo = o.stereo, device = o.device_file,
                              follow = o.follow](scene::Scene& scene) -> Outcome {
@@ -64,10 +66,12 @@ Outcome open_window(const ViewArguments& given, int& exit_code) {
   {
     if (o.source.empty() && !o.grid.empty()) return Error{"--grid: a SOURCE was expected: a data file that contains the grid"};
     if (o.source.empty() && !o.fields.empty()) return Error{"--field: a SOURCE was expected: a scene whose field is replaced"};
+    if (o.source.empty() && options.colors.is_given())
+      return Error{"the options of colours: a SOURCE was expected: the data file that they apply to"};
     if (o.source.empty() && o.follow) return Error{"--follow: a SOURCE was expected: a scene or data file to follow"};
     CATENA_TRY(scene::Scene scene, o.source.empty() ? Result<scene::Scene>(scene::Scene())
                                    : o.follow       ? open_followed_scene(o.source, o.fields, o.grid, o.seconds)
-                                                    : open_scene(o.source, o.fields, {}, o.grid));
+                                                    : open_scene(o.source, o.fields, options.colors, o.grid));
     options.source = o.source;
     options.follow_time_steps = o.follow;
     if (!o.source.empty()) CATENA_CHECK(options.apply_overrides(scene));
@@ -131,6 +135,7 @@ void add_view(CLI::App& program, CommandAction& chosen, int& exit_code) {
                    "target or settings of a still image; an image takes time=MS or 50 ms while something moves (default: the scene's, "
                    "or time=50)")
       ->type_name("QUALITY");
+  options->colors.add_to(*command);
   options->targets.add_to(*command);
   command
       ->add_option(

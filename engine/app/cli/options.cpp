@@ -91,6 +91,22 @@ void ColorOptions::add_to(CLI::App& command) {
                   "for --mapping symlog: maximum magnitude of the values that are mapped linearly (default: a thousandth of the maximum)")
       ->type_name("VALUE")
       ->check(accepted("> 0"));
+  command
+      .add_option("--threshold", threshold,
+                  "range of the values of a data file that are shown, two ranges LO,HI,LO,HI, or a single T for magnitudes of at least T "
+                  "(default: all values)")
+      ->type_name("LO,HI");
+  command
+      .add_option("--label-opacity", label_opacities,
+                  "opacity of labels of a label map, 0 to 1; LABELS: a number, a range A-B, or a name, in which * stands for any letters")
+      ->type_name("LABELS=OPACITY")
+      ->allow_extra_args(false);
+  command.add_flag("--symmetric", is_symmetric, "makes the range of the colours symmetric about 0");
+  command
+      .add_option("--over", overlay,
+                  "data file drawn over the data file: labels, or a statistic, of which the strong values of either sign are shown; "
+                  "the options of colours apply to it")
+      ->type_name("FILE");
   CLI::Option* pairs =
       command
           .add_option(
@@ -102,6 +118,35 @@ void ColorOptions::add_to(CLI::App& command) {
   command.add_option("--preset", preset, presets)->type_name("PRESET")->excludes(pairs);
 }
 
+namespace {
+
+/// Returns the numbers of a list with commas; empty if a word is no finite number.
+std::vector<double> parse_numbers(const std::string& text) {
+  std::vector<double> numbers;
+  std::istringstream list(text);
+  for (std::string word; std::getline(list, word, ',');) {
+    const auto number = parse_double(word);
+    if (!number || !std::isfinite(*number)) return {};
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+Result<Threshold> parse_threshold(const std::string& text) {
+  constexpr double kUnlimited = 1e30;  // limit of the numbers in a scene
+  std::vector<double> bounds = parse_numbers(text);
+  if (bounds.size() == 1 && bounds[0] > 0 && bounds[0] < kUnlimited) bounds = {-kUnlimited, -bounds[0], bounds[0], kUnlimited};
+  const bool rises = std::ranges::is_sorted(bounds) && !(bounds.size() == 4 && bounds[1] == bounds[2]);
+  if (!rises || (bounds.size() != 2 && bounds.size() != 4))
+    return Error{one_line("--threshold " + text +
+                          ": a range LO,HI with LO <= HI, two rising ranges LO,HI,LO,HI, or a single number above 0 was expected")};
+  Threshold threshold;
+  for (std::size_t i = 0; i < bounds.size(); i += 2) threshold.push_back({bounds[i], bounds[i + 1]});
+  return threshold;
+}
+
+}  // namespace
+
 Result<scene::FileColors> ColorOptions::to_file_colors() const {
   scene::FileColors colors;
   CATENA_TRY(colors.named, to_named_colors());
@@ -111,18 +156,25 @@ Result<scene::FileColors> ColorOptions::to_file_colors() const {
                           suggestion(preset, names))};
   }
   colors.preset = preset;
+  for (const std::string& request : label_opacities) {
+    const std::size_t equals = request.rfind('=');
+    const auto alpha = equals == std::string::npos ? std::nullopt : parse_double(request.substr(equals + 1));
+    if (!alpha || !(*alpha >= 0 && *alpha <= 1) || equals == 0)
+      return Error{one_line("--label-opacity " + request + ": LABELS=OPACITY with an opacity from 0 to 1 was expected")};
+    colors.label_opacities.push_back({request.substr(0, equals), *alpha});
+  }
+  colors.is_symmetric = is_symmetric;
+  colors.overlay = overlay;
+  if (is_symmetric && colors.named.range) return Error{"--symmetric: the range is given by --range; one of the two was expected"};
   if (opacity.empty()) return colors;
-  std::vector<std::string> numbers;
-  std::istringstream list(opacity);
-  for (std::string number; std::getline(list, number, ',');) numbers.push_back(number);
+  const std::vector<double> numbers = parse_numbers(opacity);
   const Error refused{
       one_line("--opacity " + opacity + ": pairs of a rising value and an alpha from 0 to 1, such as 40,0,80,0.2,300,0.8, were expected")};
   if (numbers.size() < 4 || numbers.size() % 2 != 0) return refused;
   for (std::size_t i = 0; i < numbers.size(); i += 2) {
-    const auto value = parse_double(numbers[i]), alpha = parse_double(numbers[i + 1]);
-    if (!value || !alpha || !std::isfinite(*value) || !(*alpha >= 0 && *alpha <= 1)) return refused;
-    if (!colors.opacities.empty() && !(*value > colors.opacities.back().value)) return refused;
-    colors.opacities.push_back({*value, std::min(*alpha, scene::TransferFunction::OpacityPoint::kMaxAlpha)});
+    const double value = numbers[i], alpha = numbers[i + 1];
+    if (!(alpha >= 0 && alpha <= 1) || (i > 0 && !(value > numbers[i - 2]))) return refused;
+    colors.opacities.push_back({value, std::min(alpha, scene::TransferFunction::OpacityPoint::kMaxAlpha)});
   }
   return colors;
 }
@@ -144,6 +196,9 @@ Result<scene::NamedColors> ColorOptions::to_named_colors() const {
     if (!size || !(*size > 0) || colors.mapping.kind != scene::ValueMapping::Kind::symlog)
       return Error{one_line("--linear-below " + linear_below + ": a value above 0 together with --mapping symlog was expected")};
     colors.mapping.linear_below = *size;
+  }
+  if (!threshold.empty()) {
+    CATENA_TRY(colors.threshold, parse_threshold(threshold));
   }
   if (range.empty()) return colors;
   const auto lo = parse_double(range[0]), hi = parse_double(range[1]);

@@ -192,8 +192,8 @@ Outcome add_annotations(scene::Scene& scene, const AnnotationOptions& options);
 
 }  // namespace catena::app
 
-/// The options --colormap NAME, --range LO HI, --mapping WORD, --linear-below SIZE, --opacity PAIRS and --preset NAME: the colors and
-/// opacities of a data file.
+/// The options --colormap NAME, --range LO HI, --mapping WORD, --linear-below SIZE, --threshold LO,HI, --opacity PAIRS, --preset NAME,
+/// --symmetric and --over FILE: the colors and opacities of a data file, and another one over it.
 namespace CLI {
 class App;
 }
@@ -204,11 +204,13 @@ namespace catena::app {
 struct ColorOptions {
   std::string colormap;
   std::vector<std::string> range;
-  std::string mapping, linear_below, opacity, preset;
+  std::string mapping, linear_below, threshold, opacity, preset, overlay;
+  std::vector<std::string> label_opacities;
+  bool is_symmetric = false;
 
   void add_to(CLI::App& command);
-  /// Checks and converts the options. Error: an unknown color map, mapping or preset, a range that is not valid for the mapping, or
-  /// opacities that are no pairs of a rising value and an alpha from 0 to 1.
+  /// Checks and converts the options. Error: an unknown color map, mapping or preset, a range that is not valid for the mapping, a
+  /// threshold that is no rising ranges, or opacities that are no pairs of a rising value and an alpha from 0 to 1.
   Result<scene::FileColors> to_file_colors() const;
 
  private:

@@ -19,7 +19,7 @@ Result<SceneModel> read_scene(const ViewOptions& options) {
   std::error_code code;
   CATENA_TRY(scene::Document document,
              options.source.empty() ? scene::Document::create(kEmptyScene, (std::filesystem::current_path(code) / "scene.json").string())
-                                    : scene::Document::open(options.source, options.overrides, {}, options.grid_name));
+                                    : scene::Document::open(options.source, options.overrides, options.colors, options.grid_name));
   return SceneModel::open(std::move(document), options.apply_overrides);
 }
 

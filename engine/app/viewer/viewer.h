@@ -19,6 +19,7 @@ namespace catena::app {
 /// Options of the command line.
 struct ViewOptions {
   std::string source;                                     ///< Scene or data file; empty: start with an empty window.
+  scene::FileColors colors;                               ///< Colors of a data file, and a data file over it.
   std::string grid_name;                                  ///< Grid to use from a data file with several; empty: the default one.
   std::vector<scene::FieldOverride> overrides;            ///< Values of the option --field.
   std::function<Outcome(scene::Scene&)> apply_overrides;  ///< Applies overrides of the command line; called whenever the scene is read.

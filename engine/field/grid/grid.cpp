@@ -72,6 +72,11 @@ std::shared_ptr<const ScalarGrid> ScalarGrid::with_interpolation(Interpolation i
   return std::make_shared<ScalarGrid>(name(), mapping(), index_box(), storage_, stats_, interpolation);
 }
 
+std::shared_ptr<const ScalarGrid> ScalarGrid::with_mapping(const Mapping& mapping) const {
+  CATENA_ASSERT(!halo_);
+  return std::make_shared<ScalarGrid>(name(), mapping, index_box(), storage_, stats_, interpolation_);
+}
+
 Result<std::shared_ptr<const ScalarGrid>> ScalarGrid::as_cubic() const {
   CATENA_TRY(auto halo, make_halo(*storage_, stats_));
   auto ghosts = std::make_shared<const Halo>(Halo{std::move(halo)});

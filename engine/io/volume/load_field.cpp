@@ -20,6 +20,7 @@
 #include "engine/io/formats.h"
 #include "engine/io/volume/crop.h"
 #include "engine/io/volume/downsample.h"
+#include "engine/io/volume/transform.h"
 #include "engine/io/volume/unsupported_formats.h"
 
 namespace catena::field {
@@ -182,8 +183,12 @@ Result<AnyField> load(const LoadRequest& request) {
       return unknown_kind(request.path);
     }
     Result<AnyField> field = Error{};
+    // a .vdb is cropped by its reader, unless it is transformed first
+    const bool crops = request.crop && (request.transform || !has_extension(request.path, ".vdb"));
     if (reader->load != nullptr) {
-      field = reader->load(request);
+      LoadRequest whole = request;
+      if (crops) whole.crop.reset();
+      field = reader->load(whole);
     } else {
       CATENA_TRY(const DenseFile file, reader->open(request));
       field = load_dense(file);
@@ -194,7 +199,10 @@ Result<AnyField> load(const LoadRequest& request) {
     const auto is_hinted = [](const std::string& note) { return note.find("bytes") != std::string::npos; };
     if (const std::string hint = magnitude_hint(*field); !hint.empty() && std::ranges::none_of(field->notes, is_hinted))
       field->notes.push_back(hint);
-    if (request.crop && !has_extension(request.path, ".vdb")) {  // a .vdb was cropped by the reader
+    if (request.transform) {
+      CATENA_TRY(field, transform_field(request.path, std::move(*field), *request.transform));
+    }
+    if (crops) {
       CATENA_TRY(field, crop_field(request.path, *field, *request.crop));
     }
     const bool nearest = request.interpolation == Interpolation::nearest;

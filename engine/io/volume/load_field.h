@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/affine.h"
 #include "engine/base/display_range.h"
 #include "engine/base/export.h"
 #include "engine/base/result.h"
@@ -28,6 +29,13 @@ struct RawLayout {
   bool operator==(const RawLayout&) const = default;
 };
 
+/// Transform of a field to another position (transform.h).
+struct FieldTransform {
+  AffineMap map;                ///< World positions of the file to those of the scene; with a reference image the matrix of flirt.
+  std::string flirt_reference;  ///< Reference image of a matrix of flirt; empty: `map` is between world positions.
+  bool operator==(const FieldTransform&) const = default;
+};
+
 /// Request to load a grid of a file, with the parameters of loading.
 struct LoadRequest {
   std::string path;                                ///< File, or a folder of DICOM images.
@@ -39,6 +47,7 @@ struct LoadRequest {
   Vec3 spacing{1.0}, origin{0.0};                  ///< For .npy, .npz: world units per voxel, and world position of voxel (0, 0, 0).
   std::optional<RawLayout> raw;                    ///< For .raw.
   Interpolation interpolation = Interpolation::linear;  ///< Interpolation of the grid; nearest: scalar grids only.
+  std::optional<FieldTransform> transform;              ///< Applied before `crop`; nullopt: the position that the file states.
   std::optional<Box> crop;                              ///< World box: load only the voxels that it needs (crop.h).
   std::int32_t level = 0;                               ///< Resolution level (downsample.h); 0: full resolution.
   bool operator==(const LoadRequest&) const = default;

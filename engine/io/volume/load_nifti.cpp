@@ -235,9 +235,11 @@ static Result<DenseFile> open_nifti(const LoadRequest& request) {
   if (!type)
     return Error{fmt::format("{}: voxels of type {} are not supported, expected integers or floats (uint8 to int64, float32, float64)",
                              path, nifti_datatype_string(image.datatype))};
-  if (image.nu > 1 || image.nv > 1 || image.nw > 1)
-    return Error{fmt::format(
-        "{}: the image has {} dimensions (vectors or more), expected a scalar volume with 3 dimensions, or 4 with time", path, image.ndim)};
+  const bool is_vector = image.nu == 3 && image.nt <= 1 && image.nv <= 1 && image.nw <= 1;
+  if (!is_vector && (image.nu > 1 || image.nv > 1 || image.nw > 1))
+    return Error{
+        fmt::format("{}: the image has {} dimensions, expected a volume with 3 dimensions, 4 with time, or 5 with vectors of 3 components",
+                    path, image.ndim)};
   if (image.nx < 1 || image.ny < 1 || image.nz < 1 || image.iname_offset < 0 || !image.iname)
     return Error{fmt::format("{}: the header is damaged", path)};
   std::vector<std::string> notes;
@@ -251,15 +253,20 @@ static Result<DenseFile> open_nifti(const LoadRequest& request) {
     notes.push_back("scl_slope or scl_inter is not finite: the stored values are used unscaled");
   // the requested volume; dimensions are 16-bit numbers
   const int volumes = std::max(image.nt, 1), volume = std::min(request.step, volumes - 1);
-  const auto layers = std::make_shared<NiftiLayers>(path, image, *type, header.swapped, file_size, volume);
+  // the components of vectors are volumes, one after the other
+  std::vector<std::shared_ptr<NiftiLayers>> components;
+  for (int c = 0; c < (is_vector ? 3 : 1); ++c)
+    components.push_back(std::make_shared<NiftiLayers>(path, image, *type, header.swapped, file_size, volume + c));
+  const auto layers = components.front();
   if (const auto voxels = find_file_id(image.iname)) register_inputs({*voxels});  // a second file (.img) if the header names one
-  CATENA_CHECK(layers->open(image.iname));
+  for (const auto& component : components) CATENA_CHECK(component->open(image.iname));
+  if (is_vector) notes.push_back("the components of the vectors are used as stored; ITK and ANTs store them in LPS axes");
   Steps steps = steps_of(image, static_cast<double>(header.pixdim[4]), volume);
   DenseFile file{name,
                  volumes > 1 ? fmt::format("{}, one of {} volumes{}", word, volumes, steps.interval) : std::string(word),
                  path + ": the volume ",
                  mapping,
-                 1,
+                 static_cast<int>(components.size()),
                  {}};
   file.times = std::move(steps.times);
   if (!file.times.empty()) file.time_unit = "s";
@@ -268,9 +275,17 @@ static Result<DenseFile> open_nifti(const LoadRequest& request) {
   file.rounding = layers->rounding;
   file.source.size = {image.nx, image.ny, image.nz};
   CATENA_CHECK(check_dense_memory(fmt::format("{}: the grid of {} x {} x {} voxels", path, image.nx, image.ny, image.nz), file.source.size,
-                                  1,
+                                  file.components,
                                   /*masked=*/false));
-  file.source.read = [layers](int, int, std::span<float> values, std::span<std::uint8_t>) { return layers->read(values); };
+  file.source.read = [components](int, int, std::span<float> values, std::span<std::uint8_t>) -> Outcome {
+    if (components.size() == 1) return components.front()->read(values);
+    std::vector<float> one(values.size() / components.size());
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      CATENA_CHECK(components[c]->read(one));
+      for (std::size_t i = 0; i < one.size(); ++i) values[i * components.size() + c] = one[i];
+    }
+    return Done{};
+  };
   return file;
 }
 

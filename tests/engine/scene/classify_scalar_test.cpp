@@ -94,6 +94,21 @@ TEST(DataClassification, SolidsCloudsAndSimulations) {
   EXPECT_EQ(kind(grid_of([](const Vec3&, int) { return 7; })), DataKind::simulation) << "one value";
 }
 
+TEST(DataClassification, StatisticsDecadesAndTwoPhases) {
+  const auto wave = [](const Vec3& p, int) { return norm(p) > 0.9 ? 0 : 3 * std::sin(5 * p.x) * std::cos(4 * p.y + p.z); };
+  EXPECT_EQ(kind(grid_of(wave), kPatient), DataKind::statistic);
+  EXPECT_NE(kind(grid_of(wave)), DataKind::statistic) << "no patient";
+  EXPECT_NE(kind(grid_of([&](const Vec3& p, int n) { return std::fabs(wave(p, n)); }), kPatient), DataKind::statistic) << "one sign";
+  const auto tail = [](const Vec3& p, int n) { return std::exp(2 * std::sin(7 * p.x + p.z) * std::cos(8 * p.y) + 1.5 * noise(n)); };
+  EXPECT_EQ(kind(grid_of(tail)), DataKind::decades);
+  EXPECT_EQ(kind(grid_of([&](const Vec3& p, int n) { return 30 + tail(p, n); })), DataKind::simulation) << "within a power of ten";
+  const auto rock = [](const Vec3& p, int n) {
+    return (std::sin(7 * p.x) + std::sin(8 * p.y) + std::sin(6 * p.z) > 0 ? 200 : 100) + 50 * noise(n);
+  };
+  EXPECT_EQ(kind(grid_of(rock)), DataKind::two_phases);
+  EXPECT_EQ(kind(grid_of([](const Vec3&, int n) { return 50 * noise(n); })), DataKind::simulation) << "noise alone";
+}
+
 TEST(DataClassification, ExplainsTheKind) {
   const ScalarStats facts = compute_scalar_stats(*grid_of([](const Vec3& p, int n) { return head(p, n, -1000, 40, 900); }), {});
   const std::string reason = explain_kind(classify_scalar(facts), facts);

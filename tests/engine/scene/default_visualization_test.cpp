@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "engine/scene/color_maps.h"
+#include "engine/scene/label_groups.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/opacity_presets.h"
 #include "engine/scene/prepare.h"
@@ -153,12 +155,56 @@ TEST_F(DefaultVisualization, ASimulationHasAColourMapAScalarBarAndVisibleLowValu
   EXPECT_EQ(scene.annotations.scalar_bars.size(), 1u);
   EXPECT_TRUE(scene.bounding_box);
   const TransferFunction transfer = only<Volume>(scene).transfer;
-  EXPECT_EQ(transfer.named.map, "viridis");
+  EXPECT_EQ(transfer.named.map, kDefaultVolumeColorMap);
   ASSERT_EQ(transfer.extinctions.size(), 3u);
   EXPECT_GT(transfer.extinctions[0].sigma, 0);
   EXPECT_GT(transfer.extinctions[2].sigma, transfer.extinctions[1].sigma);
   EXPECT_NEAR(transfer.extinctions[0].value, 998.8, 0.1);
   EXPECT_NEAR(transfer.extinctions[2].value, 1001.2, 0.1);
+}
+
+TEST_F(DefaultVisualization, AStatisticOverAnatomyShowsItsTailsAndTheAnatomyAsAShell) {
+  const auto wave = [](const Vec3& p) { return 8 * std::sin(3 * p.x) * std::cos(2 * p.y) * std::exp(-dot(p, p)); };
+  scene_of(folder_ / "z.vdb", wave);
+  for (const Threshold& stated : {Threshold{}, Threshold{{-1e30, -2.5}, {2.5, 1e30}}}) {
+    FileColors colors{.overlay = folder_ / "z.vdb"};
+    colors.named.threshold = stated;
+    const Scene scene = scene_of(
+        folder_ / "t1.vdb", [](const Vec3& p) { return norm(p) - 0.8; }, colors);
+    EXPECT_LT(only<Isosurface>(scene).opacity, 1);
+    const TransferFunction transfer = only<Volume>(scene).transfer;
+    EXPECT_EQ(transfer.named.map, "cool-warm");
+    ASSERT_TRUE(transfer.named.range);
+    EXPECT_EQ((*transfer.named.range)[0], -(*transfer.named.range)[1]);
+    ASSERT_EQ(transfer.named.threshold.size(), 2u);
+    EXPECT_EQ(transfer.named.threshold[0][1], -transfer.named.threshold[1][0]);
+    if (!stated.empty()) {
+      EXPECT_EQ(transfer.named.threshold, stated);
+    }
+    EXPECT_EQ(scene.entities.get<FieldSource>(only<Volume>(scene).field).file->path, folder_ / "z.vdb");
+  }
+  FileColors missing{.overlay = folder_ / "none.vdb"};
+  expect_error(scene_for_file(folder_ / "t1.vdb", {}, missing), "", {"none.vdb"});
+}
+
+TEST(LabelGroups, ALabelHasTheOpacityOfTheLastRequestThatNamesIt) {
+  std::vector<field::LabelCount> counts;
+  for (const double value : {0, 1, 2, 7, 12}) counts.push_back({value, 5, {}, {}});
+  const LabelTable table{{1, "Frontal_L", {}}, {2, "frontal_R", {}}, {7, "Vermis", {}}};
+  const auto groups = [&](const std::vector<LabelOpacity>& requests) {
+    std::string text;
+    for (const LabelGroup& group : value_of(group_labels(counts, table, requests)))
+      text += fmt::format("{}: {}; ", group.opacity, to_json(group.values));
+    return text;
+  };
+  EXPECT_EQ(groups({{"Front*", 0.2}}), "1: [7, 12]; 0.2: [1, 2]; ");
+  EXPECT_EQ(groups({{"*", 0.3}, {"*_R", 0}, {"7", 1}}), "1: [7]; 0.3: [1, 12]; 0: [2]; ");
+  EXPECT_EQ(groups({{"2-7", 0.5}}), "1: [1, 12]; 0.5: [2, 7]; ");
+  for (const char* none : {"3", "Front", "8-11", ""})
+    expect_error(group_labels(counts, table, std::vector<LabelOpacity>{{none, 1}}), "", {"was expected"});
+  std::vector<LabelOpacity> many;
+  for (int i = 0; i < 10; ++i) counts.push_back({20.0 + i, 5, {}, {}}), many.push_back({std::to_string(20 + i), 0.1 + 0.01 * i});
+  expect_error(group_labels(counts, table, many), "", {"at most 8"});
 }
 
 TEST_F(DefaultVisualization, AStatedMapMakesAnyKindAVolume) {

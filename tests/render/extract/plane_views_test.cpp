@@ -72,6 +72,23 @@ TEST_F(PlaneViews, PatientPlanesAreRadiologicalAndShareOneScale) {
   EXPECT_LT(project(axial, {0, 9, 0})->y, project(axial, {0, -9, 0})->y);
 }
 
+TEST_F(PlaneViews, AVolumeWithAThresholdLiesOverTheImageWithItsColors) {
+  open(kLeftFirst);
+  test::write_file(folder_ / "o.json", R"({"fields": {"t1": {"file": "t1.nii"}, "z": {"file": "t1.nii"}},
+      "isosurfaces": [{"field": "t1", "level": 120}],
+      "volumes": [{"field": "z", "color": "cool-warm", "range": [-200, 200], "threshold": [[-200, -150], [150, 200]]}]})");
+  scene::Scene scene = value_of(scene::read_scene(folder_ / "o.json"));
+  FramePacket packet = value_of(make_frame(scene, 200, 150));
+  const OrthoPlanes planes = value_of(find_ortho_planes(scene));
+  EXPECT_EQ(planes.base, scene::find_field(scene, "t1"));
+  value_of(add_plane_views(scene, planes, {}, {}, packet));
+  ASSERT_EQ(packet.planes[0]->slices.size(), 2u);
+  const SliceItem& over = packet.planes[0]->slices[1];
+  EXPECT_EQ(over.threshold, (Threshold{{-200, -150}, {150, 200}}));
+  EXPECT_EQ(over.colors.front()[0], -200);
+  EXPECT_GT(over.colors.front()[3], over.colors.front()[1]) << "blue";
+}
+
 TEST_F(PlaneViews, ObliqueAcquisitionsKeepTheirOwnAxes) {
   // turned by 20 degrees about z, and by a half turn about x
   const float c = 0.9397f, s = 0.3420f;

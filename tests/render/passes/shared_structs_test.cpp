@@ -107,7 +107,8 @@ TEST(SharedStructs, SliceData) {
   expect_offsets({"slice.frag"}, "SliceData",
                  {MEMBER(SliceData, plane), MEMBER(SliceData, normal), MEMBER(SliceData, clip_slack), MEMBER(SliceData, is_lit),
                   MEMBER(SliceData, color_last), MEMBER(SliceData, level_count), MEMBER(SliceData, line_color),
-                  MEMBER(SliceData, half_width), MEMBER(SliceData, depth_bias), MEMBER(SliceData, hidden_label)});
+                  MEMBER(SliceData, half_width), MEMBER(SliceData, depth_bias), MEMBER(SliceData, hidden_label),
+                  MEMBER(SliceData, threshold)});
 }
 
 TEST(SharedStructs, ComposeData) {

@@ -115,6 +115,25 @@ TEST_F(SliceImage, EveryPixelOfAShearedGridHasItsTableColorDepthAndId) {
   }
 }
 
+TEST_F(SliceImage, AThresholdLeavesOutOtherValues) {
+  const auto grid = make_grid({33, 33, 9}, [](const Vec3& p) { return p.x; });
+  FramePacket packet = make_packet({16, 16, 40}, {16, 16, 0});
+  set_plan_view(packet, 40);
+  for (const Threshold& threshold : {Threshold{{8, 20}}, Threshold{{2, 8}, {20, 30}}, Threshold{{40, 50}}}) {
+    packet.slices = {slice_of(grid, {16, 16, 4}, {0, 0, 1}, kWhite)};
+    packet.slices[0].threshold = threshold;
+    const Image8 image = draw(packet);
+    const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
+    for (std::uint32_t x = 0; x < packet.width; ++x) {
+      const double value = meet(camera, packet.slices[0], x + 0.5, packet.height / 2 + 0.5).world.x;
+      const auto near_bound = [&](const auto& range) { return std::fabs(value - range[0]) < 0.01 || std::fabs(value - range[1]) < 0.01; };
+      if (std::ranges::any_of(threshold, near_bound) || std::fabs(value) < 0.01 || std::fabs(value - 32) < 0.01) continue;
+      const bool shown = value > 0 && value < 32 && is_within(threshold, value);
+      EXPECT_EQ(image.pixel(x, packet.height / 2)[3], shown ? 255 : 0) << value;
+    }
+  }
+}
+
 /// Position of a line in a row or a column, as the centroid of its darkness.
 double centroid(const Image8& image, std::uint32_t from, std::uint32_t to, std::uint32_t row, double* sum_out = nullptr) {
   double sum = 0, moment = 0;

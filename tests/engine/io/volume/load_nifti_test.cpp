@@ -164,7 +164,7 @@ TEST_F(LoadNifti, TheFourthAxisIsTimeOnlyIfTheHeaderStatesIt) {
 TEST_F(LoadNifti, BadFilesAreOneErrorLine) {
   Nifti vectors = numbers<float>(16, 4, 3, 2, 3, 1.f), rgb(2, 2, 2, 128, 24), flat = numbers<float>(16), huge = numbers<float>(16);
   vectors.put<std::int16_t>(40, 5);
-  vectors.put<std::int16_t>(50, 3);
+  vectors.put<std::int16_t>(50, 2);
   rgb.voxels.assign(24, 'x');
   flat.sform({1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});
   for (const std::size_t at : {42u, 44u, 46u}) huge.put<std::int16_t>(at, 32767);

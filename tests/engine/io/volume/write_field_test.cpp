@@ -55,6 +55,14 @@ TEST(Write, NiftiVectorsAreThreeVolumesWithAnIntent) {
   for (std::size_t i = 0; i < 24; ++i)
     for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(data[24 * c + i], values[3 * i + c]);
   nifti_image_free(image);
+  for (const char* name : {"w.nii", "w.nii.gz"}) {
+    ASSERT_TRUE(write_field(folder / name, field, "wind", {}));
+    const AnyField read = value_of(load(request_for(folder / name)));
+    ASSERT_TRUE(read.vector);
+    std::vector<float> again(values.size());
+    read.vector->grid()->read_block({0, 0, 0}, {4, 3, 2}, again);
+    EXPECT_EQ(again, values) << name;
+  }
 }
 
 /// Three distant voxels: the written box between them has the background value and the right position.
