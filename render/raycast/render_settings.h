@@ -56,6 +56,9 @@ struct RenderSettings {
   bool skip_empty = true;                     ///< skip bricks that are empty under the transfer function
   /// The output holds 32-bit floats instead of 8 bits: Renderer::read_back_float(). Opaque objects have 11 bits of mantissa.
   bool float_image = false;
+  /// Contours of opaque items are antialiased from the ids and depths of neighboring pixels (shaders/lib/smooth_edges.glsl); depth and ids
+  /// are unaffected. Not at half resolution.
+  bool smooth_edges = false;
   /// Jitter: rays start with an offset of a fraction of a step that differs at every pixel, which turns rings from coarse steps into grain.
   /// FramePacket::jitter overrides it. The fast raycast has no jitter.
   bool jitter = false;

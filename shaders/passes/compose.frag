@@ -4,23 +4,29 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
 // Blends occluded_overlay over volume over opaque over background, premultiplied floats; writes straight alpha. Display values are not
-// converted.
+// converted. With SMOOTH_EDGES the contours of opaque items are antialiased.
 #include "shaders/shared/frame.h"
 
 layout(constant_id = 0) const uint HAS_OPAQUE = 0;
 layout(constant_id = 1) const uint HAS_VOLUME = 0;
 layout(constant_id = 2) const uint HAS_OCCLUDED_OVERLAY = 0;
+layout(constant_id = 3) const uint SMOOTH_EDGES = 0;
 layout(scalar, binding = 0) uniform Compose { ComposeData compose; };
 layout(binding = 1) uniform texture2D opaque_color;
 layout(binding = 2) uniform texture2D volume_color;
 layout(binding = 3) uniform texture2D occluded_overlay_color;
+layout(binding = 4) uniform texture2D opaque_depth;
+layout(binding = 5) uniform utexture2D opaque_id;
 layout(location = 0) out vec4 out_color;
+#include "shaders/lib/smooth_edges.glsl"
 
 void main() {
   const ivec2 at = ivec2(gl_FragCoord.xy);
   vec4 sum = vec4(compose.background.rgb * compose.background.a, compose.background.a);
   if (HAS_OPAQUE != 0u) {
-    const vec4 c = texelFetch(opaque_color, at, 0);
+    vec4 c;
+    if (SMOOTH_EDGES != 0u) c = smoothed_opaque(at);
+    else c = texelFetch(opaque_color, at, 0);
     sum = c + (1.0 - c.a) * sum;
   }
   float volume_alpha = 0.0;

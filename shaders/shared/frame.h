@@ -113,6 +113,8 @@ struct MeshFrameData {
 // Background color for `compose`.
 struct ComposeData {
   vec4 background;  // alpha 0: transparent
+  int sides, ends;  // antialiasing of contours: 4 and 2
+  int max_step;     // antialiasing of contours: pixels searched along a step in each direction
 };
 
 CATENA_SHARED_END

@@ -67,7 +67,9 @@ Result<double> Frames::draw(int frame, Outputs* outputs) {
     return stopped = outputs->write(band);
   };
   if (outputs != nullptr) CATENA_CHECK(outputs->begin_frame(frame));
-  const auto ms = render::render_tiled(*renderer, next, settings, plan, channels,
+  render::RenderSettings drawn = settings;
+  drawn.smooth_edges = smooth_edges && plan.count() == 1;
+  const auto ms = render::render_tiled(*renderer, next, drawn, plan, channels,
                                        outputs != nullptr ? take : std::function<Outcome(const render::Band&)>());
   CATENA_CHECK(stopped);
   if (interrupted || interrupt_->is_requested()) throw MachineFailure{"interrupted: no incomplete file was kept"};

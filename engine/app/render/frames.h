@@ -40,6 +40,7 @@ class Frames {
 
   std::unique_ptr<render::Renderer> renderer;
   render::RenderSettings settings;
+  bool smooth_edges = true;  ///< Contours are antialiased in frames that are drawn in one piece.
   render::TilePlan plan;
   render::BandChannels channels;     ///< What the outputs need of each band.
   ProgressLine* progress = nullptr;  ///< Updated after each tile; null: not reported.

@@ -180,7 +180,8 @@ Outcome RenderRun::prepare() {
   frames_->renderer = machine(render::Renderer::create(device));
   frames_->settings = quality_.settings;
   frames_->channels = required_band_channels(o_);
-  const auto antialias = static_cast<std::uint32_t>(o_.antialias), tile = static_cast<std::uint32_t>(o_.tile);
+  frames_->smooth_edges = o_.antialias == 0 && o_.tile == 0;
+  const auto antialias = static_cast<std::uint32_t>(std::max(1, o_.antialias)), tile = static_cast<std::uint32_t>(o_.tile);
   frames_->plan = render::stereo_view_count(scene_->stereo) > 1 || !o_.layout.empty()
                       ? render::TilePlan{size_.width, size_.height, 1, size_.width, size_.height, 0}
                       : render::plan_tiles(size_.width, size_.height, antialias, tile, quality_.goal || quality_.settings.fast,

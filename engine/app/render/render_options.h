@@ -25,7 +25,7 @@ struct RenderOptions {
   int bits = 8;            ///< Bits per channel of -o FILE.png
   std::string depth, ids;  ///< Files for a depth and an id image in addition to the image; empty: none
   int tile = 0;            ///< Tile size in samples; 0: chosen automatically
-  int antialias = 1;       ///< Samples per pixel on each axis
+  int antialias = 0;       ///< Samples per pixel on each axis; 0: 1, with antialiased contours
   // Frames.
   int frames = 0;  ///< Number of frames; 0: not given
   double fps = 25, animation_phase = 0;
