@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/app/viewer/edit/window_level.h"
 #include "engine/app/viewer/scene/scene_model.h"
+#include "engine/field/field_display_range.h"
+#include "engine/scene/prepare.h"
 #include "tests/support/results.h"
 
 namespace catena::app::edits_test {
@@ -42,6 +45,28 @@ TEST(Edits, AreQueuedAndAppliedInOrder) {
   EXPECT_EQ(host.document().undo_label(), "remove isosurface");
   EXPECT_TRUE(host.undo());
   EXPECT_EQ(host.document().undo_label(), "opacity") << "in order, a step each";
+}
+
+TEST(Edits, WindowAndLevelMoveTheRangeOfTheFirstVolumeOrSlice) {
+  for (const char* item : {R"("volumes": [{"field": "f", "color": "grey", "range": [0.2, 0.6]}])",
+                           R"("slices": [{"field": "f", "axis": "z", "at": 0, "range": [0.2, 0.6]}])"}) {
+    auto document =
+        value_of(scene::Document::create(std::string(R"({"fields": {"f": {"analytic": "gaussian"}}, )") + item + "}", "s.json"));
+    scene::Scene scene = value_of(document.read());
+    value_of(scene::prepare(scene));
+    const DisplayRange whole = field::display_range(scene::rendered_field(scene, scene::find_field(scene, "f")));
+    const TextEdits edits = make_window_level_edits(scene, 0.1, -0.05);
+    ASSERT_FALSE(edits.empty()) << item;
+    value_of(document.apply(edits, "window"));
+    const scene::Scene edited = value_of(document.read());
+    std::array<double, 2> range{};
+    edited.entities.each<scene::Volume>([&](scene::Entity, const scene::Volume& v) { range = *v.transfer.named.range; });
+    edited.entities.each<scene::Slice>([&](scene::Entity, const scene::Slice& s) { range = *s.color_by.named.range; });
+    const double span = whole.hi - whole.lo;
+    EXPECT_NEAR(range[1] - range[0], 0.4 + 0.1 * span, 2e-3);
+    EXPECT_NEAR(0.5 * (range[0] + range[1]), 0.4 - 0.05 * span, 2e-3);
+  }
+  EXPECT_TRUE(make_window_level_edits(value_of(scene::parse_scene("{}", "s.json")), 1, 1).empty());
 }
 
 TEST(Edits, EditsOfOneGestureAreOneUndoStep) {

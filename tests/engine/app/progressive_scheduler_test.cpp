@@ -75,6 +75,10 @@ TEST(ProgressiveScheduler, TooSlowAtTheCheapestSettingsReducesTheResolution) {
 
   ProgressiveScheduler slower = pacing("time=50");
   EXPECT_EQ(settle(slower, kExact, 4000).pixel_stride, render::kMaxPixelScale);
+  ProgressiveScheduler fast = pacing("time=50");
+  const FrameRequest fewer = settle(fast, kFast, 3000);  // every 4th pixel at step 2 takes longer than the budget
+  EXPECT_GT(fewer.pixel_stride, 1u);
+  EXPECT_LE(time_of(fewer, 3000), 50);
   ProgressiveScheduler quick = pacing("time=50");
   EXPECT_EQ(settle(quick, kExact, 20).pixel_stride, 1u);
 }

@@ -50,6 +50,29 @@ double default_level(const field::ScalarField& field, const std::vector<float>& 
   return level >= field.min_value() && level <= field.max_value() ? level : middle;
 }
 
+/// Returns the range of the values in the plane z = `height` from their 2 to their 98 percentile, if it is less than half of the field's
+/// display range, over which the colors of the plane would hardly differ.
+std::optional<std::array<double, 2>> narrow_range_in_plane(const field::ScalarField& field, double height) {
+  constexpr int kSteps = 64;
+  constexpr double kNarrow = 0.5, kTail = 0.02;
+  const Bounds box = field.world_bounds();
+  std::vector<float> values;
+  field::Cursor cursor;
+  for (int i = 0; i <= kSteps; ++i)
+    for (int j = 0; j <= kSteps; ++j) {
+      const Vec3 size = box.hi - box.lo;
+      const field::ScalarSample sample = field.sample({box.lo.x + i * size.x / kSteps, box.lo.y + j * size.y / kSteps, height}, cursor);
+      if (sample.inside && std::isfinite(sample.value)) values.push_back(static_cast<float>(sample.value));
+    }
+  if (values.empty()) return std::nullopt;
+  std::ranges::sort(values);
+  const DisplayRange all = field::display_range(field);
+  const double from = quantile_of_sorted(values, kTail), to = quantile_of_sorted(values, 1 - kTail);
+  const double lo = round_within(from, all.lo, all.hi), hi = round_within(to, all.lo, all.hi);
+  if (!scene::is_color_range(lo, hi) || to - from > kNarrow * (all.hi - all.lo)) return std::nullopt;
+  return std::array{lo, hi};
+}
+
 /// Takes the level at which a link of the chain lies on the field, so that the visible surface matches the haptic one. False: no such link.
 bool take_felt_level(const scene::Scene& scene, scene::Entity field, scene::Isosurface& surface) {
   const auto level = json::parse(first_link_level(scene, entity_name(scene, field)), "level");
@@ -98,6 +121,7 @@ std::string make_item_json(const scene::Scene& scene, scene::Entity field, const
       slice.color_by = colors;
       slice.color_by.field = field;
       slice.point = {0, 0, middle.z};
+      if (values.scalar && !colors.named.map.empty()) slice.color_by.named.range = narrow_range_in_plane(*values.scalar, middle.z);
       return scene::to_json(scene, slice);
     }
     case ShowAs::glyphs: {

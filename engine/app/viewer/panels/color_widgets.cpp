@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/field/field_display_range.h"
 #include "engine/scene/color_maps.h"
 
 namespace catena::app {
@@ -61,7 +62,37 @@ std::optional<scene::ValueMapping> choose_mapping(const scene::ValueMapping& now
   return chosen;
 }
 
-void edit_color_scale(Edits& edits, const json::Node& item, const scene::ColorBy& by) {
+std::array<double, 2> first_threshold(const scene::NamedColors& named, const field::AnyField& shown) {
+  if (named.range || !shown.scalar || !shown.scalar->is_grid()) return named.range.value_or(std::array{0.0, 1.0});
+  const DisplayRange& range = field::display_range(*shown.scalar->grid());
+  return {range.lo, range.hi};
+}
+
+void edit_threshold(Edits& edits, const std::string& pointer, const Threshold& threshold, const std::array<double, 2>& data) {
+  ImGui::PushID("threshold");
+  bool on = !threshold.empty();
+  if (ImGui::Checkbox("threshold", &on)) {
+    if (on)
+      edits.set(pointer, scene::to_json(data), "threshold");
+    else
+      edits.remove(pointer, "threshold");
+  }
+  show_short_tooltip("show only where the values lie between two bounds");
+  for (std::size_t i = 0; i < threshold.size(); ++i) {
+    ImGui::PushID(static_cast<int>(i));
+    Threshold now = threshold;
+    ImGui::SetNextItemWidth(0.32f * ImGui::GetContentRegionAvail().x);
+    bool typed = input_number("##lowest", now[i][0], "lowest value that is shown; Enter applies");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
+    typed = input_number("shown", now[i][1], "highest value that is shown; Enter applies") || typed;
+    if (typed) edits.set(pointer, scene::to_json(now), "threshold");
+    ImGui::PopID();
+  }
+  ImGui::PopID();
+}
+
+void edit_color_scale(Edits& edits, const scene::Scene& scene, const json::Node& item, const scene::ColorBy& by) {
   const auto& table = by.colors;
   const scene::NamedColors& named = by.named;
   // the item has the keys itself, or inside its "color_by"
@@ -98,6 +129,8 @@ void edit_color_scale(Edits& edits, const json::Node& item, const scene::ColorBy
                {pointer + "/linear_below", stated(mapping->linear_below > 0, scene::to_json(mapping->linear_below))}},
               "mapping");
   }
+  const field::AnyField shown = by.field ? scene.entities.get<scene::FieldSource>(by.field).rendered : field::AnyField{};
+  edit_threshold(edits, pointer + "/threshold", named.threshold, first_threshold(named, shown));
   ImGui::PopID();
 }
 
@@ -132,7 +165,7 @@ void edit_colors(Edits& edits, const scene::Scene& scene, const json::Node& item
     ImGui::EndCombo();
   }
   if (by)
-    edit_color_scale(edits, item, *by);
+    edit_color_scale(edits, scene, item, *by);
   else
     edit_color(edits, "colour", color, pointer + "/color");
 }

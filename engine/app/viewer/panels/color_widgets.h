@@ -16,14 +16,18 @@
 
 namespace catena::app {
 
-/// Draws the color scale of an item colored by values: color map, reversed or not, range, mapping.
-void edit_color_scale(Edits& edits, const json::Node& item, const scene::ColorBy& by);
+/// Draws the color scale of an item colored by values: color map, reversed or not, range, mapping, threshold.
+void edit_color_scale(Edits& edits, const scene::Scene& scene, const json::Node& item, const scene::ColorBy& by);
 /// Draws the colors of an item that has either one color ("color") or is colored by values ("color_by"): those of a field, or one of its
 /// own `quantities`.
 void edit_colors(Edits& edits, const scene::Scene& scene, const json::Node& item, const Color& color,
                  const std::optional<scene::ColorBy>& by, const std::vector<std::string>& quantities);
 /// Draws a combo box of the color maps. Returns the chosen name, with "_r" if reversed; nothing if unchanged.
 std::optional<std::string> choose_color_map(const std::string& now, const char* otherwise);
+/// Draws the ranges of shown values; `pointer`: the key "threshold"; `data`: the range that a first threshold states.
+/// first_threshold() returns the range of the colors, else of the field's values, else 0 to 1.
+std::array<double, 2> first_threshold(const scene::NamedColors& named, const field::AnyField& shown);
+void edit_threshold(Edits& edits, const std::string& pointer, const Threshold& threshold, const std::array<double, 2>& data);
 /// Draws a combo box of the scales between points, and the linear part of symlog (`linear_below`: its resolved value). Returns the choice;
 /// nothing if unchanged.
 std::optional<scene::ValueMapping> choose_mapping(const scene::ValueMapping& now, double linear_below);

@@ -16,7 +16,7 @@ void draw_curves(PanelContext& context) {
     const std::string pointer = item_pointer(curves.where) + "/color";
     bool directions = !curves.color;
     if (curves.color_by) {
-      edit_color_scale(edits, curves.where, *curves.color_by);
+      edit_color_scale(edits, scene, curves.where, *curves.color_by);
     } else if (ImGui::Checkbox("colour by direction", &directions)) {
       directions ? edits.remove(pointer, "colour") : edits.set(pointer, scene::to_json(Color{1.0f, 0.3f, 0.2f}), "colour");
     } else if (curves.color) {
@@ -33,7 +33,7 @@ void draw_points(PanelContext& context) {
   scene.entities.each<scene::PointsSource>([&](scene::Entity e, const scene::PointsSource& points) {
     if (!begin_item(edits, points.where, !is_hidden(scene.entities, e), "points", entity_name(scene, e))) return;
     if (points.color_by)
-      edit_color_scale(edits, points.where, *points.color_by);
+      edit_color_scale(edits, scene, points.where, *points.color_by);
     else
       edit_color(edits, "colour", points.color, item_pointer(points.where) + "/color");
     edit_simple_keys(edits, "points", points.where, {});

@@ -14,7 +14,7 @@ void draw_meshes(PanelContext& context) {
   scene.entities.each<scene::SurfaceMesh>([&](scene::Entity e, const scene::SurfaceMesh& surface) {
     if (!begin_item(edits, surface.where, !is_hidden(scene.entities, e), "mesh", entity_name(scene, surface.mesh))) return;
     if (surface.color_by)
-      edit_color_scale(edits, surface.where, *surface.color_by);
+      edit_color_scale(edits, scene, surface.where, *surface.color_by);
     else
       edit_color(edits, "colour", surface.color, item_pointer(surface.where) + "/color");
     edit_simple_keys(edits, "meshes", surface.where);

@@ -41,6 +41,11 @@ struct AppearanceState {
     bool show_full_range = false;
   } transfer_editor;
 
+  /// What the panel of measuring shows.
+  struct Measure {
+    std::string ruler, field;  ///< Names; empty: the first one.
+  } measure;
+
   std::map<std::string, std::string> disabled_text;  ///< Disabled text by the JSON pointer of its place.
 };
 

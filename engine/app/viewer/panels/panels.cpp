@@ -8,16 +8,17 @@ namespace catena::app {
 
 // factories of all panels, each documented in its own file
 Panel values_panel(), time_panel(), fields_panel(), volumes_panel(), isosurfaces_panel(), slices_panel(), lines_panel(), glyphs_panel(),
-    curves_panel(), points_panel(), meshes_panel(), widgets_panel(), scalar_bars_panel(), lights_panel(), chain_panel(), device_panel(),
-    recording_panel(), view_panel(), quality_panel(), tuning_panel(), times_panel();
+    curves_panel(), points_panel(), meshes_panel(), widgets_panel(), measure_panel(), scalar_bars_panel(), lights_panel(), chain_panel(),
+    device_panel(), recording_panel(), view_panel(), quality_panel(), tuning_panel(), times_panel();
 
 namespace {
 
 const std::vector<Panel>& panels_in_order() {
-  static const std::vector<Panel> panels{
-      values_panel(),    time_panel(),        fields_panel(), volumes_panel(), isosurfaces_panel(), slices_panel(), lines_panel(),
-      glyphs_panel(),    curves_panel(),      points_panel(), meshes_panel(),  widgets_panel(),     chain_panel(),  device_panel(),
-      recording_panel(), scalar_bars_panel(), lights_panel(), view_panel(),    quality_panel(),     tuning_panel(), times_panel()};
+  static const std::vector<Panel> panels{values_panel(),    time_panel(),        fields_panel(),  volumes_panel(), isosurfaces_panel(),
+                                         slices_panel(),    lines_panel(),       glyphs_panel(),  curves_panel(),  points_panel(),
+                                         meshes_panel(),    widgets_panel(),     measure_panel(), chain_panel(),   device_panel(),
+                                         recording_panel(), scalar_bars_panel(), lights_panel(),  view_panel(),    quality_panel(),
+                                         tuning_panel(),    times_panel()};
   return panels;
 }
 

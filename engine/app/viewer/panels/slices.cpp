@@ -134,7 +134,7 @@ void draw_slices(PanelContext& context) {
     const scene::FieldSource& source = scene.entities.get<scene::FieldSource>(slice.color_by.field);
     const field::Field* field = source.rendered.get() != nullptr ? source.rendered.get() : source.loaded.get();
     if (field != nullptr) draw_plane(edits, scene, slice, *field);
-    edit_color_scale(edits, slice.where, slice.color_by);
+    edit_color_scale(edits, scene, slice.where, slice.color_by);
     draw_contours(edits, slice);
     edit_simple_keys(edits, "slices", slice.where, {"axis"});
     end_item();

@@ -76,22 +76,47 @@ void draw_prompt(PanelContext& context) {
   ImGui::End();
 }
 
-/// With panels hidden, draws only the messages that must be read.
-void draw_words_alone(const ViewState& state) {
-  const Message* message = newest(state);
-  if (message == nullptr && state.loading_path.empty()) return;
+/// Draws a text in lines as wide as the window, whose lower edge is at `bottom`.
+void draw_wrapped_text(const std::string& text, const ImVec4& color, float bottom) {
   const ImGuiViewport& view = *ImGui::GetMainViewport();
-  ImGui::SetNextWindowPos({view.WorkPos.x, view.WorkPos.y + view.WorkSize.y}, 0, {0, 1});
-  ImGui::SetNextWindowSizeConstraints({0, 0}, {view.WorkSize.x, view.WorkSize.y});
+  ImGui::SetNextWindowPos({view.WorkPos.x, bottom}, 0, {0, 1});
   constexpr ImGuiWindowFlags kFlags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                                       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing;
   if (ImGui::Begin("##words", nullptr, kFlags)) {
-    if (!state.loading_path.empty())
-      ImGui::TextUnformatted(loading_words(state).c_str());
-    else
-      ImGui::TextColored(color_of(*message), "%s", message->text.c_str());
+    ImGui::PushTextWrapPos(view.WorkSize.x - 2 * ImGui::GetStyle().WindowPadding.x);
+    ImGui::TextColored(color, "%s", text.c_str());
+    ImGui::PopTextWrapPos();
   }
   ImGui::End();
+}
+
+/// With panels hidden, draws only the messages that must be read.
+void draw_words_alone(const ViewState& state) {
+  const ImGuiViewport& view = *ImGui::GetMainViewport();
+  const float bottom = view.WorkPos.y + view.WorkSize.y;
+  if (!state.loading_path.empty())
+    draw_wrapped_text(loading_words(state), ImGui::GetStyleColorVec4(ImGuiCol_Text), bottom);
+  else if (const Message* message = newest(state))
+    draw_wrapped_text(message->text, color_of(*message), bottom);
+}
+
+/// Returns the beginning of a text that fits into a width, with "..." if it is not the whole text.
+std::string elided(std::string text, float width) {
+  if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+  while (!text.empty() && ImGui::CalcTextSize((text + "...").c_str()).x > width) {
+    const auto is_continuation = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
+    while (text.size() > 1 && is_continuation(text.back())) text.pop_back();
+    text.pop_back();
+  }
+  return text + "...";
+}
+
+/// Draws a line of the status; the whole text as a tooltip if it does not fit. Returns whether it fits.
+bool draw_line(const std::string& text, const ImVec4& color) {
+  const std::string line = elided(text, ImGui::GetContentRegionAvail().x);
+  ImGui::TextColored(color, "%s", line.c_str());
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text.c_str());
+  return line == text;
 }
 
 }  // namespace
@@ -102,6 +127,7 @@ void draw_status(PanelContext& context) {
   if (!state.show_panels) return draw_words_alone(state);
   const ImGuiViewport& view = *ImGui::GetMainViewport();
   const float height = ImGui::GetFrameHeightWithSpacing();
+  const Message* long_message = nullptr;  // one that does not fit into the line
   ImGui::SetNextWindowPos({view.WorkPos.x, view.WorkPos.y + view.WorkSize.y - height});
   ImGui::SetNextWindowSize({view.WorkSize.x, height});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8, 3});
@@ -112,21 +138,22 @@ void draw_status(PanelContext& context) {
       ImGui::TextUnformatted(held.c_str());
       ImGui::SameLine();
     }
+    const ImVec4 plain = ImGui::GetStyleColorVec4(ImGuiCol_Text);
     if (!state.loading_path.empty()) {
-      ImGui::TextUnformatted(loading_words(state).c_str());
+      draw_line(loading_words(state), plain);
     } else if (const Message* m = newest(state)) {
-      ImGui::TextColored(color_of(*m), "%s", m->text.c_str());
-      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", m->text.c_str());
+      if (!draw_line(m->text, color_of(*m))) long_message = m;
     } else {
       std::string words = format_point_samples(state.pointer_samples, state.unit_length);
       if (words.empty() && context.navigation.probe_mode) words = "probe mode: the mouse moves the probe (H)";
       if (words.empty() && context.navigation.fly)
         words = fmt::format("fly: W S A D E Q, left drag turns the camera, speed {:.2g} (V)", context.navigation.fly_speed);
-      ImGui::TextUnformatted(words.c_str());
+      draw_line(words, plain);
     }
   }
   ImGui::End();
   ImGui::PopStyleVar();
+  if (long_message != nullptr) draw_wrapped_text(long_message->text, color_of(*long_message), view.WorkPos.y + view.WorkSize.y - height);
 }
 
 }  // namespace catena::app

@@ -276,6 +276,8 @@ void draw_choices(Editor& editor) {
       "length of the ray segment to which the opacities refer, world units; a longer unit makes the volume more transparent");
   ImGui::SameLine();
   edit_boolean(editor.edits, "shade", editor.volume.shaded, item_pointer(editor.volume.where) + "/shade");
+  const scene::NamedColors& named = editor.volume.transfer.named;
+  edit_threshold(editor.edits, item_pointer(editor.volume.where) + "/threshold", named.threshold, reach);
   if (!editor.volume.transfer.gradient_factors.empty()) ImGui::TextDisabled("gradient opacity: edit in the file");
 }
 

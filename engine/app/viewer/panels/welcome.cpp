@@ -2,6 +2,7 @@
 // Panel shown when no scene is open: openable file types, the command Open, recent files.
 #include <imgui.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "engine/app/viewer/panels/panel.h"
@@ -9,6 +10,10 @@
 #include "engine/base/text.h"
 
 namespace catena::app {
+
+namespace {
+constexpr float kTextWidth = 480;
+}
 
 bool draw_recent_files(PanelContext& context) {
   bool any = false;
@@ -33,7 +38,9 @@ void draw_welcome(PanelContext& context) {
                                       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoBringToFrontOnFocus |
                                       ImGuiWindowFlags_NoFocusOnAppearing;
   if (ImGui::Begin("##start", nullptr, kFlags)) {
+    ImGui::PushTextWrapPos(std::min(kTextWidth, static_cast<float>(area.width) - 2 * ImGui::GetStyle().WindowPadding.x));
     ImGui::TextUnformatted(("Drop a file here: " + join_alternatives(openable_extensions())).c_str());
+    ImGui::PopTextWrapPos();
     ImGui::Spacing();
     const std::string open = menu_label(Action::open) + ("  (" + shortcut_label(Action::open) + ")");
     if (ImGui::Button(open.c_str())) context.push_command(Action::open);

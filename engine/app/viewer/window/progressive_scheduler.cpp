@@ -44,8 +44,8 @@ FrameRequest ProgressiveScheduler::request(const render::RefinementStep& step, s
 FrameRequest ProgressiveScheduler::interactive_frame(const RayWorkload& kind) {
   set_workload(kind);
   const render::RefinementStep step = *refinement_.next(true);
-  // the fast ray casting reduces its pixels by itself
-  const std::uint32_t scale = kind.supports_fast ? 1 : render::choose_pixel_scale(step.expected_ms, current_.pixel_stride, budget_ms_);
+  // the fast ray casting marches fewer rays first; fewer pixels follow if its coarsest level exceeds the budget
+  const std::uint32_t scale = render::choose_pixel_scale(step.expected_ms, current_.pixel_stride, budget_ms_);
   is_interactive_ = true;
   is_finished_ = false;
   return request(step, scale);

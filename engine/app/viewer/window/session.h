@@ -59,6 +59,7 @@ class Session {
   NavigationChanges process_segment(Input piece);
   Input route_to_viewport(Input input);
   bool drag_widget(const Input& input);
+  bool drag_window_level(const Input& input);
   std::optional<NavigationChanges> process_plane_input(const Input& input);
   Gui::Frame make_gui_frame();
 
@@ -91,6 +92,7 @@ class Session {
   std::optional<DraggedWidget> dragged_widget_;
   std::optional<Viewport::PlaneAt> plane_;  ///< Plane of orthogonal views under the pointer, or in which the present drag began.
   bool plane_pressed_ = false;              ///< A button was down in the segment before.
+  int window_level_drag_ = 0;               ///< Number of the press that changes the range of the colors; 0: none
   bool left_was_down_ = false;              ///< The left button was down in the segment before.
   BandAnimationClock band_clock_;
   bool has_animated_bands_ = false, bands_animated_ = true;

@@ -4,6 +4,7 @@
 
 #include "engine/app/viewer/edit/haptic_binding.h"
 #include "engine/app/viewer/edit/remove_item.h"
+#include "engine/app/viewer/edit/window_level.h"
 #include "engine/app/viewer/window/session.h"
 #include "engine/base/clock.h"
 #include "engine/scene/time_steps.h"
@@ -321,8 +322,23 @@ NavigationChanges Session::process_segment(Input piece) {
     const auto under = viewport_.pick_under_pointer();
     controls.pointer_hit = under ? std::optional(under->world) : std::nullopt;
   }
-  if (drag_widget(input)) input.dx = input.dy = 0;
+  if (drag_window_level(input) || drag_widget(input)) input.dx = input.dy = 0;
   return apply(controls, input);
+}
+
+/// Changes the range of the colors while Ctrl, Shift and the left button are down: to the right a wider range, upwards lower values. One
+/// press is one undo step. True: the input belongs to it.
+bool Session::drag_window_level(const Input& input) {
+  if (!input.left || !input.control || !input.shift) {
+    window_level_drag_ = 0;
+    return false;
+  }
+  if (window_level_drag_ == 0) window_level_drag_ = ++context_.state.edit.gesture;
+  if (input.dx == 0 && input.dy == 0) return true;
+  const scene::Scene& scene = std::as_const(context_.scene).scene();
+  const TextEdits edits = make_window_level_edits(scene, 2 * input.dx / input.width, input.dy / input.height);
+  if (!edits.empty()) execute(Edit{edits, "window and level", "window and level" + std::to_string(window_level_drag_)});
+  return true;
 }
 
 /// Moves the widget part that was under the pointer at the press; the moves of one press are one undo step. True: the input belongs to it.
