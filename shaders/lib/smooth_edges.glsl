@@ -64,11 +64,17 @@ bool may_be_at_contour(ivec2 p) {
 
 vec4 smoothed_opaque(ivec2 p) {
   if (!may_be_at_contour(p)) return texelFetch(opaque_color, p, 0);
-  vec4 sum = vec4(0.0);
-  float own = 1.0;
+  int contours = 0;  // bits, by side
   ivec2 side = ivec2(1, 0);
   for (int i = 0; i < compose.sides; ++i) {
-    if (is_contour(p, side)) {
+    if (is_contour(p, side)) contours |= 1 << i;
+    side = ivec2(-side.y, side.x);
+  }
+  vec4 sum = vec4(0.0);
+  float own = 1.0;
+  for (int i = 0; i < compose.sides; ++i) {
+    // an item that is one pixel wide keeps its color, or it would fade
+    if ((contours >> i & 1) == 1 && (contours >> (i + 2 & 3) & 1) == 0) {
       const float share = neighbor_share(p, side);
       sum += share * texelFetch(opaque_color, p + side, 0);
       own -= share;

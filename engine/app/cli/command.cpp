@@ -64,7 +64,7 @@ Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::
   if (is_scene_file(path)) {
     if (!grid.empty()) return Error{path + ": --grid applies only to a data file; a scene names its grids"};
     if (colors.is_given())
-      return Error{path + ": options of colours, labels and --over apply only to a data file; a scene states them itself"};
+      return Error{path + ": options of colours, labels and --over apply only to a data file; a scene states its colours itself"};
     auto scene = scene::read_scene(path, overrides);
     if (scene) print_scene_notes(*scene);
     return scene;

@@ -93,14 +93,11 @@ TEST_F(ColorMapProgram, DataFilesHaveTheRequestedColours) {
   test::expect_parts(run("render {g.vdb} -o {note.png} --size 16x12").err, {note});
   test::expect_parts(run("info {g.vdb}").out, {note});
   EXPECT_NE(plain.rgba, red.rgba);
-  // Grey over the background, which is bluer by 13 of 255, and pure grey where the volume is dense.
   const auto bluer = [](const Image8& picture, std::uint32_t x, std::uint32_t y) {
     return int(picture.pixel(x, y)[2]) - int(picture.pixel(x, y)[0]);
   };
   for (std::uint32_t y = 0; y < 48; ++y)
-    for (std::uint32_t x = 0; x < 64; ++x) EXPECT_NEAR(bluer(red, x, y), 6.5, 7.5) << "grey all over";
-  EXPECT_EQ(bluer(red, 1, 1), 13);
-  EXPECT_LT(bluer(red, 32, 24), 5);
+    for (std::uint32_t x = 0; x < 64; ++x) EXPECT_NEAR(bluer(red, x, y), 0, 1) << "grey all over";
   EXPECT_GT(red.pixel(32, 24)[0], red.pixel(1, 1)[0] + 30);
   int greener = 0;
   for (std::uint32_t y = 0; y < 48; ++y)

@@ -152,7 +152,7 @@ TEST_F(Offscreen, TilesMakeTheSameImage) {
   for (const char* text : {kLobes, kBalls}) {
     scene(text);
     for (const char* quality : {"step=0.5", "balanced", "draft", "reference"}) {
-      const std::string size = " --size 200x150 --quality " + std::string(quality);
+      const std::string size = " --size 200x150 --antialias 1 --quality " + std::string(quality);
       rendered("-o {o.png} --depth {o.exr} --ids {oi.png}" + size);
       rendered("-o {t.png} --depth {t.exr} --ids {ti.png} --tile 64 --stats {t.json}" + size);
       test::expect_parts(read("t.json"), {"\"tiles\": 12,"});
@@ -182,7 +182,7 @@ TEST_F(Offscreen, TheOverlayCoversTheWholeImageNotEachTile) {
               R"(, "title": "Two balls, one of them seen through", "orientation_marker": true, "scalar_bars": [{"field": "far"}],
     "labels": [{"at": [0, -0.75, 0], "text": "the nearest point"}])");
   scene(text);
-  const std::string size = " --size 220x160 --quality reference";
+  const std::string size = " --size 220x160 --antialias 1 --quality reference";
   rendered("-o {o.png}" + size);
   rendered("-o {t.png} --tile 64" + size);
   EXPECT_LE(max_pixel_difference(picture("o.png"), picture("t.png")), 1);
@@ -197,10 +197,10 @@ TEST_F(Offscreen, TheOverlayCoversTheWholeImageNotEachTile) {
 
 TEST_F(Offscreen, AntialiasingIsTheMeanOfTheSamples) {
   scene(kBalls);
-  rendered("-o {big.png} --size 180x120 --quality reference");
+  rendered("-o {big.png} --size 180x120 --antialias 1 --quality reference");
   rendered("-o {small.png} --size 60x40 --antialias 3 --quality reference");
   rendered("-o {tiled.png} --size 60x40 --antialias 3 --quality reference --tile 48");
-  rendered("-o {rough.png} --size 60x40 --quality reference");
+  rendered("-o {rough.png} --size 60x40 --antialias 1 --quality reference");
   const Image8 big = picture("big.png"), small = picture("small.png"), rough = picture("rough.png");
   int max_difference = 0, edge = 0;
   for (std::uint32_t y = 0; y < 40; ++y)

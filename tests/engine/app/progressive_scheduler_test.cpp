@@ -43,7 +43,7 @@ TEST(ProgressiveScheduler, InteractiveImagesMeetTheTimeAndImproveWithMoreTime) {
     ProgressiveScheduler p = pacing(words);
     const FrameRequest next = settle(p, kFast, 320);
     EXPECT_LE(time_of(next, 320), std::stod(std::string(words).substr(5))) << words;
-    EXPECT_EQ(next.pixel_stride, 1u);
+    EXPECT_LE(next.pixel_stride, before == 0 ? 2u : 1u) << "hysteresis at the shortest time";
     const double cost = render::relative_cost(next.settings, false);
     EXPECT_GT(cost, before) << words;
     before = cost;

@@ -277,6 +277,7 @@ void draw_choices(Editor& editor) {
   ImGui::SameLine();
   edit_boolean(editor.edits, "shade", editor.volume.shaded, item_pointer(editor.volume.where) + "/shade");
   const scene::NamedColors& named = editor.volume.transfer.named;
+  ImGui::SameLine();
   edit_threshold(editor.edits, item_pointer(editor.volume.where) + "/threshold", named.threshold, reach);
   if (!editor.volume.transfer.gradient_factors.empty()) ImGui::TextDisabled("gradient opacity: edit in the file");
 }
