@@ -32,7 +32,7 @@ import numpy as _np
 from ._catena import (Chain, Curve, Error, Field, MachineError, STATUSES, Ticks, __version__, _from_array, _from_file, _recording, _render,
                       _study_table, analytic, analytic_names, memory_limit, trace)
 
-_FILES = "file", "firmware", "transfer"  # keys of a scene whose words name files
+_FILES = "file", "firmware", "transfer", "itk", "fsl", "reference"  # keys of a scene whose words name files
 
 __all__ = ["Chain", "Curve", "Error", "Field", "MachineError", "Picture", "STATUSES", "Served", "Ticks", "analytic", "analytic_names",
            "field", "memory_limit", "recording", "render", "serve", "show", "study_table", "trace", "trade_report"]
