@@ -8,6 +8,7 @@
 #include "engine/app/viewer/edit/histogram_cache.h"
 #include "engine/app/viewer/edit/item_templates.h"
 #include "engine/app/viewer/edit/scene_items.h"
+#include "engine/scene/color_maps.h"
 #include "engine/scene/document.h"
 #include "render/extract/extract.h"
 #include "tests/support/results.h"
@@ -95,6 +96,10 @@ TEST_F(EditedScene, EveryPresentationOfAFieldIsDrawn) {
   EXPECT_EQ(packet.volumes.size(), 3u);
   EXPECT_EQ(packet.isosurfaces.size(), 2u + 3);
   EXPECT_EQ(packet.slices.size(), 4u);
+  int colored = 0;
+  scene.entities.each<scene::Slice>(
+      [&](scene::Entity, const scene::Slice& slice) { colored += slice.color_by.named.map == scene::kDefaultLineColorMap; });
+  EXPECT_GE(colored, 3) << "slices that were added state their colour map";
   EXPECT_GT(packet.tubes.size(), 20u);
   ASSERT_EQ(packet.glyphs.size(), 1u);
   EXPECT_GT(packet.glyphs[0].glyphs.size(), 100u) << "on the first slice";

@@ -60,6 +60,35 @@ TEST(Tick, TheReportOfALinkIsFiniteForEveryProbe) {
     }
 }
 
+/// Gives a proxy that is not finite, or a status that does not exist, as a faulty plug-in may.
+class Strays final : public haptics::Constraint {
+ public:
+  explicit Strays(bool bad_status) : bad_status_(bad_status) {}
+  void start(const Vec3& probe, haptics::LinkState& state, haptics::LinkScratch&) const noexcept override { state.proxy = probe; }
+  void advance(const Vec3& probe, haptics::LinkState& state, haptics::LinkScratch&) const noexcept override {
+    state.proxy = bad_status_ ? probe + 5.0 : Vec3(std::numeric_limits<double>::quiet_NaN());
+    state.status = bad_status_ ? static_cast<LinkStatus>(200) : LinkStatus::ok;
+  }
+
+ private:
+  bool bad_status_;
+};
+
+TEST(Tick, ResultsOfAFaultyConstraintAreReplacedByTheProbe) {
+  for (const bool bad_status : {false, true}) {
+    ChainDriver run;
+    run.add(std::make_shared<Strays>(bad_status));
+    run.program.links.push_back(hold_height("b", 1));
+    for (int k = 0; k < 3; ++k) {
+      run.at(0.001 * k, {0.5, 0.25, 0});
+      EXPECT_EQ(run.link(0).proxy, Vec3(0.5, 0.25, 0)) << bad_status;
+      EXPECT_EQ(run.link(0).status, LinkStatus::critical);
+      EXPECT_EQ(run.link(1).proxy, Vec3(0.5, 0.25, 1)) << "the next link goes on from the probe";
+      EXPECT_DOUBLE_EQ(run.out.force_n.z, 500 * 1.0);
+    }
+  }
+}
+
 TEST(Tick, ForceIsLimitedAndKeepsItsDirection) {
   ChainDriver run({hold_height("a", 1)}, 8);
   run.program.coupling.max_force_n = 8;
