@@ -12,10 +12,15 @@ std::vector<LinePart> add_colored_tubes(const TubeItem& tube, std::span<const do
   for (const LinePart& part : parts) {
     TubeItem piece = tube;
     const bool is_whole = part.first == 0 && part.last + 1 == static_cast<double>(values.size());
-    if (!is_whole) piece.points = entries_of<Vec3>(part, tube.points.list());
+    std::vector<double> cut;
+    if (!is_whole) {
+      piece.points = entries_of<Vec3>(part, tube.points.list());
+      cut = entries_of<double>(part, values);
+    }
+    const std::span<const double> shown = is_whole ? values : cut;
     std::vector<Color> colors;
-    for (const double value : is_whole ? std::vector(values.begin(), values.end()) : entries_of<double>(part, values))
-      colors.push_back(sample_color_table(table, value));
+    colors.reserve(shown.size());
+    for (const double value : shown) colors.push_back(sample_color_table(table, value));
     piece.colors = std::move(colors);
     out.push_back(std::move(piece));
   }

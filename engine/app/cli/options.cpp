@@ -133,9 +133,9 @@ std::vector<double> parse_numbers(const std::string& text) {
 }
 
 Result<Threshold> parse_threshold(const std::string& text) {
-  constexpr double kUnlimited = 1e30;  // limit of the numbers in a scene
   std::vector<double> bounds = parse_numbers(text);
-  if (bounds.size() == 1 && bounds[0] > 0 && bounds[0] < kUnlimited) bounds = {-kUnlimited, -bounds[0], bounds[0], kUnlimited};
+  if (bounds.size() == 1 && bounds[0] > 0 && bounds[0] < scene::kMaxSize)
+    bounds = {-scene::kMaxSize, -bounds[0], bounds[0], scene::kMaxSize};
   const bool rises = std::ranges::is_sorted(bounds) && !(bounds.size() == 4 && bounds[1] == bounds[2]);
   if (!rises || (bounds.size() != 2 && bounds.size() != 4))
     return Error{one_line("--threshold " + text +
