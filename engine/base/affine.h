@@ -13,6 +13,7 @@ struct AffineMap {
   Vec3 offset{0.0};  ///< Image of the origin
   bool operator==(const AffineMap&) const = default;
 
+  /// Returns the image of the position p.
   Vec3 operator()(const Vec3& p) const { return linear * p + offset; }
   /// Returns the map that applies `first` and then this one.
   AffineMap after(const AffineMap& first) const { return {linear * first.linear, (*this)(first.offset)}; }
