@@ -25,6 +25,8 @@ struct CATENA_EXPORT Bounds {
   Vec3 corner(int i) const { return {(i & 1) ? hi.x : lo.x, (i & 2) ? hi.y : lo.y, (i & 4) ? hi.z : lo.z}; }
   /// Returns true when p lies inside the box; its faces belong to it.
   bool contains(const Vec3& p) const { return p.x >= lo.x && p.y >= lo.y && p.z >= lo.z && p.x <= hi.x && p.y <= hi.y && p.z <= hi.z; }
+  /// Returns the box scaled about the origin by factors > 0, axis by axis.
+  Bounds scaled(const Vec3& factors) const { return {lo * factors, hi * factors}; }
   /// Grows the box to contain the ball of `radius` world units around p. A point that is not finite is ignored.
   void extend(const Vec3& p, double radius = 0);
   /// Grows the box to contain `other`; an empty box changes nothing.

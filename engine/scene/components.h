@@ -135,9 +135,10 @@ struct FileColors {
   std::vector<LabelOpacity> label_opacities{};              ///< Opacities of labels; the last one that names a label holds
   /// Another data file, drawn over the first one: labels, or a statistic. The other members are then those of its colors.
   std::string overlay{};
-  bool is_overlay = false;  ///< The file is drawn over another one
+  bool is_overlay = false;        ///< The file is drawn over another one
+  std::optional<Vec3> stretch{};  ///< Stretch of the image along the axes; empty: chosen from the data
   /// Returns whether anything was requested.
-  bool is_given() const { return !is_default() || !overlay.empty() || !label_opacities.empty(); }
+  bool is_given() const { return !is_default() || !overlay.empty() || !label_opacities.empty() || stretch; }
   /// Returns whether nothing was requested but an overlay and opacities of labels.
   bool is_default() const { return named.is_default() && !makes_volume() && !is_symmetric; }
   /// Returns whether a volume was requested.

@@ -239,11 +239,10 @@ Result<DefaultScene> scene_of_one_file(const std::string& path, const std::strin
     CATENA_TRY(result.field, field::load(result.request));
   }
   result.text += "}" + visualization.extra_fields;
-  if (grid.empty()) {
-    const std::string others = other_fields(data_file, result.request.grid, file, name);
-    result.text += others;
-    if (!others.empty()) result.note += "; the file has more fields: --grid NAME shows another one (catena info FILE lists them)";
-  }
+  const std::string others = other_fields(data_file, result.request.grid, file, name);
+  result.text += others;
+  if (grid.empty() && !others.empty())
+    result.note += "; the file has more fields: --grid NAME shows another one (catena info FILE lists them)";
   if (const std::string note = outlier_note(field::display_range(result.field)); !note.empty()) result.field.notes.push_back(note);
   result.text += std::string("},\n") +
                  (result.field.times.size() > 1 || is_pattern(path) ? fmt::format("  \"time\": {{\"step\": {}}},\n", step) : "") +
@@ -251,15 +250,59 @@ Result<DefaultScene> scene_of_one_file(const std::string& path, const std::strin
   return result;
 }
 
+/// States the stretch that was requested or, for a field whose axes differ so much that they can hardly have one unit, a chosen one.
+Outcome add_stretch(const FileColors& colors, DefaultScene& result) {
+  const bool is_chosen = !colors.stretch && result.field.get() != nullptr;
+  const Vec3 stretch = is_chosen ? choose_stretch(*result.field.get()) : colors.stretch.value_or(Vec3(1.0));
+  if (stretch == Vec3(1.0)) return Done{};
+  CATENA_TRY(result.text, json::set_value(result.text, result.scene_path, "/stretch", to_json(stretch)));
+  CATENA_TRY(result.text, json::set_value(result.text, result.scene_path, "/axes", "true"));
+  if (is_chosen)
+    result.note +=
+        fmt::format("; the axes have very different scales: the image is stretched by {:g}, {:g}, {:g} along x, y, z (--stretch)",
+                    stretch.x, stretch.y, stretch.z);
+  return Done{};
+}
+
+/// Loads one data file and writes its default scene, with its stretch.
+Result<DefaultScene> stretched_scene_of_one_file(const std::string& path, const std::string& grid, const FileColors& colors, int step) {
+  CATENA_TRY(DefaultScene result, scene_of_one_file(path, grid, colors, step));
+  CATENA_CHECK(add_stretch(colors, result));
+  return result;
+}
+
 }  // namespace
 
+Vec3 choose_stretch(const field::Field& field) {
+  // a voxel kOutlying times as long as another one along an axis that is also kNeedle times as long, or as short, as the box
+  constexpr double kOutlying = 20, kNeedle = 8, kExtent = 0.5;
+  const Bounds box = field.world_bounds();
+  const Vec3 size = box.hi - box.lo;
+  Vec3 edge(0.0);  // of the voxels' bounds
+  for (int column = 0; column < 3; ++column)
+    for (int axis = 0; axis < 3; ++axis) edge[axis] += std::fabs(field.mapping().world_from_index_linear[column][axis]);
+  Vec3 stretch(1.0);
+  if (!field.is_grid() || !(std::max({edge.x, edge.y, edge.z}) > kOutlying * std::min({edge.x, edge.y, edge.z}))) return stretch;
+  std::array<double, 3> sizes{size.x, size.y, size.z};
+  std::ranges::sort(sizes);
+  if (!(sizes[0] > 0)) return stretch;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double ratio = size[axis] / sizes[1];
+    if (ratio < kNeedle && ratio > 1 / kNeedle) continue;
+    const double factor = kExtent / ratio, decade = std::pow(10, std::floor(std::log10(factor)));
+    stretch[axis] = decade * (factor >= 5 * decade ? 5 : factor >= 2 * decade ? 2 : 1);
+  }
+  return stretch;
+}
+
 Result<DefaultScene> make_default_scene(const std::string& path, const std::string& grid, const FileColors& colors, int step) {
-  if (colors.overlay.empty()) return scene_of_one_file(path, grid, colors, step);
+  if (colors.overlay.empty()) return stretched_scene_of_one_file(path, grid, colors, step);
   FileColors below, above = colors;
   below.overlay = colors.overlay;
   above.overlay.clear();
   above.is_overlay = true;
-  CATENA_TRY(DefaultScene result, scene_of_one_file(path, grid, below, step));
+  below.stretch = colors.stretch;
+  CATENA_TRY(DefaultScene result, stretched_scene_of_one_file(path, grid, below, step));
   CATENA_TRY(const DefaultScene overlay, scene_of_one_file(colors.overlay, {}, above, 0));
   CATENA_TRY(const MergedScene merged, merge_scene(result.text, result.scene_path, overlay.text, overlay.scene_path));
   for (const Document::Edit& edit : merged.edits)

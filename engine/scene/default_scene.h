@@ -25,6 +25,9 @@ struct DefaultScene {
 /// Loads the data file and writes its default scene. `grid`: the grid to show; empty: the first usable scalar grid, else the first vector
 /// grid. `step`: time step that is loaded and shown. Error: the file cannot be read, or colors are specified for a mesh or curves.
 Result<DefaultScene> make_default_scene(const std::string& path, const std::string& grid, const FileColors& colors, int step = 0);
+/// Returns the factors by which the image of a grid is stretched: 1 along all axes unless their voxels and extents differ so much that
+/// they can hardly have one unit (degrees and meters); then the outlying axis is shown at about half the extent of the others.
+Vec3 choose_stretch(const field::Field& field);
 /// Hands the loaded data, and the notes on them, to the scene that was read from `text`, so that nothing is loaded twice.
 void adopt_loaded_data(const DefaultScene& default_scene, Scene& scene);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Reads the camera and the image: "camera", "background", "quality", "jitter", and "clip".
+/// Reads the camera and the image: "camera", "background", "quality", "jitter", "stretch", and "clip".
 #include "engine/base/camera_limits.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
@@ -96,9 +96,22 @@ Outcome read_quality(Scene& scene, const json::Node& node) {
   return Done{};
 }
 
+constexpr double kMaxStretchRatio = 1e9;
+
 Outcome read_jitter(Scene& scene, const json::Node& node) {
   if (node.kind != json::Kind::boolean) return json::error_at(node, "\"jitter\" is not a boolean; true or false was expected");
   scene.jitter = node.boolean;
+  return Done{};
+}
+
+Outcome read_stretch(Scene& scene, const json::Node& node) {
+  const auto factors = json::as_vec3(node, "stretch");
+  if (!factors || !(std::min({factors->x, factors->y, factors->z}) > 0))
+    return json::error_at(node, "\"stretch\" is not three factors; [x, y, z], each above 0, was expected");
+  const double ratio = std::max({factors->x, factors->y, factors->z}) / std::min({factors->x, factors->y, factors->z});
+  if (!(ratio <= kMaxStretchRatio))
+    return json::error_at(node, "the factors of \"stretch\" differ by more than 1e9; a smaller ratio was expected");
+  scene.stretch = *factors;
   return Done{};
 }
 
@@ -138,6 +151,14 @@ Part jitter_part() {
                       "Random offset of the ray samples in volumes: noise in place of ring artefacts. No effect on the fast raycast.")
           .with_default("set by `quality`");
   return {{"jitter", "Random offset of the ray samples in volumes.", Section::Layout::value, {key}}, read_jitter};
+}
+
+Part stretch_part() {
+  const Key key = schema::vec3("stretch", "",
+                               "Factors along x, y and z by which the image is stretched, for axes of different units or extents. Lengths "
+                               "that are measured, and forces, stay in world units; positions of the camera are those of the image.")
+                      .with_default("[1, 1, 1]");
+  return {{"stretch", "Stretch of the image along the axes.", Section::Layout::value, {key}}, read_stretch};
 }
 
 std::string to_json(const Camera& camera) { return camera_table().write({}, camera); }

@@ -43,6 +43,7 @@ struct Scene {
   TimeLine time;                            ///< Current time step
   Annotations annotations;                  ///< Text and marks over the image
   std::vector<ClipPlane> clip_planes;       ///< Planes that cut the scene
+  Vec3 stretch{1.0};                        ///< Factors by which images are stretched along the world's axes, > 0
   std::optional<bool> jitter;               ///< Jitter of ray samples; empty: by `quality`
   std::optional<BoundingBox> bounding_box;  ///< Empty: not rendered
   std::optional<Axes> axes;                 ///< Empty: not rendered

@@ -131,6 +131,7 @@ void add_seen(const scene::Scene& scene, const FramePacket& packet, std::vector<
     std::vector<Vec3> positions;
     if (scene.cache.has<VisiblePoints<T>>(e)) positions = scene.cache.get<VisiblePoints<T>>(e).positions;
     if (positions.empty() && any.scalar && any.scalar->grid() != nullptr) positions = domain_of(*any.scalar->grid());
+    for (Vec3& p : positions) p *= scene.stretch;
     clouds.push_back(
         {scene.entities.get<T>(e).clipped ? points_inside_clip_planes(std::move(positions), packet) : std::move(positions), kOutlierShare});
   }

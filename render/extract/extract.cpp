@@ -12,6 +12,7 @@
 #include "render/extract/auto_camera.h"
 #include "render/extract/drawable.h"
 #include "render/extract/extract_internal.h"
+#include "render/extract/stretch.h"
 
 namespace catena::render {
 
@@ -87,7 +88,7 @@ void extract_feet(const scene::Scene& scene, const Bounds& drawn, FramePacket& p
   const double sign = up[axis] < 0 ? -1 : 1;
   for (CursorItem& cursor : packet.cursors) {
     if (!cursor.foot_point) continue;
-    const double floor = scene.ground ? ground_height(*scene.ground, drawn) : (sign > 0 ? drawn.lo : drawn.hi)[axis];
+    const double floor = scene.ground ? ground_height(scene, drawn) : (sign > 0 ? drawn.lo : drawn.hi)[axis];
     (*cursor.foot_point)[axis] = floor;
     if (drawn.empty() || !(sign * (cursor.probe[axis] - floor) > 0)) cursor.foot_point.reset();
   }
@@ -95,8 +96,10 @@ void extract_feet(const scene::Scene& scene, const Bounds& drawn, FramePacket& p
 
 View view_of(const scene::Scene& scene, const FramePacket& packet) {
   const scene::Camera& camera = scene.camera;
-  if (camera.is_explicit) return {camera.position, camera.target, camera.up, camera.fovy_deg, camera.orthographic, camera.ortho_height};
-  return make_auto_view(scene, packet);
+  View view{camera.position, camera.target, camera.up, camera.fovy_deg, camera.orthographic, camera.ortho_height};
+  if (!camera.is_explicit) view = make_auto_view(scene, packet);
+  view.stretch = scene.stretch;
+  return view;
 }
 
 }  // namespace
@@ -142,6 +145,7 @@ Bounds packet_bounds(const FramePacket& packet) {
 
 void set_view(const scene::Scene& scene, const View& view, FramePacket& packet) {
   packet.view = make_screen_window_view(view, scene.stereo);
+  packet.view.stretch = scene.stretch;
   const Bounds drawn = drawn_bounds(packet);
   update_box_lines(scene, drawn.empty() ? packet_bounds(packet) : drawn, packet);
   update_fog(scene, packet_bounds(packet), packet);
@@ -155,6 +159,7 @@ void update_cursors(const scene::Scene& scene, FramePacket& packet) {
   if (hands.size() != packet.cursors.size()) return;
   for (std::size_t k = 0; k < hands.size(); ++k) {
     CursorItem& item = packet.cursors[k];
+    stretch_cursor(scene.stretch, 1, hands[k]);
     hands[k].radius = item.radius;
     hands[k].id = item.id;
     hands[k].show_occluded = item.show_occluded;
@@ -171,6 +176,7 @@ Outcome prepare_frame(scene::Scene& scene) {
   for (const DrawableExtraction& kind : extractions())
     if (kind.prepare != nullptr) CATENA_CHECK(kind.prepare(scene));
   prepare_auto_camera(scene);
+  prepare_stretch(scene);
   return prepare_widgets(scene);
 }
 
@@ -192,6 +198,7 @@ Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width
   extract_cursors(scene, packet);
   CATENA_CHECK(extract_indicators(scene, packet));
   extract_overlay(scene, packet);
+  stretch_items(scene, packet);
   packet.view = make_screen_window_view(view_of(scene, packet), scene.stereo);
   // the box, axes and ground enclose the data only, so that they do not move with the hand
   const Bounds drawn = drawn_bounds(packet);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "render/extract/extract_internal.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,9 +12,9 @@
 namespace catena::render {
 namespace {
 
-constexpr double kLineShare = 0.0012;                         // line radius / diagonal of the drawn bounds
-constexpr double kTickShare = 0.015;                          // tick length / diagonal
-constexpr double kNumberDistance = 2.6, kNameDistance = 5.5;  // distances of numbers and names from the axis, in tick lengths
+constexpr double kLineShare = 0.0012;                                                // line radius / diagonal of the drawn bounds
+constexpr double kTickShare = 0.015;                                                 // tick length / diagonal
+constexpr double kNumberDistance = 2.6, kNameDistance = 5.5, kWideNameDistance = 9;  // of numbers and names from the axis, in tick lengths
 constexpr double kNumberPt = 10, kNamePt = 13;
 constexpr double kGroundShare = 1.6;  // edge of the ground / diagonal
 constexpr double kGroundGap = 0.02;   // gap between the drawn bounds and the ground / diagonal
@@ -33,7 +35,7 @@ Corners corners_of(const scene::Scene& scene, scene::Entity named, const Bounds&
     return corners;
   }
   const field::Field* field = scene::rendered_field(scene, named).get();
-  for (int i = 0; i < 8; ++i) corners[i] = field->corner(i);
+  for (int i = 0; i < 8; ++i) corners[i] = scene.stretch * field->corner(i);
   return corners;
 }
 
@@ -104,19 +106,24 @@ void add_axes(const scene::Scene& scene, const Bounds& drawn, FramePacket& packe
     const AxisEdge& edge = edges[std::size_t(axis)];
     const Vec3 out = tick * edge.outward;
     packet.environment.tubes.push_back(line(edge.from, edge.to, radius, color, id));
-    for (const AxisTick& t : nice_ticks(box.lo[axis], box.hi[axis], axes.ticks)) {
+    const double stretch = scene.stretch[axis];
+    for (const AxisTick& t : nice_ticks(box.lo[axis] / stretch, box.hi[axis] / stretch, axes.ticks)) {
       Vec3 at = edge.from;
-      at[axis] = t.value;
+      at[axis] = stretch * t.value;
       packet.environment.tubes.push_back(line(at, at + out, radius, color, id));
       packet.overlay.axis_labels.push_back(label(at + kNumberDistance * out, t.label, kNumberPt, color));
     }
-    const Vec3 middle = 0.5 * edge.from + 0.5 * edge.to + kNameDistance * out;
-    packet.overlay.axis_labels.push_back(label(middle, axes.names[std::size_t(axis)], kNamePt, color));
+    std::string name = axes.names[std::size_t(axis)];
+    if (stretch != 1) name += fmt::format(" (\u00d7 {:.3g})", stretch);
+    const double distance = stretch == 1 ? kNameDistance : kWideNameDistance;
+    const Vec3 middle = 0.5 * edge.from + 0.5 * edge.to + distance * out;
+    packet.overlay.axis_labels.push_back(label(middle, name, kNamePt, color));
   }
 }
 
 /// Adds the ground as two meshes, one for each color of the checkerboard.
-void add_ground(const scene::Ground& ground, const Bounds& drawn, FramePacket& packet) {
+void add_ground(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+  const scene::Ground& ground = *scene.ground;
   Bounds bounds = drawn;
   if (bounds.empty()) {
     bounds.extend(Vec3(-1.0));
@@ -125,7 +132,7 @@ void add_ground(const scene::Ground& ground, const Bounds& drawn, FramePacket& p
   const double diagonal = bounds.diagonal();
   const double size = ground.size > 0 ? ground.size : ground.tile_size > 0 ? kTilesAcross * ground.tile_size : kGroundShare * diagonal;
   const int tiles = std::clamp(static_cast<int>(std::lround(ground.tile_size > 0 ? size / ground.tile_size : kTilesAcross)), 1, 1000);
-  const double edge = size / tiles, z = ground_height(ground, bounds);
+  const double edge = size / tiles, z = ground_height(scene, bounds);
   const std::uint32_t id = packet.add_object("ground", "");
   for (int shade = 0; shade < 2; ++shade) {
     auto geometry = std::make_shared<MeshGeometry>();
@@ -166,8 +173,8 @@ void update_fog(const scene::Scene& scene, const Bounds& drawn, FramePacket& pac
   if (scene.fog) packet.fog = fog_of(*scene.fog, drawn, packet);
 }
 
-double ground_height(const scene::Ground& ground, const Bounds& drawn) {
-  return ground.z.value_or(drawn.lo.z - kGroundGap * drawn.diagonal());
+double ground_height(const scene::Scene& scene, const Bounds& drawn) {
+  return scene.ground->z ? scene.stretch.z * *scene.ground->z : drawn.lo.z - kGroundGap * drawn.diagonal();
 }
 
 void update_box_lines(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
@@ -179,7 +186,7 @@ void update_box_lines(const scene::Scene& scene, const Bounds& drawn, FramePacke
 
 void extract_environment(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
   update_box_lines(scene, drawn, packet);
-  if (scene.ground) add_ground(*scene.ground, drawn, packet);
+  if (scene.ground) add_ground(scene, drawn, packet);
   update_fog(scene, drawn, packet);
   for (const scene::Light& light : scene.lights) {
     const auto i = static_cast<float>(light.intensity);

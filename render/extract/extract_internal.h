@@ -28,6 +28,9 @@ std::vector<scene::Entity> entities_with(const scene::EntityStore& world) {
   return owners;
 }
 
+/// Returns the bounds of the drawn data: without cursors, indicators, the environment and widgets.
+Bounds drawn_bounds(const FramePacket& packet);
+
 using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
 
 /// Returns the color table of the data cached beside an entity (scene.cache); null if there is none or it is empty.
@@ -56,8 +59,8 @@ Outcome prepare_cached(scene::Scene& scene, const Make& make) {
 ///   ground         a checkerboard perpendicular to z, just below all rendered items
 ///   fog            from the nearest to the farthest view depth of all rendered items
 
-/// Returns the height of the ground: as specified, or slightly below `drawn`.
-double ground_height(const scene::Ground& ground, const Bounds& drawn);
+/// Returns the height of the scene's ground in display units: as specified, or slightly below `drawn`.
+double ground_height(const scene::Scene& scene, const Bounds& drawn);
 
 /// Adds the environment; to be called after all other items and the view are in the packet. `drawn`: bounds of these items.
 void extract_environment(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);

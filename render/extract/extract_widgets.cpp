@@ -213,10 +213,11 @@ std::uint32_t id_of(FramePacket& packet, const std::string& name) {
 void update_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
   packet.widgets = {};
   WidgetShapes shapes(packet);
+  const Bounds world = drawn.scaled(1.0 / scene.stretch);
   scene.entities.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
     if (!is_drawable(widget)) return;
     shapes.begin_object(id_of(packet, entity_name(scene, e)), kLine * length_of(widget));
-    draw(shapes, widget, scene::find_ruler_measure(scene, e), drawn);
+    draw(shapes, widget, scene::find_ruler_measure(scene, e), world);
   });
 }
 
@@ -231,7 +232,7 @@ void extract_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket
     if (!is_measured(widget)) return;
     const scene::RulerMeasure& measure = *scene::find_ruler_measure(scene, e);
     LabelItem label;
-    label.position = halfway(measure.points);
+    label.position = scene.stretch * halfway(measure.points);
     label.text = fmt::format("{:.4g} units{}", measure.length, measure.note.empty() ? "" : " (straight)");
     label.anchor = Anchor::bottom_left;
     label.offset_pt = {6.0, -6.0};

@@ -13,6 +13,7 @@
 #include "engine/scene/streamlines.h"
 #include "render/extract/colored_tubes.h"
 #include "render/extract/extract_internal.h"
+#include "render/extract/stretch.h"
 
 namespace catena::render {
 
@@ -83,6 +84,7 @@ class Flattener {
   Flattener(scene::Scene& scene, const scene::StreamlineSet& set, field::VectorFieldPtr flow, field::AnyField shown)
       : scene_(scene), set_(set), flow_(std::move(flow)), shown_(std::move(shown)) {
     flat_.radius = set.radius > 0 ? set.radius : kTubeShare * shown_diagonal(scene, set, *flow_);
+    error_share_ = size_scale(flow_->world_bounds(), scene.stretch) / std::max({scene.stretch.x, scene.stretch.y, scene.stretch.z});
     if (set.color_by) value_.emplace(*set.color_by, shown_, flow_);
   }
   Outcome add(const scene::LineBlock& block);
@@ -106,6 +108,7 @@ class Flattener {
   field::AnyField shown_;
   std::optional<LineValue> value_;
   double error_ = 0;            ///< in tube radii; 0: not chosen yet
+  double error_share_ = 1;      ///< reduces the error where a stretch enlarges it, against the radius
   double length_ = 0;           ///< total length of the curves so far
   std::vector<double> values_;  ///< one per point of all tubes
   std::vector<FlattenedPoint> arrow_places_;
@@ -113,7 +116,7 @@ class Flattener {
 };
 
 FlattenOptions Flattener::options_for(const flow::Curve& curve) const {
-  FlattenOptions options{flat_.radius, std::max(error_, kFinest * curve.domain_length() / flat_.radius)};
+  FlattenOptions options{flat_.radius, error_share_ * std::max(error_, kFinest * curve.domain_length() / flat_.radius)};
   double detail = value_ ? value_->detail() : 0;
   if (value_ && detail == 0) detail = curve.period() / 64;
   const double band = kPulseShare * set_.band_length;

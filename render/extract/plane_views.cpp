@@ -9,7 +9,9 @@
 #include "engine/io/volume/units.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/units.h"
+#include "render/extract/extract.h"
 #include "render/extract/extract_internal.h"
+#include "render/extract/stretch.h"
 #include "render/extract/widget_shapes.h"
 
 namespace catena::render {
@@ -116,18 +118,31 @@ SliceItem make_plane_slice(const scene::Scene& scene, scene::Entity field, bool 
 }
 
 /// Height of the image that shows the whole box in every plane, so that all planes have one scale.
-double common_height(const OrthoPlanes& planes, double aspect) {
+double common_height(const OrthoPlanes& planes, const Vec3& stretch, double aspect) {
   double height = 0;
   for (const PlaneFrame& frame : planes.frames) {
     double half_width = 0, half_height = 0;
     for (const Vec3& corner : planes.corners) {
-      const Vec3 arm = corner - planes.center;
+      const Vec3 arm = stretch * (corner - planes.center);
       half_width = std::max(half_width, std::fabs(dot(arm, frame.right)));
       half_height = std::max(half_height, std::fabs(dot(arm, frame.up)));
     }
     height = std::max({height, 2 * half_height, 2 * half_width / aspect});
   }
   return kMargin * height;
+}
+
+/// Moves the widgets in front of the plane, so that they are seen like a drawing on it.
+void project_widgets(FramePacket& packet, const Vec3& on_plane, const Vec3& back) {
+  const double above = 0.1 * packet.view.height;
+  const auto project = [&](Vec3& p) { p += (above - dot(p - on_plane, back)) * back; };
+  for (TubeItem& tube : packet.widgets.tubes) {
+    std::vector<Vec3> points = tube.points.list();
+    for (Vec3& p : points) project(p);
+    tube.points = std::move(points);
+  }
+  for (ArrowItem& arrow : packet.widgets.arrows) project(arrow.base), project(arrow.tip);
+  packet.widgets.meshes.clear();
 }
 
 /// Lines of the two other planes, and of the texts.
@@ -138,7 +153,7 @@ void add_marks(const OrthoPlanes& planes, std::size_t plane, const Vec3& focus, 
   const double reach = packet.view.height * std::max(1.0, double(packet.width) / packet.height);
   for (std::size_t other = 0; other < 3; ++other) {
     if (other == plane) continue;
-    const Vec3 along = direction(cross(frame.back, planes.frames[other].back));
+    const Vec3 along = direction(cross(frame.back, planes.frames[other].back)) / packet.view.stretch;
     shapes.tube({focus - reach * along, focus + reach * along}, 0.7, kPlaneColors[other]);
   }
   const std::pair<Anchor, Vec2> edges[] = {
@@ -149,7 +164,7 @@ void add_marks(const OrthoPlanes& planes, std::size_t plane, const Vec3& focus, 
   int axis = 0;
   for (int i = 1; i < 3; ++i)
     if (std::fabs(frame.back[i]) > std::fabs(frame.back[axis])) axis = i;
-  const double position = (frame.back[axis] < 0 ? -1 : 1) * dot(focus, frame.back);
+  const double position = (frame.back[axis] < 0 ? -1 : 1) * dot(focus, frame.back) + 0.0;  // no -0
   packet.overlay.texts.push_back({fmt::format("{} {:.4g}{}", frame.name, position, scene::unit_suffix(unit)),
                                   Anchor::top_left,
                                   {8, 6},
@@ -194,11 +209,11 @@ Result<OrthoPlanes> find_ortho_planes(scene::Scene& scene) {
   return planes;
 }
 
-Outcome add_plane_views(const scene::Scene& scene, const OrthoPlanes& planes, const std::optional<Vec3>& focus,
-                        const std::optional<std::array<double, 2>>& window, FramePacket& packet) {
+Outcome add_plane_views(const scene::Scene& scene, const OrthoPlanes& planes, const PlaneViewState& state, FramePacket& packet) {
   if (!packet.eyes.empty()) return Error{"orthogonal views are not shown in stereo; --stereo mono was expected"};
-  const Vec3 center = planes.center, at = focus.value_or(center);
-  const double height = common_height(planes, double(packet.width) / packet.height);
+  const Vec3 focus = state.focus.value_or(planes.center), at = scene.stretch * focus;
+  const Vec3 center = scene.stretch * state.center.value_or(planes.center);
+  const double height = common_height(planes, scene.stretch, double(packet.width) / packet.height) / state.zoom;
   packet.planes.clear();
   for (std::size_t k = 0; k < planes.frames.size(); ++k) {
     const PlaneFrame& frame = planes.frames[k];
@@ -209,16 +224,21 @@ Outcome add_plane_views(const scene::Scene& scene, const OrthoPlanes& planes, co
     plane->objects = packet.objects;
     plane->cursors = packet.cursors;
     plane->view.target = center + dot(at - center, frame.back) * frame.back;
-    plane->view.position = plane->view.target + 2 * norm(planes.corners[7] - planes.corners[0]) * frame.back;
+    plane->view.position = plane->view.target + 2 * norm(scene.stretch * (planes.corners[7] - planes.corners[0])) * frame.back;
     plane->view.up = frame.up;
     plane->view.orthographic = true;
     plane->view.height = height;
-    plane->slices.push_back(make_plane_slice(scene, planes.base, true, window));
+    plane->slices.push_back(make_plane_slice(scene, planes.base, true, state.window));
     for (const scene::Entity field : planes.overlays) plane->slices.push_back(make_plane_slice(scene, field, false, {}));
-    for (SliceItem& slice : plane->slices) slice.point = at, slice.normal = frame.back;
+    plane->view.stretch = scene.stretch;
+    plane->size_scale = packet.size_scale;
+    for (SliceItem& slice : plane->slices) slice.point = focus, slice.normal = scene.stretch * frame.back;
+    stretch_slices(scene, *plane);
     plane->overlay.font = packet.overlay.font;
     plane->overlay.scale = packet.overlay.scale;
-    add_marks(planes, k, at, scene::length_unit(scene), *plane);
+    update_widgets(scene, data_bounds(packet), *plane);
+    project_widgets(*plane, at, frame.back);
+    add_marks(planes, k, focus, scene::length_unit(scene), *plane);
     packet.planes.push_back(std::move(plane));
   }
   packet.packing = Packing::grid;

@@ -65,15 +65,18 @@ Color axis_color(int axis) {
 }
 
 WidgetShapes::WidgetShapes(FramePacket& packet)
-    : items_(&packet.widgets), camera_(make_camera(packet.view, packet.width, packet.height, {})) {}
+    : items_(&packet.widgets),
+      camera_(make_display_camera(packet.view, packet.width, packet.height, {})),
+      stretch_(packet.view.stretch),
+      size_scale_(packet.size_scale) {}
 
 double WidgetShapes::pixel_size_at(const Vec3& p) const {
-  const double depth = dot(camera_.position - p, camera_.back);
-  return depth > 0 || camera_.orthographic ? pixel_size(camera_, depth) : 0;
+  const double depth = dot(camera_.position - stretch_ * p, camera_.back);
+  return depth > 0 || camera_.orthographic ? pixel_size(camera_, depth) / size_scale_ : 0;
 }
 
 Vec3 WidgetShapes::direction_to_camera(const Vec3& p) const {
-  return camera_.orthographic ? camera_.back : direction(camera_.position - p);
+  return direction(stretch_ * (camera_.orthographic ? camera_.back : direction(camera_.position - stretch_ * p)));
 }
 
 void WidgetShapes::tube(std::vector<Vec3> points, double weight, const Color& color) {
@@ -84,8 +87,9 @@ void WidgetShapes::tube(std::vector<Vec3> points, double weight, const Color& co
 
 void WidgetShapes::add(std::vector<Vec3> points, double radius, const Color& color) {
   TubeItem item;
+  for (Vec3& p : points) p *= stretch_;
   item.points = std::move(points);
-  item.radius = radius;
+  item.radius = size_scale_ * radius;
   item.color = color;
   item.id = id_;
   item.is_clipped = false;
@@ -111,6 +115,7 @@ void WidgetShapes::circle(const Vec3& centre, const Vec3& normal, double radius,
 void WidgetShapes::parallelogram(const Vec3& middle, const Vec3& u, const Vec3& v, const Color& color) {
   auto geometry = std::make_shared<MeshGeometry>();
   geometry->vertices = {middle + u + v, middle - u + v, middle - u - v, middle + u - v};
+  for (Vec3& p : geometry->vertices) p *= stretch_;
   geometry->triangles = {0, 1, 2, 0, 2, 3};
   items_->meshes.push_back({std::move(geometry), color, id_, false});
 }
@@ -124,13 +129,15 @@ double WidgetShapes::visible_radius(const Vec3& centre, double radius) const {
 void WidgetShapes::arrow(const Vec3& from, const Vec3& tip, double weight, double head, const Color& color) {
   const double length = norm(tip - from);
   if (!(length > 0)) return;
-  const double cone = std::min(std::max(head, kMinHeadPx * pixel_size_at(tip)), 0.6 * length);
-  const Vec3 along = direction(tip - from), neck = tip - cone * along;
+  const Vec3 along = direction(tip - from);
+  const double display_per_world = norm(stretch_ * along) / size_scale_;  // of lengths along the arrow, against radii
+  const double cone = std::min(std::max(head, kMinHeadPx * pixel_size_at(tip)), 0.6 * length * display_per_world);
+  const Vec3 neck = tip - cone / display_per_world * along;
   tube({from, neck}, weight, color);
   ArrowItem item;
-  item.base = neck;
-  item.tip = tip;
-  item.radius = std::max(kHeadWidth * cone, 1.6 * items_->tubes.back().radius);
+  item.base = stretch_ * neck;
+  item.tip = stretch_ * tip;
+  item.radius = std::max(kHeadWidth * cone * size_scale_, 1.6 * items_->tubes.back().radius);
   item.color = color;
   item.id = id_;
   item.is_clipped = false;

@@ -27,7 +27,8 @@ Color brighten(const Color& color, float share);
 /// Returns red, green or blue for axis 0, 1 or 2.
 Color axis_color(int axis);
 
-/// Appends shapes to a packet's widgets, none too thin to be visible in the packet's view. Frame thread.
+/// Appends shapes to a packet's widgets, none too thin to be visible in the packet's view. Positions and sizes are in world units; the
+/// packet's stretch moves the points, while tubes and spheres stay round. Frame thread.
 class WidgetShapes {
  public:
   /// Appends to the widgets of `packet`, for its view.
@@ -64,7 +65,9 @@ class WidgetShapes {
   double pixel_size_at(const Vec3& p) const;
 
   WidgetItems* items_;
-  Camera camera_;
+  Camera camera_;      ///< for display positions
+  Vec3 stretch_;       ///< display units per world unit along the axes
+  double size_scale_;  ///< display units per world unit of radii
   std::uint32_t id_ = 0;
   double line_radius_ = 0;
 };

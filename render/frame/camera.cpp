@@ -60,6 +60,7 @@ Camera make_camera(const View& view, double width_px, double height_px, const Bo
   CATENA_ASSERT(width_px >= 1 && height_px >= 1);
   Camera camera;
   camera.position = view.position;
+  camera.stretch = view.stretch;
   camera.width = width_px;
   camera.height = height_px;
   camera.orthographic = view.orthographic;
@@ -75,6 +76,12 @@ Camera make_camera(const View& view, double width_px, double height_px, const Bo
   set_axes(camera, view.position - view.target, view.up);
   const double distance = norm(view.position - view.target);
   set_depth_range(camera, bounds, distance > 0 ? distance : 1);
+  return camera;
+}
+
+Camera make_display_camera(const View& view, double width_px, double height_px, const Bounds& bounds) {
+  Camera camera = make_camera(view, width_px, height_px, bounds);
+  camera.stretch = Vec3(1.0);
   return camera;
 }
 
@@ -160,12 +167,12 @@ Mat4 world_from_clip(const Camera& c) {
 Ray pixel_ray(const Camera& c, double x_px, double y_px) {
   const double x = c.center_x + (2 * x_px / c.width - 1) * c.half_width, y = c.center_y + (1 - 2 * y_px / c.height) * c.half_height;
   const Vec3 offset = x * c.right + y * c.up;
-  if (c.orthographic) return {c.position + offset, -c.back};
-  return {c.position, direction(offset - c.back)};
+  const Vec3 along = c.orthographic ? -c.back : offset - c.back;
+  return {(c.orthographic ? c.position + offset : c.position) / c.stretch, direction(along / c.stretch)};
 }
 
 std::optional<Vec3> project(const Camera& c, const Vec3& world) {
-  const Vec3 d = world - c.position;
+  const Vec3 d = c.stretch * world - c.position;
   const double depth = -dot(d, c.back);
   if (!c.orthographic && !(depth > 0)) return std::nullopt;
   const double scale = c.orthographic ? 1 : 1 / depth;
@@ -177,7 +184,7 @@ Vec3 unproject(const Camera& c, double x_px, double y_px, double depth) {
   const double scale = c.orthographic ? 1 : depth;
   const double x = (c.center_x + (2 * x_px / c.width - 1) * c.half_width) * scale;
   const double y = (c.center_y + (1 - 2 * y_px / c.height) * c.half_height) * scale;
-  return c.position + x * c.right + y * c.up - depth * c.back;
+  return (c.position + x * c.right + y * c.up - depth * c.back) / c.stretch;
 }
 
 double pixel_size(const Camera& c, double depth) { return 2 * c.half_height / c.height * (c.orthographic ? 1 : std::max(depth, c.near)); }
@@ -315,6 +322,7 @@ std::optional<View> axis_view(const Bounds& bounds, double aspect, std::string_v
 View refit_view(const View& view, const Bounds& bounds, double aspect) {
   View fit = fit_view(bounds, aspect, view.position - view.target, view.fovy_deg, view.up);
   fit.orthographic = view.orthographic;
+  fit.stretch = view.stretch;
   return fit;
 }
 

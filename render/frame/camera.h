@@ -5,7 +5,8 @@
 ///   pixels: x right, y down, row 0 at the top; the center of pixel (i, j) is at (i + 0.5, j + 0.5)
 /// Perspective: vertical field of view. Orthographic: `height` world units from bottom to top. The view's window is a part of the symmetric
 /// frustum of that angle or height; pixels are square unless the view states an aspect. Near and far enclose the given bounds, as far as
-/// they lie in front of the camera. Pure functions, any thread.
+/// they lie in front of the camera. Everything is in display units (View::stretch) but the positions of the world that project(),
+/// unproject() and pixel_ray() take and return. Pure functions, any thread.
 #pragma once
 #include <glm/mat4x4.hpp>
 #include <limits>
@@ -31,6 +32,7 @@ struct Camera {
   double center_x = 0, center_y = 0;       ///< center of the window relative to the view axis, to the right and up
   double near = 1, far = 2;                ///< view depths of the near and far planes, world units
   double width = 1, height = 1;            ///< image size, pixels
+  Vec3 stretch{1.0};  ///< display units per world unit along the world's axes, for project(), unproject() and pixel_ray()
 };
 
 /// Half line in world space; `direction` is a unit vector.
@@ -44,6 +46,8 @@ CATENA_EXPORT double frustum_aspect(const View& view, double width_px, double he
 /// Returns the camera of `view` for an image of width_px x height_px (at least 1 x 1) with near and far enclosing `bounds`. If `up` is
 /// parallel to the view direction, another up is chosen; if the target coincides with the position, the camera looks along +y.
 CATENA_EXPORT Camera make_camera(const View& view, double width_px, double height_px, const Bounds& bounds);
+/// Returns the same camera for positions in display units, as the items of a packet are.
+CATENA_EXPORT Camera make_display_camera(const View& view, double width_px, double height_px, const Bounds& bounds);
 
 /// Returns the transform from world to view axes.
 CATENA_EXPORT Mat4 view_from_world(const Camera& camera);

@@ -31,7 +31,7 @@ struct FrustumWindow {
   bool operator==(const FrustumWindow&) const = default;
 };
 
-/// Viewpoint and projection of a camera. World units.
+/// Viewpoint and projection of a camera. Display units: world units times `stretch`, axis by axis.
 struct View {
   Vec3 position{0.0}, target{0.0}, up{0.0, 0.0, 1.0};  ///< camera position; point it looks at; up direction
   double fovy_deg = 30;                                ///< vertical field of view, degrees
@@ -39,6 +39,7 @@ struct View {
   double height = 1;                                   ///< orthographic: world units from bottom to top of the image
   FrustumWindow window{};                              ///< rendered part of the frustum
   double aspect = 0;                                   ///< width / height of the symmetric frustum; 0: such that pixels are square
+  Vec3 stretch{1.0};  ///< factors along the world's axes, > 0, by which the image is stretched before it is seen
   bool operator==(const View&) const = default;
 };
 
@@ -277,7 +278,8 @@ struct SpheresItem {
   bool operator==(const SpheresItem&) const = default;
 };
 
-/// Everything one image shows, its size and its viewpoint.
+/// Everything one image shows, its size and its viewpoint. Positions and sizes of all items are in display units: where these headers say
+/// world, the world times view.stretch.
 struct FramePacket {
   View view;                 ///< camera
   std::vector<View> eyes{};  ///< views rendered one by one, each at the packet's size, then packed into one image; empty: only `view`
@@ -305,6 +307,7 @@ struct FramePacket {
   WidgetItems widgets;              ///< interactive widgets
   std::optional<bool> jitter;       ///< jitter of the ray starts; overrides RenderSettings::jitter; nullopt: the settings apply
   std::vector<ObjectName> objects;  ///< objects by id
+  double size_scale = 1;            ///< display units per world unit of sizes without a direction, such as radii
   std::string omitted;              ///< message about curves and points that are not rendered; empty: all are
 
   /// Number of views in the image; 0: only `view`.

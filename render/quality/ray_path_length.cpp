@@ -74,7 +74,7 @@ RayPathLength measure_ray_path_length(const FramePacket& packet) {
   Bounds bounds;
   for (const VolumeItem& item : packet.volumes) bounds.extend(field::world_bounds(item.grid->mapping(), item.grid->index_box()));
   const double width = packet.width, height = packet.height, spacing = std::max(1.0, std::sqrt(width * height / kRayGroups));
-  const Camera camera = make_camera(packet.view, width, height, bounds);
+  const Camera camera = make_display_camera(packet.view, width, height, bounds);
   RayPathLength way;
   double groups = 0;
   std::vector<bool> samples, together;

@@ -30,7 +30,7 @@ shared::FogData fog_of(const CameraRays& rays) {
 
 CameraRays CameraRays::make(const FramePacket& packet, const Bounds& bounds, const Bounds& of_rays) {
   CameraRays rays;
-  rays.camera = make_camera(packet.view, packet.width, packet.height, bounds);
+  rays.camera = make_display_camera(packet.view, packet.width, packet.height, bounds);
   rays.forward = -rays.camera.back;
   rays.clip_planes = packet.clip_planes;
   rays.lights = packet.lights;

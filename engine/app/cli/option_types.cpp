@@ -40,6 +40,7 @@ constexpr OptionType kOptionTypes[] = {
     {"LO HI", "2 numbers", "", "LO < HI", "-1 1"},
     {"LO,HI", "2 numbers, 4, or one", "unit of the field", "rising", "-8,-3,3,8"},
     {"LABELS=OPACITY", "labels and a number", "", "0 to 1", "1-20=0.2"},
+    {"FX,FY,FZ", "three factors", "", "> 0", "1,1,0.01"},
     {"V,A,V,A...", "pairs of numbers", "unit of the field, alpha", "rising values, alphas from 0 to 1", "40,0,80,0.2,300,0.8"},
     {"VALUE", "number", "unit of the field", "", "0.01"},
     {"WxH", "width x height", "pixels", "", "640x480"},

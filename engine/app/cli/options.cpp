@@ -107,6 +107,11 @@ void ColorOptions::add_to(CLI::App& command) {
                   "data file drawn over the data file: labels, or a statistic, of which the strong values of either sign are shown; "
                   "the options of colours apply to it")
       ->type_name("FILE");
+  command
+      .add_option("--stretch", stretch,
+                  "factors by which the image of a data file is stretched along x, y and z (default: 1,1,1 unless the axes' voxels differ "
+                  "a lot)")
+      ->type_name("FX,FY,FZ");
   CLI::Option* pairs =
       command
           .add_option(
@@ -162,6 +167,13 @@ Result<scene::FileColors> ColorOptions::to_file_colors() const {
     if (!alpha || !(*alpha >= 0 && *alpha <= 1) || equals == 0)
       return Error{one_line("--label-opacity " + request + ": LABELS=OPACITY with an opacity from 0 to 1 was expected")};
     colors.label_opacities.push_back({request.substr(0, equals), *alpha});
+  }
+  if (!stretch.empty()) {
+    const std::vector<double> factors = parse_numbers(stretch);
+    const bool valid =
+        factors.size() == 3 && std::ranges::all_of(factors, [](double f) { return f >= scene::kMinSize && f <= scene::kMaxSize; });
+    if (!valid) return Error{one_line("--stretch " + stretch + ": three factors above 0, such as 1,1,0.01, were expected")};
+    colors.stretch = Vec3(factors[0], factors[1], factors[2]);
   }
   colors.is_symmetric = is_symmetric;
   colors.overlay = overlay;

@@ -193,7 +193,7 @@ Outcome add_annotations(scene::Scene& scene, const AnnotationOptions& options);
 }  // namespace catena::app
 
 /// The options --colormap NAME, --range LO HI, --mapping WORD, --linear-below SIZE, --threshold LO,HI, --opacity PAIRS, --preset NAME,
-/// --symmetric and --over FILE: the colors and opacities of a data file, and another one over it.
+/// --symmetric, --over FILE and --stretch X,Y,Z: the appearance of a data file, and another one over it.
 namespace CLI {
 class App;
 }
@@ -204,7 +204,7 @@ namespace catena::app {
 struct ColorOptions {
   std::string colormap;
   std::vector<std::string> range;
-  std::string mapping, linear_below, threshold, opacity, preset, overlay;
+  std::string mapping, linear_below, threshold, opacity, preset, overlay, stretch;
   std::vector<std::string> label_opacities;
   bool is_symmetric = false;
 

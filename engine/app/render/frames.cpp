@@ -46,7 +46,7 @@ Outcome Frames::add_planes(render::FramePacket& packet) {
   Bounds box;
   for (const Vec3& corner : planes.corners) box.extend(corner);
   if (focus && !box.contains(*focus)) return Error{"--focus: the point is outside of the field; a point inside was expected"};
-  return render::add_plane_views(scene_, planes, focus, {}, packet);
+  return render::add_plane_views(scene_, planes, {.focus = focus}, packet);
 }
 
 Result<double> Frames::draw(int frame, Outputs* outputs) {

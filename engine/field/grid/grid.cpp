@@ -73,8 +73,7 @@ std::shared_ptr<const ScalarGrid> ScalarGrid::with_interpolation(Interpolation i
 }
 
 std::shared_ptr<const ScalarGrid> ScalarGrid::with_mapping(const Mapping& mapping) const {
-  CATENA_ASSERT(!halo_);
-  return std::make_shared<ScalarGrid>(name(), mapping, index_box(), storage_, stats_, interpolation_);
+  return std::make_shared<ScalarGrid>(name(), mapping, index_box(), storage_, stats_, interpolation_, halo_);
 }
 
 Result<std::shared_ptr<const ScalarGrid>> ScalarGrid::as_cubic() const {

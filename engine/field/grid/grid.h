@@ -54,7 +54,7 @@ class CATENA_EXPORT ScalarGrid final : public ScalarField {
   std::shared_ptr<const ScalarGrid> as_linear() const { return with_interpolation(Interpolation::linear); }
   /// Returns a grid that shares the voxels, with linear or nearest interpolation; Interpolation::cubic is a bug here.
   std::shared_ptr<const ScalarGrid> with_interpolation(Interpolation linear_or_nearest) const;
-  /// Returns a grid that shares the voxels at another position. Precondition: trilinear or nearest interpolation.
+  /// Returns a grid that shares the voxels at another position.
   std::shared_ptr<const ScalarGrid> with_mapping(const Mapping& mapping) const;
   /// Returns the samples of a valid cell of a cubic grid; null for an invalid cell or base, or another interpolation. Valid until the
   /// cursor's next use.

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/app/viewer/input/commands.h"
 #include "engine/field/field_display_range.h"
 #include "render/extract/extract.h"
 #include "render/extract/plane_views.h"
@@ -32,7 +33,7 @@ class PlaneInput : public testing::Test {
   void draw() {
     packet_ = value_of(render::make_frame(scene_, 400, 300));
     const auto planes = value_of(render::find_ortho_planes(scene_));
-    value_of(render::add_plane_views(scene_, planes, controls_.ortho.focus, controls_.ortho.window, packet_));
+    value_of(render::add_plane_views(scene_, planes, controls_.ortho, packet_));
   }
   /// Applies an input to the view at its position, and draws again.
   NavigationChanges at(Input input) {
@@ -92,6 +93,27 @@ TEST_F(PlaneInput, ARightDragChangesWindowAndLevel) {
   EXPECT_NEAR(packet_.planes[0]->slices[0].colors.front()[0], lo, 1e-9) << "it is drawn";
   for (int k = 0; k < 20; ++k) at(segment(400, 100, -400, 0, 0, &Input::right));
   EXPECT_LT((*controls_.ortho.window)[0], (*controls_.ortho.window)[1]) << "a window stays";
+}
+
+TEST_F(PlaneInput, ControlAndWheelZoomAboutThePointerAndAMiddleDragMovesTheImages) {
+  controls_.ortho.focus = Vec3(0, 0, 0.5);
+  draw();
+  const Area area = page_view_area(kPage, 1);
+  const auto seen = [&](const Area& where) { return plane_point(*packet_.planes[0], where, 420, 130); };
+  const Vec3 before = seen(area);
+  Input zoom = segment(420, 130, 0, 0, 3, nullptr);
+  zoom.control = true;
+  EXPECT_TRUE(at(zoom).view);
+  EXPECT_LT(norm(seen(area) - before), 1e-9) << "under the pointer";
+  EXPECT_NEAR(packet_.planes[2]->view.height, 1.06 * 4 / std::pow(1.15, 3), 1e-9) << "all planes have one scale";
+  EXPECT_EQ(*controls_.ortho.focus, Vec3(0, 0, 0.5)) << "the plane stays";
+  const Vec3 y_z = packet_.planes[2]->view.target;
+  at(segment(420, 130, 30, -20, 0, &Input::middle));
+  EXPECT_LT(norm(plane_point(*packet_.planes[0], area, 450, 110) - before), 1e-9) << "the point follows the pointer";
+  EXPECT_EQ(packet_.planes[2]->view.target.z, y_z.z);
+  controls_.bounds = render::packet_bounds(packet_);
+  apply(controls_, Action::fit_view, 1);
+  EXPECT_EQ(controls_.ortho.zoom, 1) << "shows everything";
 }
 
 TEST_F(PlaneInput, InProbeModeTheProbeMovesInThePlane) {

@@ -46,7 +46,7 @@ TEST_F(PlaneViews, PatientPlanesAreRadiologicalAndShareOneScale) {
   scene::Scene scene = open(kLeftFirst);
   FramePacket packet = value_of(make_frame(scene, 200, 150));
   const OrthoPlanes planes = value_of(find_ortho_planes(scene));
-  value_of(add_plane_views(scene, planes, Vec3(5, 8, 9), {}, packet));
+  value_of(add_plane_views(scene, planes, {.focus = Vec3(5, 8, 9)}, packet));
   ASSERT_EQ(packet.planes.size(), 3u);
   const char* names[] = {"axial", "coronal", "sagittal"};
   const char* texts[] = {"axial 9 mm", "coronal 8 mm", "sagittal 5 mm"};
@@ -81,7 +81,7 @@ TEST_F(PlaneViews, AVolumeWithAThresholdLiesOverTheImageWithItsColors) {
   FramePacket packet = value_of(make_frame(scene, 200, 150));
   const OrthoPlanes planes = value_of(find_ortho_planes(scene));
   EXPECT_EQ(planes.base, scene::find_field(scene, "t1"));
-  value_of(add_plane_views(scene, planes, {}, {}, packet));
+  value_of(add_plane_views(scene, planes, {}, packet));
   ASSERT_EQ(packet.planes[0]->slices.size(), 2u);
   const SliceItem& over = packet.planes[0]->slices[1];
   EXPECT_EQ(over.threshold, (Threshold{{-200, -150}, {150, 200}}));
@@ -108,7 +108,7 @@ TEST_F(PlaneViews, ThePageShowsThePlanesBesideTheView) {
   const Image8 alone = value_of(renderer->read_back());
   // the left of the patient, x < 0, is bright: the focus is in the block
   const OrthoPlanes planes = value_of(find_ortho_planes(scene));
-  value_of(add_plane_views(scene, planes, Vec3(8, 12, 12), {}, packet));
+  value_of(add_plane_views(scene, planes, {.focus = Vec3(8, 12, 12)}, packet));
   for (int turn = 0; turn < 2; ++turn) {
     value_of(renderer->draw(packet, {}));
     const Image8 page = value_of(renderer->read_back());

@@ -18,8 +18,8 @@ scene::Camera to_scene_camera(const render::View& v) { return {v.position, v.tar
 void CameraController::adopt_scene(const LoadedScene& loaded) {
   navigation_.probe = haptic_session_.initial_probe();
   navigation_.view = navigation_.home = saved_view_ = loaded.packet.view;
-  navigation_.bounds = loaded.bounds;
-  navigation_.ortho = {.is_on = navigation_.ortho.is_on};
+  navigation_.bounds = loaded.bounds.scaled(loaded.packet.view.stretch);
+  navigation_.ortho = {{}, navigation_.ortho.is_on};
   flight_ = {};
   pin_camera();
 }

@@ -59,7 +59,7 @@ constexpr CommandRow kCommandRows[] = {
      "fit the whole scene into the image, from the same direction"},
     {Action::toggle_projection, "Orthographic", {GLFW_KEY_O}, kNoChord, kEye, "orthographic or perspective"},
     {Action::toggle_ortho_views, "Orthogonal views", alone(GLFW_KEY_4), kNoChord, kEye,
-     "orthogonal views; in them, left drag: cross-hair, wheel: next voxel, right drag: window and level"},
+     "orthogonal views; in them, left drag: cross-hair, wheel: next voxel (control: zoom), middle drag: pan, right drag: window and level"},
     {Action::reset_view, "First view", {GLFW_KEY_R}, kNoChord, kEye, "return to the first view"},
     {Action::toggle_turntable, "Turntable", {GLFW_KEY_T}, kNoChord, kEye, "start the turntable; T or the mouse stops it"},
     {Action::toggle_fly,

@@ -66,6 +66,7 @@ struct Edit {
 /// Opens a file in place of the scene.
 struct OpenFile {
   std::string path;
+  std::string grid{};  ///< Grid of a data file; empty: the default one.
 };
 /// Adds what a file shows to the scene.
 struct AddFile {

@@ -49,7 +49,9 @@ double depth_beneath(const Navigation& controls, const render::Camera& camera, c
 void move_hand(Navigation& controls, const Input& input) {
   const render::Camera camera = make_viewport_camera(controls.view, input);
   auto place = render::project(camera, controls.probe);
-  if (!place) place = render::project(camera, controls.view.target);  // the probe was behind the camera: bring it back into the image
+  if (!place)
+    place = render::project(camera,
+                            controls.view.target / controls.view.stretch);  // the probe was behind the camera: bring it back into the image
   if (!place) return;
   const double notch = kDepthPerNotch * camera.height * render::pixel_size(camera, place->z);
   if (!controls.probe_mode) {
@@ -70,6 +72,7 @@ void move_hand(Navigation& controls, const Input& input) {
 void look_along(Navigation& controls, std::string_view axis, double aspect) {
   auto view = render::axis_view(controls.bounds, aspect, axis, controls.view.fovy_deg);
   view->orthographic = controls.view.orthographic;
+  view->stretch = controls.view.stretch;
   controls.view = *view;
 }
 
@@ -183,6 +186,8 @@ bool apply(Navigation& controls, Action action, double aspect) {
     case Action::fit_view:
       if (!fits) return false;
       controls.view = render::refit_view(controls.view, controls.bounds, aspect);
+      controls.ortho.zoom = 1;
+      controls.ortho.center.reset();
       break;
     case Action::toggle_projection:
       toggle_projection(controls.view);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "engine/app/viewer/input/keys.h"
+#include "render/extract/plane_views.h"
 #include "render/frame/camera.h"
 
 namespace catena::app {
@@ -34,10 +35,8 @@ struct Input {
 };
 
 /// Orthogonal views beside the 3D view.
-struct OrthoViews {
-  bool is_on = false;                             ///< Requested by the user; shown if the scene has a scalar field, without stereo.
-  std::optional<Vec3> focus{};                    ///< Common point of the planes, world units; nothing: the middle of the field.
-  std::optional<std::array<double, 2>> window{};  ///< Values shown as black and white; nothing: the display range.
+struct OrthoViews : render::PlaneViewState {
+  bool is_on = false;  ///< Requested by the user; shown if the scene has a scalar field, without stereo.
 };
 
 /// State of view and probe.

@@ -109,22 +109,28 @@ std::optional<PickHit> pick_volume(const render::FramePacket& packet, const rend
   return PickHit{ray.origin + best_at * ray.direction, best_id, true, opacity};
 }
 
+/// Returns the hit with its position in the world instead of the image's display units.
+static std::optional<PickHit> in_world(std::optional<PickHit> hit, const render::FramePacket& packet) {
+  if (hit) hit->world /= packet.view.stretch;
+  return hit;
+}
+
 std::optional<PickHit> pick(const render::FramePacket& packet, double x, double y, double depth, std::uint32_t id) {
-  const render::Camera camera = render::make_camera(packet.view, packet.width, packet.height, Bounds());
+  const render::Camera camera = render::make_display_camera(packet.view, packet.width, packet.height, Bounds());
   const render::Ray ray = render::pixel_ray(camera, x, y);
   const bool opaque = std::isfinite(depth);
   const Vec3 behind = opaque ? render::unproject(camera, x, y, depth) : Vec3(0.0);
   const auto place = pick_volume(packet, ray, opaque ? dot(behind - ray.origin, ray.direction) : kInfinity);
-  if (!opaque || (place && place->opacity >= kHalfOpaque)) return place;
-  return PickHit{behind, id, false};
+  if (!opaque || (place && place->opacity >= kHalfOpaque)) return in_world(place, packet);
+  return in_world(PickHit{behind, id, false}, packet);
 }
 
 std::optional<PickHit> pick_on_cpu(const render::FramePacket& packet, double x, double y) {
-  const render::Camera camera = render::make_camera(packet.view, packet.width, packet.height, Bounds());
+  const render::Camera camera = render::make_display_camera(packet.view, packet.width, packet.height, Bounds());
   const render::Ray ray = render::pixel_ray(camera, x, y);
   const auto solid = pick_solid(packet, ray, kInfinity);
   const auto place = pick_volume(packet, ray, solid ? dot(solid->world - ray.origin, ray.direction) : kInfinity);
-  return solid && !(place && place->opacity >= kHalfOpaque) ? solid : place;
+  return in_world(solid && !(place && place->opacity >= kHalfOpaque) ? solid : place, packet);
 }
 
 std::string object_label(const render::FramePacket& packet, std::uint32_t id) {

@@ -41,11 +41,33 @@ int page_view_at(const Area& page, double x, double y) {
 }
 
 Vec3 plane_point(const render::FramePacket& plane, const Area& area, double x, double y) {
-  const render::Camera camera = render::make_camera(plane.view, area.width, area.height, Bounds());
+  const render::Camera camera = render::make_display_camera(plane.view, area.width, area.height, Bounds());
   const render::Ray ray = render::pixel_ray(camera, x - area.x, y - area.y);
   const render::SliceItem& slice = plane.slices.front();
-  return ray.origin + dot(slice.point - ray.origin, slice.normal) / dot(ray.direction, slice.normal) * ray.direction;
+  const double distance = dot(slice.point - ray.origin, slice.normal) / dot(ray.direction, slice.normal);
+  return (ray.origin + distance * ray.direction) / plane.view.stretch;
 }
+
+namespace {
+
+constexpr double kPlaneZoomPerNotch = 1.15, kMinZoom = 0.2, kMaxZoom = 500;
+
+/// Point at the middle of the images, world units.
+Vec3 shown_center(const OrthoViews& views, const render::FramePacket& plane) {
+  const field::ScalarGrid& grid = *plane.slices.front().grid;
+  const field::Box box = grid.index_box();
+  return views.center.value_or(grid.mapping().world_from_index(0.5 * box.lo + 0.5 * box.hi) / plane.view.stretch);
+}
+
+/// Magnifies about the point under the pointer, which stays where it is.
+void zoom_planes(OrthoViews& views, const render::FramePacket& plane, const Vec3& at, double notches) {
+  const double before = views.zoom;
+  views.zoom = std::clamp(before * std::pow(kPlaneZoomPerNotch, notches), kMinZoom, kMaxZoom);
+  const Vec3 in_plane = at - plane.view.target / plane.view.stretch;
+  views.center = shown_center(views, plane) + (1 - before / views.zoom) * in_plane;
+}
+
+}  // namespace
 
 NavigationChanges apply_to_plane(Navigation& controls, const Input& input, const render::FramePacket& plane, const Area& area) {
   NavigationChanges changed;
@@ -55,7 +77,11 @@ NavigationChanges apply_to_plane(Navigation& controls, const Input& input, const
   const std::uint32_t buttons = input.space || (controls.probe_mode && input.left) ? 1u : 0u;
   changed.probe = buttons != controls.buttons;
   controls.buttons = buttons;
-  if (controls.probe_mode && moved) {
+  if (input.middle || (input.left && input.shift)) {
+    const Vec3 from = plane_point(plane, area, input.x, input.y);
+    if (moved) controls.ortho.center = shown_center(controls.ortho, plane) + (from - at);
+    changed.view = moved;
+  } else if (controls.probe_mode && moved) {
     controls.probe = at;
     changed.probe = true;
   } else if (input.left && !controls.probe_mode) {
@@ -65,9 +91,12 @@ NavigationChanges apply_to_plane(Navigation& controls, const Input& input, const
     change_window(controls.ortho, slice, input, area);
     changed.view = true;
   }
-  if (input.wheel != 0) {
-    const Vec3 step = input.wheel * voxel_step(*slice.grid, slice.normal) * slice.normal;
-    controls.ortho.focus = slice.point + step;
+  if (input.wheel != 0 && input.control) {
+    zoom_planes(controls.ortho, plane, at, input.wheel);
+    changed.view = true;
+  } else if (input.wheel != 0) {
+    const Vec3 step = input.wheel * voxel_step(*slice.grid, slice.normal) * slice.normal / plane.view.stretch;
+    controls.ortho.focus = slice.point / plane.view.stretch + step;
     if (controls.probe_mode) controls.probe += step, changed.probe = true;
     changed.view = true;
   }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// Mouse input in a page of orthogonal views (render/extract/plane_views.h), independent of the window.
 ///   left drag    moves the common point of the planes (in probe mode: the probe, in the plane)
-///   wheel        moves the plane along its normal by a voxel
+///   wheel        moves the plane along its normal by a voxel; with Ctrl it zooms about the pointer
+///   middle drag, or Shift and left drag   moves the images
 ///   right drag   to the right: a wider window of values; upwards: lower values, so that the image becomes brighter
 /// Positions in window coordinates, y down. Pure, frame thread.
 #pragma once

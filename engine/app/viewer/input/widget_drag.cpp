@@ -7,6 +7,7 @@
 
 #include "engine/widget/cutting_plane.h"
 #include "engine/widget/state_machine.h"
+#include "render/extract/stretch.h"
 #include "render/extract/widget_shapes.h"
 
 namespace catena::app {
@@ -30,15 +31,21 @@ Vec3 nearest_on_segment(const render::Ray& ray, const Vec3& a, const Vec3& b) {
 /// Search for the part nearest to a ray.
 class PartSearch {
  public:
-  PartSearch(const render::Camera& camera, double x, double y) : camera_(camera), ray_(render::pixel_ray(camera, x, y)) {}
+  PartSearch(const render::Camera& camera, const Bounds& drawn, double x, double y)
+      : camera_(camera), size_scale_(render::size_scale(drawn, camera.stretch)) {
+    render::Camera display = camera;
+    display.stretch = Vec3(1.0);
+    ray_ = render::pixel_ray(display, x, y);
+  }
 
-  /// Offers a point; parts of a lower rank come first.
+  /// Offers a point of the world; parts of a lower rank come first.
   void offer(const Vec3& p, int rank, const WidgetPart& part, double radius = 0) {
-    const double depth = dot(ray_.direction, p - ray_.origin), away = norm(p - ray_.origin - depth * ray_.direction);
+    const Vec3 shown = camera_.stretch * p;
+    const double depth = dot(ray_.direction, shown - ray_.origin), away = norm(shown - ray_.origin - depth * ray_.direction);
     if (!(depth > 0)) return;
     const auto place = render::project(camera_, p);
     if (!place) return;
-    const double pixel = render::pixel_size(camera_, place->z), px = std::max(0.0, away - radius) / pixel;
+    const double pixel = render::pixel_size(camera_, place->z), px = std::max(0.0, away - size_scale_ * radius) / pixel;
     if (!(px <= kWidgetTolerancePx) || (found_ && (rank > rank_ || (rank == rank_ && px >= px_)))) return;
     found_ = part;
     found_->point = p;
@@ -48,13 +55,15 @@ class PartSearch {
   }
   void offer_line(std::span<const Vec3> points, bool closed, int rank, const WidgetPart& part) {
     for (std::size_t i = 0; i + (closed ? 0 : 1) < points.size(); ++i)
-      offer(nearest_on_segment(ray_, points[i], points[(i + 1) % points.size()]), rank, part);
+      offer(nearest_on_segment(ray_, camera_.stretch * points[i], camera_.stretch * points[(i + 1) % points.size()]) / camera_.stretch,
+            rank, part);
   }
   const std::optional<WidgetPart>& found() const { return found_; }
 
  private:
   const render::Camera& camera_;
-  render::Ray ray_;
+  double size_scale_;  ///< display units per world unit of radii
+  render::Ray ray_;    ///< in display units
   std::optional<WidgetPart> found_;
   int rank_ = 0;
   double px_ = 0;
@@ -103,7 +112,7 @@ void offer_handles(PartSearch& search, WidgetPart part, const scene::Widget& wid
 
 std::optional<WidgetPart> find_widget_part(const scene::Scene& scene, const Bounds& drawn, const render::Camera& camera, double x,
                                            double y) {
-  PartSearch search(camera, x, y);
+  PartSearch search(camera, drawn, x, y);
   scene.entities.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
     if (!widget.is_complete) return;
     if (widget.spec.kind == Kind::cutting_plane)
@@ -126,7 +135,7 @@ WidgetDrag::WidgetDrag(const scene::Widget& widget, const WidgetPart& part, cons
     state_.grip = {part.point, state_.pose.orientation, 0, 0};
     center_ = state_.pose.points[0];
     axis_ = widget::frame_axis(state_.pose.orientation, part.axis);
-    const double facing = std::fabs(dot(axis_, direction(part.point - camera.position)));
+    const double facing = std::fabs(dot(axis_, direction(part.point - camera.position / camera.stretch)));
     path_ = facing > kFlat ? Path::circle : Path::sphere;
     state_.arm = widget::perpendicular_direction(part.point - center_, axis_);
     return;
@@ -136,7 +145,7 @@ WidgetDrag::WidgetDrag(const scene::Widget& widget, const WidgetPart& part, cons
   state_.grip = widget::make_grip(spec_, state_, part.point);
   state_.grip.free_axes = static_cast<std::uint8_t>(7u & ~state_.grip.fixed_axes);
   state_.active_planes = state_.grip.fixed_axes;
-  axis_ = camera.back;
+  axis_ = direction(camera.stretch * camera.back);  // of the plane of the image, in the world
   for (int i = 0; i < 3; ++i)
     if (state_.grip.free_axes == 1u << i) {
       path_ = Path::line;

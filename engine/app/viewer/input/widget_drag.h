@@ -17,7 +17,7 @@ struct WidgetPart {
   std::int8_t handle = -1;  ///< Handle as in WidgetReport; -1: a circle.
   std::int8_t axis = -1;    ///< Axis of the circle; -1: a handle.
   Vec3 point{0.0};          ///< Point of the part nearest to the pointer's ray, world units.
-  double pixel = 0;         ///< Size of a pixel at the point, world units.
+  double pixel = 0;         ///< Size of a pixel at the point, display units (render::View).
 };
 
 inline constexpr double kWidgetTolerancePx = 9;  ///< Distance from a drawn part within which the pointer is on it.

@@ -2,6 +2,9 @@
 // The menu bar at the top: entries that request the commands.
 #include <imgui.h>
 
+#include <utility>
+#include <vector>
+
 #include "engine/app/viewer/panels/panel.h"
 
 namespace catena::app {
@@ -14,6 +17,20 @@ void entry(PanelContext& context, Action action, const std::string& words, bool 
 }
 void entry(PanelContext& context, Action action, bool checked = false) { entry(context, action, menu_label(action), checked); }
 
+/// Fields of the data file that is shown without a scene of its own, such as the series of a folder of DICOM files.
+void draw_grids_menu(PanelContext& context) {
+  std::vector<OpenFile> grids;
+  const scene::Scene& scene = std::as_const(context.scene).scene();
+  if (!context.state.owns_file && !context.state.is_untitled)
+    scene.entities.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
+      if (source.file && !source.file->grid.empty()) grids.push_back({source.file->path, source.file->grid});
+    });
+  if (!ImGui::BeginMenu("Open field of this file", grids.size() > 1)) return;
+  for (const OpenFile& grid : grids)
+    if (ImGui::MenuItem(grid.grid.c_str())) context.push_command(grid);
+  ImGui::EndMenu();
+}
+
 void draw_file_menu(PanelContext& context) {
   if (!ImGui::BeginMenu("File")) return;
   entry(context, Action::open);
@@ -21,6 +38,7 @@ void draw_file_menu(PanelContext& context) {
     draw_recent_files(context);
     ImGui::EndMenu();
   }
+  draw_grids_menu(context);
   entry(context, Action::add, menu_label(Action::add), false, !context.state.is_untitled);
   entry(context, Action::save);
   entry(context, Action::save_as);

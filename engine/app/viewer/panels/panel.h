@@ -64,7 +64,7 @@ struct Message {
 
 /// The action to continue with when unsaved changes are resolved: opening another file, or (empty path) quitting.
 struct PendingLeave {
-  std::string open_path;
+  std::string open_path, grid{};  ///< File to open, and its grid; empty: quit, the default grid.
   bool quits() const { return open_path.empty(); }
 };
 

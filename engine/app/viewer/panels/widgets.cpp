@@ -67,7 +67,10 @@ void draw_pose(PanelContext& context, const Row& row) {
   }
 }
 
-Vec3 to_camera(const PanelContext& context) { return context.navigation.view.position - context.navigation.view.target; }
+Vec3 to_camera(const PanelContext& context) {
+  const render::View& view = context.navigation.view;
+  return (view.position - view.target) / view.stretch;
+}
 
 void reset(PanelContext& context, const Row& row) {
   // the default pose of a new widget, under the existing name

@@ -77,7 +77,7 @@ void SceneFiles::confirm_leave(const PendingLeave& leaving) {
 }
 
 void SceneFiles::leave(const PendingLeave& leaving) {
-  if (!leaving.quits()) return start_loading(leaving.open_path, false);
+  if (!leaving.quits()) return start_loading(leaving, false);
   has_quit_ = true;
   autosave_.remove();
 }
@@ -167,13 +167,13 @@ void SceneFiles::on_choice(DroppedFileChoice choice) {
   if (choice == DroppedFileChoice::open) open(*path);
 }
 
-void SceneFiles::start_loading(const std::string& path, bool to_current_scene) {
+void SceneFiles::start_loading(const PendingLeave& file, bool to_current_scene) {
   if (loader_.is_busy())
     return context_.state.show_message("still loading " + name_of_file(loader_.path()) + "; try again when it is open", true);
   loading_joins_scene_ = to_current_scene;
-  context_.state.loading_path = path;
+  context_.state.loading_path = file.open_path;
   const auto [width, height] = viewport_.size();
-  loader_.start(path, width, height);
+  loader_.start(file.open_path, file.grid, width, height);
 }
 
 bool SceneFiles::poll_loaded() {
@@ -230,7 +230,7 @@ void SceneFiles::add_to_scene(LoadedScene loaded, const std::string& path) {
     target.rendered = source.rendered;
   }
   scene.bounds.extend(loaded.bounds);
-  context_.navigation.bounds = scene.bounds;
+  context_.navigation.bounds = scene.bounds.scaled(scene.scene().stretch);
   print_scene_notes(loaded.model.scene());
   const std::string notes = noted(loaded.model.scene());
   state.show_message("added " + name_of_file(path) + " (A shows the whole scene)" + (notes.empty() ? "" : "; " + notes));

@@ -33,9 +33,9 @@ class SceneFiles {
 
   // Commands.
   /// Opens a file in place of the scene, after resolving unsaved changes.
-  void open(const std::string& path) { confirm_leave({path}); }
+  void open(const std::string& path, const std::string& grid = {}) { confirm_leave({path, grid}); }
   /// Adds what a file shows to the scene.
-  void add(const std::string& path) { start_loading(path, true); }
+  void add(const std::string& path) { start_loading({path}, true); }
   /// Opens a dropped file or folder, or asks whether to add it to the scene.
   void open_dropped(const std::string& dropped);
   /// Saves to the scene's own file; without one, opens the Save As dialog.
@@ -65,7 +65,7 @@ class SceneFiles {
   void leave(const PendingLeave& leaving);
   void save_and_continue(const std::string& path);
   bool write(const std::string& path);
-  void start_loading(const std::string& path, bool to_current_scene);
+  void start_loading(const PendingLeave& file, bool to_current_scene);
   void replace_scene(LoadedScene loaded, const std::string& path);
   void add_to_scene(LoadedScene loaded, const std::string& path);
   void offer_recovery();

@@ -13,8 +13,8 @@ namespace catena::app {
 
 namespace {
 
-Result<LoadedScene> open_and_load(const std::string& path, std::uint32_t width, std::uint32_t height) {
-  CATENA_TRY(scene::Document document, scene::Document::open(path));
+Result<LoadedScene> open_and_load(const std::string& path, const std::string& grid, std::uint32_t width, std::uint32_t height) {
+  CATENA_TRY(scene::Document document, scene::Document::open(path, {}, {}, grid));
   CATENA_TRY(SceneModel host, SceneModel::open(std::move(document), {}));
   return load_scene(std::move(host), width, height);
 }
@@ -28,17 +28,18 @@ Result<LoadedScene> load_scene(SceneModel host, std::uint32_t width, std::uint32
   CATENA_TRY(render::FramePacket packet, render::make_frame(scene, width, height));
   const Bounds bounds = scene::scene_bounds(scene);
   if (!scene.camera.is_explicit && packet.volumes.empty() && packet.isosurfaces.empty() && packet.tubes.empty() && packet.spheres.empty())
-    packet.view = render::fit_view(bounds, static_cast<double>(width) / height);
+    packet.view = render::fit_view(bounds.scaled(scene.stretch), static_cast<double>(width) / height);
+  packet.view.stretch = scene.stretch;
   host.bounds = bounds;
   return LoadedScene{std::move(host), std::move(packet), bounds};
 }
 
-void SceneLoader::start(const std::string& path, std::uint32_t width, std::uint32_t height) {
+void SceneLoader::start(const std::string& path, const std::string& grid, std::uint32_t width, std::uint32_t height) {
   CATENA_ASSERT(!is_busy());
   path_ = path;
   done_ = false;
-  const auto load = [this, path, width, height] {
-    loaded_.emplace(open_and_load(path, width, height));
+  const auto load = [this, path, grid, width, height] {
+    loaded_.emplace(open_and_load(path, grid, width, height));
     done_ = true;
   };
   try {

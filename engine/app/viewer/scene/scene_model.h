@@ -97,7 +97,7 @@ Result<LoadedScene> load_scene(SceneModel host, std::uint32_t width, std::uint32
 class SceneLoader {
  public:
   /// Starts loading; only while not busy. Size of the first packet in pixels.
-  void start(const std::string& path, std::uint32_t width, std::uint32_t height);
+  void start(const std::string& path, const std::string& grid, std::uint32_t width, std::uint32_t height);
   /// Returns the path being loaded; empty: none.
   const std::string& path() const { return path_; }
   bool is_busy() const { return !path_.empty(); }

@@ -29,7 +29,7 @@ Result<render::FramePacket> FrameBuilder::make_packet(std::uint32_t width, std::
   const bool stated = std::exchange(drop_line(), drop_line() || navigation_.probe_mode);
   auto packet = render::make_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
   drop_line() = stated;
-  if (packet && planes) CATENA_CHECK(render::add_plane_views(scene, *planes, navigation_.ortho.focus, navigation_.ortho.window, *packet));
+  if (packet && planes) CATENA_CHECK(render::add_plane_views(scene, *planes, navigation_.ortho, *packet));
   return packet;
 }
 

@@ -58,7 +58,7 @@ class Session {
   NavigationChanges process_input(double wait_s);
   NavigationChanges process_segment(Input piece);
   Input route_to_viewport(Input input);
-  bool drag_widget(const Input& input);
+  bool drag_widget(const Input& input, const render::Camera& camera, const std::function<std::optional<WidgetPart>()>& find);
   bool drag_window_level(const Input& input);
   std::optional<NavigationChanges> process_plane_input(const Input& input);
   Gui::Frame make_gui_frame();

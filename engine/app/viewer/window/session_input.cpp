@@ -48,7 +48,7 @@ void Session::execute(const Command& command) {
   };
   std::visit(Overloaded{[&](Action action) { perform(action); },
                         [&](const Edit& edit) { state.show_error(scene.apply(edit.edits, edit.undo_label, edit.undo_group)); },
-                        [&](const OpenFile& file) { files_.open(file.path); },
+                        [&](const OpenFile& file) { files_.open(file.path, file.grid); },
                         [&](const AddFile& file) { files_.add(file.path); },
                         [&](const DropFile& file) { files_.open_dropped(file.path); },
                         [&](const SaveAs& file) { files_.save_as(file.path); },
@@ -192,7 +192,8 @@ void Session::explain_unfelt(const std::string& item, const Vec3& at) {
   SceneModel& scene = context_.scene;
   if (item.empty() || item.starts_with("widgets")) return;
   const double edge = scene.bounds.longest_edge();
-  const auto binding = app::make_haptic_binding(scene.scene(), item, at, context_.navigation.view.position, edge > 0 ? edge : 4);
+  const auto binding = app::make_haptic_binding(scene.scene(), item, at,
+                                                context_.navigation.view.position / context_.navigation.view.stretch, edge > 0 ? edge : 4);
   if (!binding) return context_.state.show_message("this is not felt: " + binding.error().message);
   if (find_bound_link(scene.scene(), *binding).empty())
     context_.state.show_message("this is not felt: no link of the chain lies on " + binding->description +
@@ -204,7 +205,8 @@ void Session::bind_haptics(const std::string& item, std::optional<Vec3> at) {
   SceneModel& scene = context_.scene;
   ViewState& state = context_.state;
   const double edge = scene.bounds.longest_edge();
-  const auto binding = app::make_haptic_binding(scene.scene(), item, at, context_.navigation.view.position, edge > 0 ? edge : 4);
+  const auto binding = app::make_haptic_binding(scene.scene(), item, at,
+                                                context_.navigation.view.position / context_.navigation.view.stretch, edge > 0 ? edge : 4);
   if (!binding) return state.show_message(binding.error().message, true);
   if (const std::string by = find_bound_link(scene.scene(), *binding); !by.empty())
     return state.show_message(binding->description + " has a link already: " + by);
@@ -322,7 +324,9 @@ NavigationChanges Session::process_segment(Input piece) {
     const auto under = viewport_.pick_under_pointer();
     controls.pointer_hit = under ? std::optional(under->world) : std::nullopt;
   }
-  if (drag_window_level(input) || drag_widget(input)) input.dx = input.dy = 0;
+  if (drag_window_level(input) || drag_widget(input, render::make_camera(controls.view, input.width, input.height, Bounds()),
+                                              [&] { return viewport_.widget_at(input.x, input.y); }))
+    input.dx = input.dy = 0;
   return apply(controls, input);
 }
 
@@ -342,15 +346,14 @@ bool Session::drag_window_level(const Input& input) {
 }
 
 /// Moves the widget part that was under the pointer at the press; the moves of one press are one undo step. True: the input belongs to it.
-bool Session::drag_widget(const Input& input) {
+bool Session::drag_widget(const Input& input, const render::Camera& camera, const std::function<std::optional<WidgetPart>()>& find) {
   const bool was_down = std::exchange(left_was_down_, input.left), pressed = input.left && !was_down;
   SceneModel& model = context_.scene;
   if (!input.left) dragged_widget_.reset();
   const bool can = pressed && !input.shift && !input.control;
   if (!dragged_widget_ && !can) return false;
-  const render::Camera camera = render::make_camera(context_.navigation.view, input.width, input.height, Bounds());
   if (can) {
-    const auto part = viewport_.widget_at(input.x, input.y);
+    const auto part = find();
     if (!part) return false;
     dragged_widget_ = {entity_name(model.scene(), part->widget),
                        WidgetDrag(model.scene().entities.get<scene::Widget>(part->widget), *part, camera)};
@@ -395,6 +398,11 @@ std::optional<NavigationChanges> Session::process_plane_input(const Input& input
   if (!plane_ || gui_captures_pointer_ || (!pressed && gui_.covers(input.x, input.y))) return std::nullopt;
   // the plane may have moved since the press
   if (const auto now = viewport_.plane_at(plane_->area.x + 1, plane_->area.y + 1)) plane_ = now;
+  const render::Camera camera = render::make_camera(plane_->plane->view, plane_->area.width, plane_->area.height, Bounds());
+  Input there = input;
+  there.x -= plane_->area.x;
+  there.y -= plane_->area.y;
+  if (drag_widget(there, camera, [&] { return viewport_.widget_in_plane(*plane_, camera, there.x, there.y); })) return NavigationChanges{};
   const NavigationChanges changed = apply_to_plane(context_.navigation, input, *plane_->plane, plane_->area);
   content_changed_ = content_changed_ || changed.view;
   return NavigationChanges{false, changed.probe};

@@ -41,6 +41,8 @@ Viewport::~Viewport() {
 std::optional<Failure> Viewport::open() {
   Presenter::Options options{context_.options.gpu_memory, context_.options.inject_failure};
   if (context_.options.use_headset) {
+    if (context_.scene.scene().stretch != Vec3(1.0))
+      return Failure{2, "a headset shows the world at its own scale; a scene without \"stretch\" was expected"};
     auto headset = HeadsetSession::open();
     if (!headset) return Failure{1, headset.error().message};
     headset_session_ = std::move(*headset);
@@ -68,6 +70,7 @@ bool Viewport::update_layout() {
   context_.window.size(width, height);
   presenter_->size(frame_width, frame_height);
   ViewState& state = context_.state;
+  context_.navigation.view.stretch = std::as_const(context_.scene).scene().stretch;  // an edit may have changed it
   state.image_area = compute_image_area(width, height, state.show_panels ? interface_insets() : Insets{});
   const auto before = pixel_rect_;
   if (frame_width > 0 && frame_height > 0) pixel_rect_ = to_pixel_rect(state.image_area, width, height, frame_width, frame_height);
@@ -384,10 +387,15 @@ std::optional<WidgetPart> Viewport::widget_at(double x, double y) const {
   const auto part = find_widget_part(std::as_const(context_.scene).scene(), context_.scene.bounds, camera, x, y);
   if (!part) return std::nullopt;
   const auto seen = frame_builder_.pick_at(x / area.width, y / area.height);
-  const auto depth = [&](const Vec3& p) { return dot(camera.position - p, camera.back); };
+  const auto depth = [&](const Vec3& p) { return dot(camera.position - camera.stretch * p, camera.back); };
   const bool hidden = seen && (!seen->is_volume || seen->opacity >= kHalfOpaque) &&
                       depth(seen->world) < depth(part->point) - part->pixel * kWidgetTolerancePx;
   return hidden ? std::nullopt : part;
+}
+
+std::optional<WidgetPart> Viewport::widget_in_plane(const PlaneAt& plane, const render::Camera& camera, double x, double y) const {
+  if (context_.navigation.probe_mode || plane.plane->widgets.tubes.empty()) return std::nullopt;
+  return find_widget_part(std::as_const(context_.scene).scene(), context_.scene.bounds, camera, x, y);
 }
 
 std::optional<PickHit> Viewport::pick_under_pointer() const {

@@ -88,6 +88,8 @@ class Viewport {
   /// Returns the widget part that a press of the left button at a position of the 3D view would drag: a visible one, and none in probe
   /// mode.
   std::optional<WidgetPart> widget_at(double x, double y) const;
+  /// Returns the widget part that a press at a position of a plane's area would drag. `camera`: of the plane.
+  std::optional<WidgetPart> widget_in_plane(const PlaneAt& plane, const render::Camera& camera, double x, double y) const;
   /// Returns whether the window shows one image of one camera, so that its positions are those of the camera's image.
   bool shows_single_view() const;
   /// Returns a visible point of the item ("isosurfaces[0]"): under the pointer, or else the one nearest to the image center on a grid of
