@@ -114,5 +114,6 @@ PYBIND11_MODULE(_catena, m) {
   catena::python::add_curves(m);
   catena::python::add_chain(m);
   catena::python::add_images(m);
+  catena::python::add_measurements(m);
   catena::python::add_tables(m);
 }

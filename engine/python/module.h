@@ -71,6 +71,7 @@ void add_arrays(py::module_& m);
 void add_curves(py::module_& m);
 void add_chain(py::module_& m);
 void add_images(py::module_& m);
+void add_measurements(py::module_& m);
 void add_tables(py::module_& m);
 
 }  // namespace catena::python

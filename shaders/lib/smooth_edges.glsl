@@ -13,11 +13,14 @@ float depth_at(ivec2 p) { return texelFetch(opaque_depth, clamp(p, ivec2(0), tex
 bool is_contour(ivec2 p, ivec2 s) {
   const ivec2 q = p + s, size = textureSize(opaque_color, 0);
   if (any(lessThan(min(p, q), ivec2(0))) || any(greaterThanEqual(max(p, q), size))) return false;
+  const uint id = texelFetch(opaque_id, p, 0).r, other = texelFetch(opaque_id, q, 0).r;
+  if (id != other) return true;
+  if (id == 0u) return false;  // the background
   const float near = depth_at(p), far = depth_at(q);
   const float jump = abs(far - near);
+  if (jump <= MIN_DEPTH_JUMP * max(abs(near), abs(far))) return false;
   const float beside = max(abs(near - depth_at(p - s)), abs(depth_at(q + s) - far));
-  const bool jumps = jump > MIN_DEPTH_JUMP * max(abs(near), abs(far)) && jump > DEPTH_JUMP * beside;
-  return jumps || texelFetch(opaque_id, p, 0).r != texelFetch(opaque_id, q, 0).r;
+  return jump > DEPTH_JUMP * beside;
 }
 
 // Area of a pixel, n pixels from the riser, under the line from half a pixel at the riser to 0 in the middle of a step of that length.
@@ -56,7 +59,7 @@ bool may_be_at_contour(ivec2 p) {
     const ivec2 a = max(p - side, ivec2(0)), b = min(p + side, last);
     const float here = depth_at(p), before = abs(depth_at(a) - here), after = abs(depth_at(b) - here);
     may_be = may_be || texelFetch(opaque_id, a, 0).r != id || texelFetch(opaque_id, b, 0).r != id;
-    may_be = may_be || max(before, after) > DEPTH_JUMP * min(before, after);
+    may_be = may_be || (id != 0u && max(before, after) > DEPTH_JUMP * min(before, after));
     side = side.yx;
   }
   return may_be;

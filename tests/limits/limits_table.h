@@ -44,6 +44,7 @@ Group flow_rows();
 Group grid_rendering_rows();
 Group image_rows();
 Group command_rows();
+Group measure_rows();
 
 /// Collects the sentences of a row's result.
 class Findings {

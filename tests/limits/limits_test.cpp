@@ -25,7 +25,7 @@ namespace limits_test {
 
 const std::vector<Group>& table() {
   static const std::vector<Group> all{probe_rows(), world_rows(),          index_rows(), coupling_rows(), critical_rows(),
-                                      flow_rows(),  grid_rendering_rows(), image_rows(), command_rows()};
+                                      flow_rows(),  grid_rendering_rows(), image_rows(), command_rows(),  measure_rows()};
   return all;
 }
 

@@ -24,7 +24,7 @@ PATIENCE_S = 90
 WORDS = ["a.json", "Capital.json", "new scene.json", "../x", "none.vdb", "/", "grid.vdb", "0.5", "-1e30", "nan", "1e999", "0,0", "[", "H q Q"]
 COMMANDS = ["ctrl+o", "ctrl+s", "ctrl+shift+s", "ctrl+z", "ctrl+z", "ctrl+y", "ctrl+a", "ctrl+c", "ctrl+v", "ctrl+x", "Tab", "F1", "F2", "F11",
             "F12", "shift+F12", "Home", "Return", "Return", "Escape", "Escape", "BackSpace", "Delete", "Left", "Right", "Up", "Down", "shift+Left",
-            "ctrl+shift+Left", "Page_Up", "Page_Down", "Q", "q", "h", "f", "t", "v", "p", "o", "r", "space", "1", "shift+2", "question"]
+            "ctrl+shift+Left", "Page_Up", "Page_Down", "Q", "q", "h", "f", "t", "v", "p", "o", "r", "space", "1", "shift+2", "question", "4", "4", "ctrl+shift+o"]
 MODIFIERS = {"ctrl": XK.XK_Control_L, "shift": XK.XK_Shift_L, "alt": XK.XK_Alt_L}
 
 

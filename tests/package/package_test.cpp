@@ -155,6 +155,14 @@ TEST_F(Package, ExamplesBuildAndRunOutsideOfTheTree) {
   const test::ProgramResult loop = example("own_loop");
   EXPECT_EQ(loop.exit_code, 0) << loop.err;
   for (const char* link : {"line: OK", "skin: OK"}) EXPECT_NE(loop.out.find(link), std::string::npos) << loop.out;
+  int count = 0, voxels = 0;
+  double area = 0, volume = 0;
+  const std::string measured = example("measure").out;
+  ASSERT_EQ(std::sscanf(measured.c_str(), "%d part of %d voxels, area %lf, volume %lf", &count, &voxels, &area, &volume), 4) << measured;
+  EXPECT_EQ(count, 1);
+  EXPECT_NEAR(area, 1257, 8);  // 4 pi 10^2
+  EXPECT_NEAR(volume, 4189, 40);
+  EXPECT_NEAR(voxels, 4189, 40);
   EXPECT_EQ(example("function").out.substr(0, 9), "OK: proxy");
   // at rest the hand's spring force, 100 N/m (-0.01 - z), equals the floor's
   const test::ProgramResult device = example("device");

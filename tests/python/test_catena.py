@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import re
+import struct
 import subprocess
 import tempfile
 import threading
@@ -311,6 +312,90 @@ class Pictures(unittest.TestCase):
         self.assertTrue((p.color != p.color[0, 0]).any())
 
 
+class Measurements(unittest.TestCase):
+    """They equal the numbers of `catena measure`, of files and of arrays."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        rng = np.random.default_rng(5)
+        self.labels, self.values = rng.integers(0, 3, (7, 8, 9)), rng.random((7, 8, 9)).astype(np.float32)
+        self.values[2, 3, 4] = np.nan
+        self.map, self.data = f"{folder.name}/map.nii", f"{folder.name}/data.nii"
+        for path, kind, array in (self.map, 2, self.labels.astype(np.uint8)), (self.data, 16, self.values):
+            header = bytearray(352)
+            struct.pack_into("<i", header, 0, 348)
+            struct.pack_into("<4h", header, 40, 3, 9, 8, 7)
+            struct.pack_into("<2h", header, 70, kind, array.itemsize * 8)
+            struct.pack_into("<4f", header, 76, 1, 2, 0.5, 1.5)
+            struct.pack_into("<f", header, 108, 352)
+            header[344:348] = b"n+1\0"
+            with open(path, "wb") as file:
+                file.write(bytes(header) + array.tobytes())
+        with open(f"{folder.name}/map.txt", "w", encoding="utf-8") as file:
+            file.write("1 Left\n")
+
+    def told(self, *arguments):
+        done = run("measure", *arguments, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout)
+
+    def expect_equal(self, found, told, columns):
+        for column in columns:
+            np.testing.assert_array_equal(found[column], np.array([np.nan if row[column] is None else row[column] for row in told["rows"]]),
+                                          column)
+        np.testing.assert_array_equal(found["center"] if "center" in found else found["points"],
+                                      [[row[c] for c in "xyz"] for row in told["rows"]])
+
+    def test_labels(self):
+        columns = "label", "voxels", "volume", "surface", "valued_voxels", "mean", "deviation", "min", "max"
+        told = self.told(self.map, "--values", self.data)
+        of_files = catena.measure_labels(self.map, pathlib.Path(self.data))
+        self.expect_equal(of_files, told, columns)
+        self.assertEqual(of_files["name"].tolist(), ["Left", ""])
+        self.assertEqual(of_files["voxels"][0], (self.labels == 1).sum())
+        self.assertEqual(of_files["unlabeled_voxels"], told["unlabeled_voxels"])
+        self.expect_equal(catena.measure_labels(self.labels, self.values, spacing=(2, 0.5, 1.5)), told, columns)
+        self.assertNotIn("mean", catena.measure_labels(self.labels))
+
+    def test_parts(self):
+        told = self.told(self.data, "--level", "0.8", "--parts", "3", "--neighbors", "6")
+        for data in self.data, self.values:
+            spacing = None if data is self.data else (2, 0.5, 1.5)
+            found = catena.measure_parts(data, 0.8, parts=3, neighbors=6, spacing=spacing)
+            self.assertEqual(found["part"].tolist(), [1, 2, 3, 0])
+            self.expect_equal(found, told, ("voxels", "volume", "surface", "closed", "valued_voxels", "mean", "deviation", "min", "max"))
+            for name in "parts", "voxels_above", "volume_above", "isosurface_area", "open_edges", "not_finite_voxels":
+                self.assertEqual(found[name], told[name], name)
+
+    def test_histogram_profile_and_points(self):
+        found = catena.histogram(self.data, 5)
+        counts, edges = np.histogram(self.values[np.isfinite(self.values)].astype(float), 5)
+        np.testing.assert_array_equal(found["counts"], counts)
+        np.testing.assert_allclose(found["edges"], edges, rtol=1e-15)
+        self.assertEqual(found["mean"], self.told(self.data, "--histogram", "5")["mean"])
+        self.assertEqual(catena.histogram(self.values, 2, range=(0.25, 0.5))["below"], (self.values < 0.25).sum())
+        told = self.told(self.data, "--line", "0,0,0:16,4,12", "--samples", "33")
+        line = catena.profile(self.values, (0, 0, 0), (16, 4, 12), 33, spacing=(2, 0.5, 1.5))
+        self.assertTrue(np.isnan(line["values"]).any())
+        self.expect_equal({**line, "value": line["values"]}, told, ("length", "value"))
+        at = catena.values_at(self.data, [[2, 0.5, 1.5], [-9, 0, 0], [8, 1.5, 3]])
+        np.testing.assert_array_equal(at, [self.values[1, 1, 1], np.nan, np.nan])
+        self.assertEqual(catena.values_at(np.ones((3, 3, 3, 3)), [[1, 1, 1]]).tolist(), [[1, 1, 1]])
+
+    def test_what_cannot_be_measured_is_one_line(self):
+        for call, line in ((lambda: catena.measure_labels(self.values), "a label map"),
+                           (lambda: catena.measure_labels(self.map, spacing=(1, 1, 1)), "its own spacing"),
+                           (lambda: catena.measure_parts(self.values, 7), "no voxel reaches the level 7"),
+                           (lambda: catena.measure_parts(self.values, 0.5, neighbors=18), "neighbors is 18"),
+                           (lambda: catena.measure_parts(catena.analytic("sphere"), 0.5), "data is a formula"),
+                           (lambda: catena.histogram(self.values, 0), "bins is 0"),
+                           (lambda: catena.profile(self.values, (0, 0, 0), (1, 1, 1), 1), "samples is 1"),
+                           (lambda: catena.values_at(self.values, [[0, 0, 0]], spacing=(1, 0, 1)), "three positive lengths")):
+            with self.assertRaisesRegex(catena.Error, line):
+                call()
+
+
 class Tables(unittest.TestCase):
     def test_a_recording_is_what_was_felt(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -460,6 +545,15 @@ class Pages(unittest.TestCase):
 
 
 class Words(unittest.TestCase):
+    def test_the_example_of_measuring_runs(self):
+        with open(SOURCE + "/docs/user/measuring.md", encoding="utf-8") as file:
+            code = file.read().split("```python\n")[1].split("```")[0]
+        names = {}
+        exec(compile(code, "measuring.md", "exec"), names)  # pylint: disable=exec-used
+        self.assertAlmostEqual(names["parts"]["enclosed_volume"], 4 / 3 * np.pi * 9.5 ** 3, delta=40)
+        self.assertEqual(names["labels"]["volume"][0], 2 * names["labels"]["voxels"][0])
+        self.assertEqual(names["line"]["values"].shape, (100,))
+
     def test_the_document_s_example_runs(self):
         with open(SOURCE + "/docs/user/library.md", encoding="utf-8") as file:
             code = file.read().split("```python\n")[1].split("```")[0]

@@ -13,8 +13,8 @@
 #include "engine/app/cli/io_conflicts.h"
 #include "engine/app/cli/measure_data.h"
 #include "engine/app/cli/options.h"
-#include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
+#include "engine/base/point_text.h"
 #include "engine/base/text.h"
 
 namespace catena::app {
@@ -30,30 +30,22 @@ struct MeasureCommand {
   bool json = false;
 };
 
-/// Parses `count` points "x,y,z", separated by colons.
-Result<std::vector<Vec3>> parse_points(const std::string& option, const std::string& text, std::size_t count) {
-  const auto expected = [&] {
+/// Reads `count` points of an option. Error: another form, or two points so far apart that their distance is no finite number.
+Result<std::vector<Vec3>> read_option(const std::string& option, const std::string& text, std::size_t count) {
+  const auto points = parse_points(text, count);
+  if (!points) {
     const std::string form = count == 1 ? "x,y,z" : count == 2 ? "x,y,z:x,y,z" : "x,y,z:x,y,z:x,y,z";
     return Error{option + " " + in_quotes(text) + ": expected " + form + " with finite numbers"};
-  };
-  std::vector<double> numbers;
-  std::size_t at = 0;
-  for (std::size_t n = 0; n < 3 * count; ++n) {
-    const std::size_t end = n + 1 == 3 * count ? text.size() : text.find(n % 3 == 2 ? ':' : ',', at);
-    if (end == std::string::npos) return expected();
-    const auto number = parse_double(std::string_view(text).substr(at, end - at));
-    if (!number || !std::isfinite(*number)) return expected();
-    numbers.push_back(*number);
-    at = std::min(end + 1, text.size());
   }
-  std::vector<Vec3> points;
-  for (std::size_t n = 0; n < count; ++n) points.emplace_back(numbers[3 * n], numbers[3 * n + 1], numbers[3 * n + 2]);
-  return points;
+  for (std::size_t n = 1; n < count; ++n)
+    if (!std::isfinite(norm((*points)[n] - (*points)[n - 1])))
+      return Error{option + " " + in_quotes(text) + ": the distance of the points is no finite number"};
+  return *points;
 }
 
 Outcome read_points(MeasureCommand& options) {
   const auto add = [&](const char* name, const std::string& text, std::size_t count) -> Outcome {
-    CATENA_TRY(const std::vector<Vec3> points, parse_points(name, text, count));
+    CATENA_TRY(const std::vector<Vec3> points, read_option(name, text, count));
     options.request.points.insert(options.request.points.end(), points.begin(), points.end());
     return Done{};
   };

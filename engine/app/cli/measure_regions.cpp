@@ -7,7 +7,6 @@
 #include "engine/app/cli/command.h"
 #include "engine/app/cli/measure_data.h"
 #include "engine/app/cli/measure_field.h"
-#include "engine/base/memory_limit.h"
 #include "engine/field/measure/labels.h"
 #include "engine/field/measure/parts.h"
 #include "engine/geometry/mesh/measure.h"
@@ -99,19 +98,15 @@ Result<MeasureReport> measure_level(const MeasureRequest& request) {
   if (!measured) return in_file(request.source, measured.error());
   MeasureReport report{"level", request.source, {}, {}, {}, {}};
   std::optional<mesh::SurfaceMeasure> whole;
-  std::vector<mesh::PartSurface> surfaces(measured->parts.size() + 1);
   {
     ProgressLine progress("measure", 1);
-    const auto surface = mesh::extract_isosurface(grid, *request.level, mesh::OutwardSide::lower, "the isosurface",
-                                                  [&](double done) { progress.update(done); });
-    if (!surface && surface.error().system_failure) return surface.error();
-    const double bytes = surface ? mesh::kMeasureBytesPerTriangle * static_cast<double>(surface->triangles.size()) : 0;
-    const Outcome fits = check_memory_available("the isosurface", bytes);
-    if (surface && fits) {
-      whole = mesh::measure_surface(*surface);
-      surfaces = mesh::measure_part_surfaces(*surface, grid.mapping(), *measured);
+    auto surface = mesh::measure_isosurface(grid, *request.level, *measured, "the isosurface", [&](double done) { progress.update(done); });
+    if (surface) {
+      whole = std::move(*surface);
+    } else if (surface.error().system_failure) {
+      return surface.error();
     } else {
-      report.notes.push_back((surface ? fits.error() : surface.error()).message);
+      report.notes.push_back(surface.error().message);
     }
   }
   const double volume = field::voxel_volume(grid.mapping());
@@ -134,16 +129,16 @@ Result<MeasureReport> measure_level(const MeasureRequest& request) {
   report.add_column("closed");
   add_value_columns(report, values ? values->units.value : loaded.units.value);
   add_position_columns(report, loaded.units.length);
-  const auto add_part = [&](MeasureCell name, const field::RegionStats& part, const mesh::PartSurface& surface) {
+  const auto add_part = [&](MeasureCell name, const field::RegionStats& part, std::size_t n) {
     std::vector<MeasureCell> row{std::move(name), part.voxels, volume * static_cast<double>(part.voxels)};
-    row.push_back(whole ? MeasureCell(surface.area) : MeasureCell());
-    row.push_back(surface.triangles > 0 ? MeasureCell(surface.is_closed) : MeasureCell());
+    row.push_back(whole ? MeasureCell(whole->parts[n].area) : MeasureCell());
+    row.push_back(whole && whole->parts[n].triangles > 0 ? MeasureCell(whole->parts[n].is_closed) : MeasureCell());
     append_values(row, part.values);
     append_position(row, part.centroid(grid.mapping()));
     report.rows.push_back(std::move(row));
   };
-  for (std::size_t n = 0; n < measured->parts.size(); ++n) add_part(std::uint64_t{n + 1}, measured->parts[n], surfaces[n]);
-  if (measured->others.voxels > 0) add_part(std::string("others"), measured->others, surfaces.back());
+  for (std::size_t n = 0; n < measured->parts.size(); ++n) add_part(std::uint64_t{n + 1}, measured->parts[n], n);
+  if (measured->others.voxels > 0) add_part(std::string("others"), measured->others, measured->parts.size());
   if (whole && !whole->volume)
     report.notes.push_back(
         "the surface ends at the border of the grid or at missing values and encloses no volume; volume_above counts voxels");

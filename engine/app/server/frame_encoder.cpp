@@ -42,13 +42,11 @@ Outcome FrameEncoder::draw(FrameBuilder& drawing, ProgressiveScheduler& pacing, 
     start = now_ns();
   }
   std::optional<render::RenderTimer> clock(*renderer_);
-  render::RenderSettings settings = next.settings;
-  settings.smooth_edges = true;
-  auto drawn = renderer_->draw(packet, settings);
+  auto drawn = renderer_->draw(packet, next.settings);
   if (!drawn && renderer_->device().is_lost()) {
     clock.reset();  // the clock's renderer is about to be destroyed
     CATENA_CHECK(make_renderer());
-    drawn = renderer_->draw(packet, settings);
+    drawn = renderer_->draw(packet, next.settings);
   }
   if (!drawn) return of_machine(drawn.error());
   const double drawing_ms = clock ? clock->elapsed_ms() : 0;

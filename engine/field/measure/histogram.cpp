@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "engine/field/measure/histogram.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+
+#include "engine/field/measure/slabs.h"
 
 namespace catena::field {
 namespace {
@@ -36,6 +40,8 @@ Result<Histogram> make_histogram(const ScalarGrid& grid, int bins, std::optional
   Histogram made;
   made.left_out = left_out(grid, box);
   for (int n = 0; n <= bins; ++n) made.edges.push_back(n == bins ? hi : lo + n * ((hi - lo) / bins));
+  if (std::ranges::adjacent_find(made.edges, std::greater_equal<>()) != made.edges.end())
+    return Error{"the range is too narrow for so many bins"};
   made.counts.assign(static_cast<std::size_t>(bins), 0);
   const SlabReader reader(grid, box, nullptr);
   for_slabs<HistogramPart>(

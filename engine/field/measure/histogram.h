@@ -6,22 +6,26 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/field/measure/voxels.h"
 
 namespace catena::field {
 
+/// Counts of values in bins.
 struct Histogram {
-  std::vector<double> edges;  ///< one more than bins
-  std::vector<std::uint64_t> counts;
+  std::vector<double> edges;           ///< one more than bins
+  std::vector<std::uint64_t> counts;   ///< values in each bin
   std::uint64_t below = 0, above = 0;  ///< values outside of the range
   Moments values;                      ///< of all voxels that count, also those outside of the range
-  LeftOut left_out;
+  LeftOut left_out;                    ///< voxels that do not count
 };
 
+/// Largest number of bins.
 inline constexpr int kMaxHistogramBins = 1'000'000;
 
 /// Counts the values. `range`: lowest and highest edge, lo <= hi; default: the range of the values. A range of no width is widened by 0.5
-/// on both sides. Error (a message fragment): that of measurable_box(), or the edges would not be finite.
-Result<Histogram> make_histogram(const ScalarGrid& grid, int bins, std::optional<std::pair<double, double>> range = {});
+/// on both sides. Error (a message fragment): that of measurable_box(), the edges would not be finite, or two of
+/// them would be equal.
+CATENA_EXPORT Result<Histogram> make_histogram(const ScalarGrid& grid, int bins, std::optional<std::pair<double, double>> range = {});
 
 }  // namespace catena::field

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "engine/base/numbers.h"
+#include "engine/field/measure/slabs.h"
 
 namespace catena::field {
 namespace {

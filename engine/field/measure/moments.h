@@ -14,6 +14,7 @@ namespace catena::field {
 /// Accumulator of finite numbers.
 class Moments {
  public:
+  /// Adds a finite number.
   void add(double value) {
     if (count_++ == 0) first_ = value;
     const double x = value - first_, d = x - mean_;
@@ -38,9 +39,11 @@ class Moments {
     max_ = std::max(max_, other.max_);
   }
 
+  /// Number of numbers.
   std::uint64_t count() const { return count_; }
-  /// Smallest and largest number; infinities when there is none.
+  /// Smallest number; infinity when there is none.
   double min() const { return min_; }
+  /// Largest number; -infinity when there is none.
   double max() const { return max_; }
   /// Mean; NaN when there is no number.
   double mean() const { return count_ > 0 ? first_ + mean_ : std::numeric_limits<double>::quiet_NaN(); }

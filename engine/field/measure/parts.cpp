@@ -8,6 +8,7 @@
 
 #include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
+#include "engine/field/measure/slabs.h"
 
 namespace catena::field {
 namespace {

@@ -10,24 +10,30 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/field/measure/voxels.h"
 
 namespace catena::field {
 
-enum class Neighbors : int { faces = 6, all = 26 };
+/// Voxels that are connected to a voxel.
+enum class Neighbors : int {
+  faces = 6,  ///< those with a common face
+  all = 26    ///< those with a common face, edge or corner
+};
 
 /// Voxels first..last of a row, and the number of their part.
 struct PartRun {
-  std::int32_t first = 0, last = 0;
-  std::uint32_t part = 0;
+  std::int32_t first = 0, last = 0;  ///< x in index space
+  std::uint32_t part = 0;            ///< number in MeasuredParts::parts
 };
 
 /// Runs of all parts, in the order of the voxels.
-struct PartMap {
-  VoxelBox box;
+struct CATENA_EXPORT PartMap {
+  VoxelBox box;                           ///< box of the grid
   std::vector<std::uint64_t> row_starts;  ///< first run of each row, with the number of runs at the end
-  std::vector<PartRun> runs;
+  std::vector<PartRun> runs;              ///< runs of all rows
 
+  /// Runs of one row.
   std::span<const PartRun> row(std::int32_t y, std::int32_t z) const {
     const std::size_t n = static_cast<std::size_t>(z - box.lo.z) * box.size.y + static_cast<std::size_t>(y - box.lo.y);
     return std::span(runs).subspan(row_starts[n], row_starts[n + 1] - row_starts[n]);
@@ -41,14 +47,14 @@ struct MeasuredParts {
   std::vector<RegionStats> parts;  ///< the largest ones
   RegionStats others;              ///< all smaller parts together
   std::uint64_t count = 0;         ///< number of all parts
-  LeftOut left_out;
-  PartMap map;  ///< part numbers as in `parts`; parts.size() stands for the others
+  LeftOut left_out;                ///< voxels that do not count
+  PartMap map;                     ///< part numbers as in `parts`; parts.size() stands for the others
 };
 
 /// Measures the parts at or above `level`. `values`: the field of the statistics, null for the grid itself; `max_parts`: number of parts
 /// with their own statistics, at least 1. Error (a message fragment): no voxel reaches the level, there are 2^32 runs, or the memory
 /// budget is too small.
-Result<MeasuredParts> measure_parts(const ScalarGrid& grid, double level, Neighbors neighbors, std::size_t max_parts,
-                                    const ScalarField* values);
+CATENA_EXPORT Result<MeasuredParts> measure_parts(const ScalarGrid& grid, double level, Neighbors neighbors, std::size_t max_parts,
+                                                  const ScalarField* values);
 
 }  // namespace catena::field

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/field/field.h"
 
 namespace catena::field {
@@ -17,12 +18,12 @@ struct PointValue {
 };
 
 /// Samples a field at a point.
-PointValue sample_point(const AnyField& field, const Vec3& world, Cursor& cursor);
+CATENA_EXPORT PointValue sample_point(const AnyField& field, const Vec3& world, Cursor& cursor);
 
 /// Samples a field at `samples` >= 2 equidistant points from a to b, both included.
-std::vector<PointValue> sample_line(const AnyField& field, const Vec3& a, const Vec3& b, std::size_t samples);
+CATENA_EXPORT std::vector<PointValue> sample_line(const AnyField& field, const Vec3& a, const Vec3& b, std::size_t samples);
 
 /// Angle at b between the directions to a and to c, degrees, 0 to 180; nullopt when a or c is at b.
-std::optional<double> angle_deg(const Vec3& a, const Vec3& b, const Vec3& c);
+CATENA_EXPORT std::optional<double> angle_deg(const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace catena::field

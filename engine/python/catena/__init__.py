@@ -29,13 +29,14 @@ import zlib as _zlib
 
 import numpy as _np
 
-from ._catena import (Chain, Curve, Error, Field, MachineError, STATUSES, Ticks, __version__, _from_array, _from_file, _recording, _render,
-                      _study_table, analytic, analytic_names, memory_limit, trace)
+from ._catena import (Chain, Curve, Error, Field, MachineError, STATUSES, Ticks, __version__, _from_array, _from_file, _histogram, _measure_labels,
+                      _measure_parts, _profile, _recording, _render, _study_table, _values_at, analytic, analytic_names, memory_limit, trace)
 
 _FILES = "file", "firmware", "transfer", "itk", "fsl", "reference"  # keys of a scene whose words name files
 
 __all__ = ["Chain", "Curve", "Error", "Field", "MachineError", "Picture", "STATUSES", "Served", "Ticks", "analytic", "analytic_names",
-           "field", "memory_limit", "recording", "render", "serve", "show", "study_table", "trace", "trade_report"]
+           "field", "histogram", "measure_labels", "measure_parts", "memory_limit", "profile", "recording", "render", "serve", "show",
+           "study_table", "trace", "trade_report", "values_at"]
 
 
 def field(data, *, axes="zyx", affine=None, name="field", interpolation="linear", grid="", step=0, vectors=None):
@@ -107,6 +108,84 @@ def render(scene, width=640, height=480, *, fields=None):
     """
     most = 2 ** 31 - 1
     return Picture(*_render(scene, min(_operator.index(width), most), min(_operator.index(height), most), fields))
+
+
+def _measured(data, spacing, name):
+    """The field of what is measured: a Field, a path, or an array whose voxels have that spacing."""
+    if spacing is None:
+        return data if isinstance(data, Field) else field(data, name=name)
+    if isinstance(data, (Field, str, _os.PathLike)):
+        raise Error(f"{name}: a field or file has its own spacing; an array was expected with spacing=")
+    edges = _np.asarray(spacing, float)
+    if edges.shape != (3,) or not (_np.isfinite(edges).all() and (edges > 0).all()):
+        raise Error("spacing: three positive lengths (x, y, z) were expected")
+    return field(data, name=name, affine=_np.diag([*edges, 1.0]))
+
+
+def measure_labels(labels, values=None, *, spacing=None):
+    """The labels of a label map, as `catena measure LABELS [--values DATA]`: a dict of arrays with an entry for each label, ascending.
+
+    labels: a Field, a path, or an array (z, y, x) of integers; 0 is no label. values: data of the same kinds, whose statistics are wanted.
+    spacing: (3,), voxel edges of an array along x, y, z, world units.
+
+    label, name (of the table beside a file, else ""), voxels, volume, surface, center (N, 3); with values also valued_voxels, mean,
+    deviation, min, max. Beside them the numbers voxel_volume, unlabeled_voxels, masked_voxels and not_finite_voxels. Lengths are world
+    units.
+    """
+    path = _os.fsencode(labels) if isinstance(labels, (str, _os.PathLike)) else b""
+    return _measure_labels(_measured(labels, spacing, "labels"),
+                           None if values is None else _measured(values, None if _has_voxels(values) else spacing, "values"), path)
+
+
+def _has_voxels(data):
+    """Whether data state the place of their voxels."""
+    return isinstance(data, (Field, str, _os.PathLike))
+
+
+def measure_parts(data, level, *, values=None, neighbors=26, parts=20, spacing=None):
+    """The connected parts of the voxels at or above a level, and the isosurface, as `catena measure DATA --level`: a dict of arrays with an
+    entry for each part, the largest first.
+
+    data: a Field, a path, or an array (z, y, x). values: data of the same kinds for the statistics; None: data. neighbors: 6 or 26.
+    parts: number of parts with their own entry; the last entry, of part 0, is for all others. spacing: (3,), voxel edges of an array.
+
+    part (1, 2, ...), voxels, volume, surface, closed, valued_voxels, mean, deviation, min, max, center (N, 3). Beside them the numbers
+    parts, voxels_above, volume_above, isosurface_area, enclosed_volume (NaN: the surface is open), open_edges, masked_voxels and
+    not_finite_voxels.
+    """
+    return _measure_parts(_measured(data, spacing, "data"), float(level),
+                          None if values is None else _measured(values, None if _has_voxels(values) else spacing, "values"),
+                          _operator.index(neighbors), _operator.index(parts))
+
+
+def histogram(data, bins, *, range=None):  # pylint: disable=redefined-builtin
+    """The values of a grid in bins of equal width, those of numpy.histogram, as `catena measure DATA --histogram`: a dict.
+
+    data: a Field, a path, or an array. range: (lowest, highest) edge; None: the range of the values.
+    counts (N,), edges (N + 1,); below and above count the values outside of the range. Beside them voxels, mean, deviation, min, max,
+    masked_voxels and not_finite_voxels.
+    """
+    return _histogram(_measured(data, None, "data"), _operator.index(bins), range)
+
+
+def profile(data, start, end, samples=256, *, spacing=None):
+    """Values along a line, as `catena measure DATA --line`: a dict of arrays.
+
+    data: a Field, a path, or an array (z, y, x). start, end: (3,), world units. samples: number of equidistant points, the ends included.
+    spacing: (3,), voxel edges of an array.
+    length (N,) from the start, points (N, 3), values (N,), or (N, 3) of vectors; NaN outside, at masked voxels and beside values that are
+    not finite.
+    """
+    return _profile(_measured(data, spacing, "data"), start, end, _operator.index(samples))
+
+
+def values_at(data, points, *, spacing=None):
+    """Values at points, as `catena measure DATA --point`.
+
+    data: a Field, a path, or an array (z, y, x). points: (N, 3) or (3,), world units. spacing: (3,), voxel edges of an array.
+    Returns (N,), or (N, 3) of vectors; NaN as of profile().
+    """
+    return _values_at(_measured(data, spacing, "data"), points)
 
 
 def recording(path):

@@ -116,7 +116,7 @@ wheel                zoom
 1, 2, 3              look along +x, +y, +z at the whole scene; with shift along -x, -y, -z
 A, Home              fit the whole scene into the image, from the same direction
 O                    orthographic or perspective
-4                    orthogonal views; in them, left drag: cross-hair, wheel: next voxel, right drag: window and level
+4                    orthogonal views; in them, left drag: cross-hair, wheel: next voxel (control: zoom), middle drag: pan, right drag: window and level
 R                    return to the first view
 T                    start the turntable; T or the mouse stops it
 V                    fly: W S A D or arrows, E up, Q down, shift faster, left drag turns, wheel: speed; V or Esc ends flying

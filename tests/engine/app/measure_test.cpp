@@ -62,6 +62,8 @@ TEST_F(Measure, BadInputIsRefused) {
   expect_refused("measure {v1.nii} --level 1 --histogram 3", {"exclude each other"});
   expect_refused("measure {v1.nii} --point 1,2", {"--point \"1,2\": expected x,y,z"});
   expect_refused("measure {v1.nii} --line 0,0,0:1,1,1:2,2,2", {"expected x,y,z:x,y,z"});
+  expect_refused("measure {v1.nii} --line -1e308,0,0:1e308,0,0", {"--line", "no finite number"});
+  expect_refused("measure {v1.nii} --histogram 1000 --range 0 1e-322", {"v1.nii: the range is too narrow for so many bins"});
   expect_refused("measure --angle 0,0,0:0,0,0:1,0,0", {"two of the points coincide"});
   expect_refused("measure {v1.nii} --histogram 3 --range 2 1", {"--range: LO < HI"});
   expect_refused("measure {map.nii} -o {map.nii}", {"map.nii"});

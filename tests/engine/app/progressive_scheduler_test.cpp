@@ -172,12 +172,25 @@ TEST(ProgressiveScheduler, RefinementBetweenReusedImagesNeedsAShortTime) {
 TEST(ProgressiveScheduler, ASceneWithoutRaysIsRefinedAtMostOnce) {
   ProgressiveScheduler p = pacing("time=50");
   settle(p, kNoRays, 1);
-  EXPECT_TRUE(rest(p, kNoRays, 1).empty()) << "what moved was whole already";
+  EXPECT_FALSE(p.current().settings.smooth_edges) << "in motion";
+  const auto smoothed = rest(p, kNoRays, 1);
+  ASSERT_EQ(smoothed.size(), 1u) << "with antialiased contours";
+  EXPECT_TRUE(p.current().settings.smooth_edges);
   ProgressiveScheduler slow = pacing("time=50");
   ASSERT_GT(settle(slow, kNoRays, 2000).pixel_stride, 1u);
   const auto all = rest(slow, kNoRays, 2000);
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0].pixel_stride, 1u);
+}
+
+TEST(ProgressiveScheduler, TheInterfaceReducesTheDefaultTimeOfAnInteractiveFrame) {
+  ProgressiveScheduler chosen = pacing("balanced"), requested = pacing("time=50");
+  EXPECT_EQ(chosen.budget_ms(), 50);
+  for (int k = 0; k < 200; ++k) chosen.on_interface_drawn(30), requested.on_interface_drawn(30);
+  EXPECT_NEAR(chosen.budget_ms() + 30, 0.95 * 1000 / 15, 1e-6) << "15 frames per second";
+  EXPECT_EQ(requested.budget_ms(), 50) << "as requested";
+  for (int k = 0; k < 200; ++k) chosen.on_interface_drawn(1000);
+  EXPECT_EQ(chosen.budget_ms(), 20) << "an image stays an image";
 }
 
 TEST(BandAnimationClock, RunsAtHalfAPeriodPerSecondAndPausesWhenHidden) {

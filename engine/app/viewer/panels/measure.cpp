@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Panel of measuring: the profile of a field along a ruler, with its plot. Rulers are dragged in the views and saved with the scene.
+// Panel of measuring: length of a ruler, angle to another one, the profile of a field along it, and the labels of a label map. Rulers are
+// dragged in the views and saved with the scene.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "engine/app/viewer/edit/ruler_angle.h"
 #include "engine/app/viewer/panels/color_widgets.h"
+#include "engine/app/viewer/panels/measure.h"
 #include "engine/field/measure/moments.h"
 #include "engine/field/measure/profile.h"
 #include "engine/scene/units.h"
@@ -19,14 +23,14 @@ constexpr float kPlotHeight = 90;
 
 struct Ruler {
   std::string name;
-  Vec3 from{0.0}, to{0.0};
+  std::array<Vec3, 2> ends{};
 };
 
 std::vector<Ruler> rulers_of(const scene::Scene& scene) {
   std::vector<Ruler> rulers;
   scene.entities.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
     const auto& points = widget.report.pose.points;
-    if (widget.spec.kind == widget::Kind::ruler) rulers.push_back({entity_name(scene, e), points[0], points[1]});
+    if (widget.spec.kind == widget::Kind::ruler) rulers.push_back({entity_name(scene, e), {points[0], points[1]}});
   });
   return rulers;
 }
@@ -85,8 +89,7 @@ void draw_profile(PanelContext& context, const Ruler& ruler, const std::string& 
   const field::AnyField& any = scene.entities.get<scene::FieldSource>(entity).loaded;
   const std::string unit = scene::unit_suffix(scene::unit_of(scene, entity));
   const std::string length_unit = scene::unit_suffix(context.state.unit_length);
-  ImGui::Text("length %.6g%s", norm(ruler.to - ruler.from), length_unit.c_str());
-  const std::vector<field::PointValue> samples = field::sample_line(any, ruler.from, ruler.to, kSamples);
+  const std::vector<field::PointValue> samples = field::sample_line(any, ruler.ends[0], ruler.ends[1], kSamples);
   std::vector<double> values;
   field::Moments moments;
   for (const field::PointValue& sample : samples) {
@@ -108,22 +111,50 @@ void draw_profile(PanelContext& context, const Ruler& ruler, const std::string& 
   show_tooltip("length, position and value of each sample; catena measure --line writes the same to a file");
 }
 
-void draw_measure(PanelContext& context) {
-  const scene::Scene& scene = context.scene.scene();
-  const std::vector<Ruler> rulers = rulers_of(scene);
-  const std::vector<std::string> fields = loaded_fields(scene);
-  if (rulers.empty() || fields.empty()) {
-    ImGui::TextWrapped("%s", fields.empty() ? "No field is loaded." : "+ ruler, in Widgets, adds a line to measure along.");
-    return;
-  }
+/// Draws the length of the chosen ruler, and its angle to another one.
+void draw_rulers(PanelContext& context, const std::vector<Ruler>& rulers) {
   AppearanceState::Measure& chosen = context.state.appearance.measure;
   std::vector<std::string> names;
   for (const Ruler& ruler : rulers) names.push_back(ruler.name);
   if (std::ranges::find(names, chosen.ruler) == names.end()) chosen.ruler = names.front();
-  if (std::ranges::find(fields, chosen.field) == fields.end()) chosen.field = fields.front();
   if (names.size() > 1) choose_from_list("along", names, chosen.ruler);
-  choose_from_list("field", fields, chosen.field);
-  draw_profile(context, *std::ranges::find(rulers, chosen.ruler, &Ruler::name), chosen.field);
+  const Ruler& ruler = *std::ranges::find(rulers, chosen.ruler, &Ruler::name);
+  ImGui::Text("length %.6g%s", norm(ruler.ends[1] - ruler.ends[0]), scene::unit_suffix(context.state.unit_length).c_str());
+  if (names.size() < 2) {
+    ImGui::TextDisabled("a second ruler shows an angle");
+    return;
+  }
+  std::erase(names, chosen.ruler);
+  if (std::ranges::find(names, chosen.second_ruler) == names.end()) chosen.second_ruler = names.front();
+  choose_from_list("angle to", names, chosen.second_ruler);
+  const auto angle = angle_between(ruler.ends, std::ranges::find(rulers, chosen.second_ruler, &Ruler::name)->ends);
+  if (!angle)
+    ImGui::TextDisabled("a ruler has no length");
+  else
+    ImGui::Text("angle %.4g degrees %s", angle->degrees, angle->has_shared_end ? "at the shared end" : "between the lines");
+  show_tooltip(
+      "place an end of one ruler on an end of the other for the angle at this point, up to 180 degrees; otherwise the lines have an "
+      "angle of at most 90 degrees");
+}
+
+void draw_measure(PanelContext& context) {
+  const scene::Scene& scene = context.scene.scene();
+  const std::vector<Ruler> rulers = rulers_of(scene);
+  const std::vector<std::string> fields = loaded_fields(scene);
+  AppearanceState::Measure& chosen = context.state.appearance.measure;
+  if (rulers.empty()) {
+    ImGui::TextWrapped("+ ruler, in Widgets, adds a line to measure along.");
+  } else {
+    draw_rulers(context, rulers);
+    if (std::ranges::find(fields, chosen.field) == fields.end()) chosen.field = fields.empty() ? "" : fields.front();
+    if (fields.empty()) {
+      ImGui::TextDisabled("no field is loaded");
+    } else {
+      choose_from_list("field", fields, chosen.field);
+      draw_profile(context, *std::ranges::find(rulers, chosen.ruler, &Ruler::name), chosen.field);
+    }
+  }
+  if (has_label_map(scene)) draw_label_statistics(context);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "engine/app/viewer/edit/edits.h"
 #include "engine/app/viewer/edit/histogram_cache.h"
+#include "engine/app/viewer/edit/label_statistics.h"
 #include "engine/app/viewer/edit/transfer_editing.h"
 #include "engine/app/viewer/input/haptic_session.h"
 #include "engine/app/viewer/input/navigation.h"
@@ -43,7 +44,14 @@ struct AppearanceState {
 
   /// What the panel of measuring shows.
   struct Measure {
-    std::string ruler, field;  ///< Names; empty: the first one.
+    std::string ruler, field;                                  ///< Names; empty: the first one.
+    std::string second_ruler;                                  ///< Name of the ruler to which the angle is shown; empty: none.
+    std::string map, values;                                   ///< Label map and field of the table; empty: the first one.
+    LabelStatisticsCache labels;                               ///< Computes the table.
+    std::shared_ptr<const LabelStatisticsCache::Table> table;  ///< Table from which `rows` were taken.
+    LabelColumn sorted_by = LabelColumn::name;                 ///< Order of the rows.
+    bool is_descending = false;
+    std::vector<LabelStatistics> rows;  ///< Sorted rows of the table.
   } measure;
 
   std::map<std::string, std::string> disabled_text;  ///< Disabled text by the JSON pointer of its place.

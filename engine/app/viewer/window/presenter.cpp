@@ -44,9 +44,7 @@ Outcome Presenter::recover() {
 
 Outcome Presenter::recreate() { return renderer_ && renderer_->device().is_lost() ? recover() : create_device(); }
 
-Outcome Presenter::draw(const render::FramePacket& packet, const render::RenderSettings& requested) {
-  render::RenderSettings settings = requested;
-  settings.smooth_edges = true;
+Outcome Presenter::draw(const render::FramePacket& packet, const render::RenderSettings& settings) {
   auto drawn = renderer_->draw(packet, settings);
   if (!drawn && renderer_->device().is_lost()) {
     CATENA_CHECK(recover());

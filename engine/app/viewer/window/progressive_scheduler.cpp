@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace catena::app {
@@ -14,9 +15,11 @@ constexpr double kFinerBelow = 0.7;  // fraction of the budget: hysteresis for i
 
 bool is_goal(const Quality& quality) { return quality.goal.has_value(); }
 
+bool has_time_goal(const Quality& quality) { return is_goal(quality) && quality.goal->kind == render::QualityGoal::Kind::time; }
+
 double budget_of(const Quality& quality) {
   if (quality.interactive_ms) return *quality.interactive_ms;
-  return is_goal(quality) && quality.goal->kind == render::QualityGoal::Kind::time ? quality.goal->value : kFrameBudgetMs;
+  return has_time_goal(quality) ? quality.goal->value : kFrameBudgetMs;
 }
 
 render::QualityLevelOptions ladder_of(const RayWorkload& kind) { return {kind.supports_fast, kind.is_shaded}; }
@@ -38,6 +41,7 @@ FrameRequest ProgressiveScheduler::request(const render::RefinementStep& step, s
   awaits_time_ = true;
   rmse_.reset();
   current_ = {step.settings, scale};
+  current_.settings.smooth_edges = !is_interactive_;
   return current_;
 }
 
@@ -58,11 +62,10 @@ std::optional<FrameRequest> ProgressiveScheduler::refined_frame(const RayWorkloa
   const std::uint32_t scale = current_.pixel_stride;
   if (!is_goal(quality_) || !kind.uses_rays) {
     is_finished_ = true;
-    const bool shown = is_interactive_ && scale == 1 && !kind.uses_rays;
     is_interactive_ = awaits_time_ = false;
     rmse_.reset();
-    if (shown) return std::nullopt;
     current_ = {quality_.settings, 1};
+    current_.settings.smooth_edges = true;
     return current_;
   }
   is_interactive_ = false;
@@ -71,8 +74,9 @@ std::optional<FrameRequest> ProgressiveScheduler::refined_frame(const RayWorkloa
     return request(*step, 1);
   }
   is_finished_ = true;
-  if (scale == 1) return std::nullopt;
+  if (scale == 1 && current_.settings.smooth_edges) return std::nullopt;
   current_.pixel_stride = 1;
+  current_.settings.smooth_edges = true;
   return current_;
 }
 
@@ -94,6 +98,14 @@ FrameRequest ProgressiveScheduler::final_frame(const RayWorkload& kind) {
   }
   is_interactive_ = false;
   return current_;
+}
+
+void ProgressiveScheduler::on_interface_drawn(double ms) {
+  constexpr double kNew = 0.1, kSlack = 0.95;  // weight of a new time; share of the period that is planned
+  if (quality_.interactive_ms || has_time_goal(quality_)) return;
+  interface_ms_ += kNew * (ms - interface_ms_);
+  budget_ms_ = std::clamp(kSlack * kFramePeriodMs - interface_ms_, kMinFrameBudgetMs, kFrameBudgetMs);
+  refinement_.set_budget(budget_ms_);
 }
 
 void ProgressiveScheduler::on_rendered(double ms) {

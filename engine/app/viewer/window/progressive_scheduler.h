@@ -6,6 +6,7 @@
 ///   reused:      the probe moves and nothing that rays meet has changed: as good as the last frame (RenderSettings::reuse_rays)
 ///   refined:     time=MS: quarter -> half -> every pixel; error=E: the same until the estimated error of a frame is at most E;
 ///                draft, balanced, reference, step=VOXELS: that setting immediately
+/// Contours of opaque items are antialiased in refined frames only.
 #pragma once
 #include <array>
 #include <cmath>
@@ -20,8 +21,9 @@
 
 namespace catena::app {
 
-/// Default time for an interactive frame, milliseconds.
-inline constexpr double kFrameBudgetMs = 50;
+/// Default time for an interactive frame, milliseconds; time from frame to frame that is aimed at with the interface drawn over the image
+/// (15 frames per second); minimum time for the image where the interface takes most of it.
+inline constexpr double kFrameBudgetMs = 50, kFramePeriodMs = 1000.0 / 15, kMinFrameBudgetMs = 20;
 
 /// Requirements of the scene on ray casting.
 struct RayWorkload {
@@ -59,6 +61,8 @@ class ProgressiveScheduler {
   /// Returns whether the last frame is final.
   bool is_finished() const { return is_finished_; }
 
+  /// Reduces the default time for interactive frames to what the interface leaves of kFramePeriodMs. `ms`: time of the last interface.
+  void on_interface_drawn(double ms);
   /// Records the time of the last requested frame; the time of a reused frame does not count for its setting.
   void on_rendered(double ms);
   /// Returns whether, for error=E, the error of a refined frame must be estimated; set_estimate(), in 1/255, ends the refinement if it is
@@ -91,6 +95,7 @@ class ProgressiveScheduler {
   bool is_reused_ = false;  ///< The last request is from reused_frame().
   bool reuse_too_slow_ = false;
   double last_image_ms_ = 0;
+  double interface_ms_ = 0;  ///< moving average
   std::optional<double> rmse_;
 };
 

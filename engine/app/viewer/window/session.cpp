@@ -18,6 +18,7 @@ namespace catena::app {
 
 namespace {
 
+constexpr int kNewTableFrames = 3;  // the table, its scrollbar, and columns of its final width
 constexpr double kEstimateS = 0.6;  // seconds without a change after which the image error is estimated
 constexpr double kTitleS = 0.25;
 constexpr double kLiveS = 0.1;     // seconds between GUI frames that only show the haptic state
@@ -215,6 +216,7 @@ std::optional<Failure> Session::run() {
     // collect the changes since the last frame
     poll_time_steps();
     context_.state.show_error(context_.state.playback.advance(scene));
+    if (context_.state.appearance.measure.labels.collect()) settle_frames_ = kNewTableFrames;
     const bool opened = files_.poll_loaded();
     if (opened) {
       reset_tuning();

@@ -300,7 +300,9 @@ std::optional<Failure> Viewport::show(const std::function<void()>& make_panels) 
       shows_headset_eye_ && presenter_->has_image() ? fitted_area(pixel_rect_, presenter_->renderer().view_size()) : pixel_rect_;
   if (auto shown = presenter_->show(items); !shown) return Failure{1, shown.error().message};
   if (headset_session_) headset_session_->update_panel(*presenter_);
-  context_.frame_times.add_interface(ms_since(start));
+  const double interface_ms = ms_since(start);
+  context_.frame_times.add_interface(interface_ms);
+  context_.scheduler.on_interface_drawn(interface_ms);
   needs_redraw_ = false;
   return std::nullopt;
 }

@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "engine/field/derived/label_surface.h"
 #include "engine/field/measure/labels.h"
+#include "engine/geometry/mesh/isosurface.h"
 #include "tests/engine/field/field_helpers.h"
 
 namespace catena::mesh::measure_test {
@@ -103,8 +105,7 @@ TEST(MeasureSurface, AMaskAtTheCenterLeavesAnOpenHemisphere) {
       EXPECT_GT(surface.open_edges, 20u);
       errors.push_back(surface.area / (2 * pi) - 1);
       const auto parts = value_of(field::measure_parts(*grid, 0, field::Neighbors::all, 5, nullptr));
-      EXPECT_FALSE(
-          measure_part_surfaces(value_of(extract_isosurface(*grid, 0, OutwardSide::lower, "g")), grid->mapping(), parts)[0].is_closed);
+      EXPECT_FALSE(value_of(measure_isosurface(*grid, 0, parts, "g")).parts[0].is_closed);
     }
     expect_second_order(errors, "hemisphere area " + std::to_string(m));
   }
@@ -125,20 +126,81 @@ TEST(MeasureParts, TwoBallsHaveTheirOwnSurfaces) {
     const auto grid = sampled(mappings(n)[m], n, [&](const Vec3& p) {
       return std::max(first - norm(p - Vec3(-0.4, 0, 0)), second - norm(p - Vec3(0.75, 0.1, 0)));
     });
-    const auto surface = value_of(extract_isosurface(*grid, 0, OutwardSide::lower, "g"));
     for (const auto neighbors : {field::Neighbors::faces, field::Neighbors::all}) {
       const auto parts = value_of(field::measure_parts(*grid, 0, neighbors, 5, nullptr));
       ASSERT_EQ(parts.count, 2u);
-      const auto surfaces = measure_part_surfaces(surface, grid->mapping(), parts);
+      const auto surfaces = value_of(measure_isosurface(*grid, 0, parts, "g")).parts;
       EXPECT_NEAR(surfaces[0].area, 4 * pi * first * first, 0.005 * 4 * pi * first * first);
       EXPECT_NEAR(surfaces[1].area, 4 * pi * second * second, 0.01 * 4 * pi * second * second);
       EXPECT_EQ(surfaces[2].area, 0);
       EXPECT_TRUE(surfaces[0].is_closed && surfaces[1].is_closed);
       EXPECT_LT(norm(parts.parts[1].centroid(grid->mapping()) - kCenter - Vec3(0.75, 0.1, 0)), 0.01);
       const auto kept = value_of(field::measure_parts(*grid, 0, neighbors, 1, nullptr));
-      EXPECT_EQ(measure_part_surfaces(surface, grid->mapping(), kept)[1].area, surfaces[1].area);
+      EXPECT_EQ(value_of(measure_isosurface(*grid, 0, kept, "g")).parts[1].area, surfaces[1].area);
     }
   }
+}
+
+/// Whether each part is closed: no triangle of it has an edge without its opposite.
+std::vector<bool> closed_parts(const Isosurface& surface, const Mapping& mapping, const field::MeasuredParts& parts) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> net;
+  for (const Triangle& t : surface.triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++net[{t[k], t[(k + 1) % 3]}], --net[{t[(k + 1) % 3], t[k]}];
+  std::vector<bool> closed(parts.parts.size() + 1, true);
+  for (const Triangle& t : surface.triangles) {
+    std::optional<std::uint32_t> part;
+    for (std::size_t k = 0; k < 3 && !part; ++k) {
+      const Vec3 at = mapping.index_from_world(surface.vertices[t[k]]);
+      for (const double toward : {-0.4999999, 0.4999999})  // the two voxels of the edge
+        if (!part)
+          part = parts.map.part_at({int(std::lround(at.x + toward)), int(std::lround(at.y + toward)), int(std::lround(at.z + toward))});
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+      if (net[{t[k], t[(k + 1) % 3]}] != 0) closed[part.value_or(parts.parts.size())] = false;
+  }
+  return closed;
+}
+
+/// Noise whose values are often exactly the level, in a box that begins beside a block, with a mask.
+TEST(MeasureIsosurface, EqualsTheStoredSurfaceBitForBit) {
+  const Index3 n{21, 18, 27};
+  for (const double masked : {0.0, 0.02}) {
+    field::test::Random random(9);
+    const auto values = field::test::values_of(n, [&](int x, int y, int z) {
+      const bool inside = x > 1 && y > 1 && z > 1 && x < n.x - 2 && y < n.y - 2 && z < n.z - 2;
+      return inside ? std::floor(random.uniform(-1.2, 1.9)) + (x % 3 == 0 ? random.uniform(0, 0.4) : 0) : -1.0;
+    });
+    const auto valid = field::test::values_of<std::uint8_t>(n, [&](int, int, int) { return random.uniform(0, 1) >= masked; });
+    const Mapping mapping = centered(Mat3(3.2, 0.4, 0.1, -1.2, 3.6, 0.3, 0.5, -0.3, -3.1), 20);
+    const auto grid = field::make_scalar_grid("g", mapping, n, values, valid);
+    for (const double level : {0.0, 0.3}) {
+      const Isosurface stored = value_of(extract_isosurface(*grid, level, OutwardSide::lower, "g"));
+      const SurfaceMeasure whole = measure_surface(stored);
+      const auto parts = value_of(field::measure_parts(*grid, level, field::Neighbors::all, 40, nullptr));
+      const SurfaceMeasure blocks = value_of(measure_isosurface(*grid, level, parts, "g"));
+      EXPECT_EQ(blocks.area, whole.area);
+      EXPECT_EQ(blocks.open_edges, whole.open_edges);
+      EXPECT_EQ(blocks.open_edges > 0, masked > 0);
+      EXPECT_EQ(blocks.volume, whole.volume);
+      EXPECT_EQ(blocks.encloses_lower, whole.encloses_lower);
+      std::uint64_t triangles = 0;
+      const std::vector<bool> closed = closed_parts(stored, mapping, parts);
+      ASSERT_EQ(blocks.parts.size(), closed.size());
+      for (std::size_t p = 0; p < closed.size(); ++p) {
+        triangles += blocks.parts[p].triangles;
+        EXPECT_EQ(blocks.parts[p].is_closed, closed[p]) << p;
+      }
+      EXPECT_EQ(triangles, stored.triangles.size());
+    }
+  }
+}
+
+TEST(MeasureIsosurface, ALevelWithoutASurfaceIsAnError) {
+  const auto grid = sampled(mappings(8)[0], 8, [](const Vec3&) { return 2.0; });
+  const auto parts = value_of(field::measure_parts(*grid, 1, field::Neighbors::all, 1, nullptr));
+  const auto measured = measure_isosurface(*grid, 1, parts, "the isosurface");
+  ASSERT_FALSE(measured);
+  EXPECT_EQ(measured.error().message, extract_isosurface(*grid, 1, OutwardSide::lower, "the isosurface").error().message);
 }
 
 TEST(MeasureLabels, SurfacesEqualTheIsosurfacesOfTheIndicator) {
