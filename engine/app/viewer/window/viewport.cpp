@@ -13,6 +13,7 @@
 #include "engine/scene/to_json.h"
 #include "engine/scene/units.h"
 #include "engine/schema/values.h"
+#include "render/extract/clipped_away.h"
 #include "render/extract/extract.h"
 #include "render/extract/extract_internal.h"
 #include "render/image/image.h"
@@ -209,6 +210,9 @@ std::optional<Failure> Viewport::draw(const FrameRequest& next, bool for_file) {
     context_.state.show_message(packet.error().message, true);
     return std::nullopt;
   }
+  const bool was_clipped_away = std::exchange(is_clipped_away_, render::is_clipped_away(*packet));
+  if (is_clipped_away_ && !was_clipped_away)
+    context_.state.show_message("the clip planes leave nothing of the data; undo, or \"other side\" of a plane, brings it back", true);
   ProgressiveScheduler& pacing = context_.scheduler;
   if (pacing.needs_estimate()) {
     if (auto known = frame_builder_.estimate_error_if_needed(presenter_->renderer(), *packet, next); !known)

@@ -125,6 +125,7 @@ class Viewport {
   std::unique_ptr<HeadsetSession> headset_session_;  ///< Outlives the device created by its runtime.
   std::unique_ptr<Presenter> presenter_;
   std::array<std::uint32_t, 4> pixel_rect_{};  ///< Image area in framebuffer pixels: x0, y0, x1, y1.
+  bool is_clipped_away_ = false;               ///< The clip planes leave nothing of the data.
   bool is_pick_stale_ = true;                  ///< The pick under the pointer must be repeated.
   bool needs_redraw_ = false;
   bool probe_moved_late_ = false;
