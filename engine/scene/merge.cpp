@@ -122,7 +122,14 @@ Result<MergedScene> merge_scene(const std::string& open, const std::string& open
         if (section.name == "fields") result.fields.emplace_back(name, as);
       }
     if (section.layout == schema::Section::Layout::list)
-      for (const json::Node& item : part->items) result.edits.push_back({"/" + section.name + "/-", json::serialize_node(item)});
+      for (const json::Node& item : part->items) {
+        std::string text = json::serialize_node(item);
+        // a projection has no depth at which it could be mixed with another volume
+        if (section.name == "volumes" && host.find("volumes") != nullptr && item.find("projection") != nullptr) {
+          CATENA_TRY(text, json::remove_value(text, added_path, "/projection"));
+        }
+        result.edits.push_back({"/" + section.name + "/-", text});
+      }
   }
   return result;
 }

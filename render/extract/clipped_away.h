@@ -3,7 +3,6 @@
 #pragma once
 #include <span>
 
-#include "engine/base/export.h"
 #include "render/frame/frame_packet.h"
 
 namespace catena::render {
@@ -12,6 +11,6 @@ namespace catena::render {
 bool has_common_point(const Bounds& box, std::span<const Plane> planes);
 
 /// Returns whether the packet has data, all of which its clip planes cut away; judged by the bounds of each item.
-CATENA_EXPORT bool is_clipped_away(const FramePacket& packet);
+bool is_clipped_away(const FramePacket& packet);
 
 }  // namespace catena::render

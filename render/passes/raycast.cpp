@@ -295,6 +295,8 @@ bool rays_match(const FramePacket& a, const FramePacket& b) {
 const PassEntry kRaycastPass{"raycast", [](const Frame& frame) { return uses_raycast(frame.packet) || !frame.layers.empty(); },
                              RaycastPass::create, target::volume};
 
-Outcome check_ray_items(const FramePacket& packet) { return check(packet, 0, packet.volumes.size(), surfaces_of(packet), 0); }
+Outcome check_ray_items(const FramePacket& packet) {
+  return check(packet, needs_layers(packet) ? 1 : 0, packet.volumes.size(), surfaces_of(packet), 0);
+}
 
 }  // namespace catena::render

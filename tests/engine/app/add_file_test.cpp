@@ -29,6 +29,13 @@ TEST(AddFile, AddsAFieldAndItsVolumeUnderAnUnusedName) {
   EXPECT_EQ(added.fields, (std::vector<std::pair<std::string, std::string>>{{"density", "density_2"}}));
 }
 
+TEST(AddFile, AProjectionBesideAnotherVolumeBecomesAPlainVolume) {
+  const char* added = R"({"fields": {"n": {"file": "n.nrrd"}}, "volumes": [{"field": "n", "projection": "maximum", "shade": true}]})";
+  EXPECT_EQ(*merged(R"({"volumes": [{"field": "d"}]})", "/a/s.json", added, "/a/n.json").edits[1].value,
+            R"({"field": "n", "shade": true})");
+  EXPECT_EQ(*merged("{}", "/a/s.json", added, "/a/n.json").edits[1].value, R"({"field": "n", "projection": "maximum", "shade": true})");
+}
+
 TEST(AddFile, FilesInAnotherFolderHaveAbsolutePaths) {
   const auto added = merged("{}", "/a/s.json", R"({"fields": {"v": {"file": "x.vdb"}}, "streamlines": [{"field": "v"}]})", "/b/x.vdb.json");
   EXPECT_EQ(*added.edits[0].value, R"({"file": "/b/x.vdb"})");

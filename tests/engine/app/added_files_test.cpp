@@ -143,6 +143,11 @@ TEST_F(AddedFiles, AnEditThatCannotBeDrawnIsRefusedAndThePictureGoesOn) {
     EXPECT_EQ(objects_of(host), before);
     EXPECT_FALSE(host.document().can_undo());
   }
+  // the passes cannot mix a projection with another volume
+  const Outcome mixed = host.set("/volumes", R"([{"field": "scalar", "projection": "maximum"}, {"field": "scalar"}])", "add");
+  ASSERT_FALSE(mixed);
+  EXPECT_NE(mixed.error().message.find("projection"), std::string::npos) << mixed.error().message;
+  EXPECT_EQ(objects_of(host), before);
 }
 
 }  // namespace catena::app::added_files_test

@@ -113,6 +113,7 @@ TEST(Commands, ThePrintedListOfKeys) {
   EXPECT_EQ(key_help(), R"keys(left drag            orbit, or move the widget under the pointer
 middle, shift+left   pan
 wheel                zoom
+ctrl+shift+left      window and level of the first volume or slice
 1, 2, 3              look along +x, +y, +z at the whole scene; with shift along -x, -y, -z
 A, Home              fit the whole scene into the image, from the same direction
 O                    orthographic or perspective

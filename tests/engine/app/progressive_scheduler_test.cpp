@@ -172,10 +172,19 @@ TEST(ProgressiveScheduler, RefinementBetweenReusedImagesNeedsAShortTime) {
 TEST(ProgressiveScheduler, ASceneWithoutRaysIsRefinedAtMostOnce) {
   ProgressiveScheduler p = pacing("time=50");
   settle(p, kNoRays, 1);
-  EXPECT_FALSE(p.current().settings.smooth_edges) << "in motion";
-  const auto smoothed = rest(p, kNoRays, 1);
-  ASSERT_EQ(smoothed.size(), 1u) << "with antialiased contours";
-  EXPECT_TRUE(p.current().settings.smooth_edges);
+  EXPECT_TRUE(p.current().settings.smooth_edges) << "there is ample time";
+  EXPECT_TRUE(rest(p, kNoRays, 1).empty()) << "what moved was whole already";
+  ProgressiveScheduler busy = pacing("time=50");
+  settle(busy, kNoRays, 40);
+  EXPECT_FALSE(busy.current().settings.smooth_edges);
+  ASSERT_EQ(rest(busy, kNoRays, 40).size(), 1u);
+  EXPECT_TRUE(busy.current().settings.smooth_edges) << "at rest";
+  EXPECT_FALSE(busy.reused_frame().settings.smooth_edges) << "the probe moves";
+  busy.on_rendered(40);
+  const auto again = busy.refined_frame(kNoRays);
+  ASSERT_TRUE(again);
+  EXPECT_TRUE(again->settings.smooth_edges && again->settings.reuse_rays) << "at rest again";
+  EXPECT_FALSE(busy.refined_frame(kNoRays));
   ProgressiveScheduler slow = pacing("time=50");
   ASSERT_GT(settle(slow, kNoRays, 2000).pixel_stride, 1u);
   const auto all = rest(slow, kNoRays, 2000);

@@ -10,6 +10,7 @@
 #include "engine/base/json.h"
 #include "engine/base/text.h"
 #include "engine/field/field_display_range.h"
+#include "engine/io/volume/units.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/to_json.h"
@@ -96,6 +97,23 @@ bool can_show(const field::AnyField& field, ShowAs as) {
 
 namespace {
 
+/// Returns the colors in which the scene already shows the field; gray for an image of a patient; else `chosen`.
+scene::NamedColors shown_colors(const scene::Scene& scene, scene::Entity field, const scene::NamedColors& chosen) {
+  if (chosen.map.empty()) return chosen;  // labels
+  std::optional<scene::NamedColors> shown;
+  scene.entities.each<scene::Slice>([&](scene::Entity, const scene::Slice& slice) {
+    if (!shown && slice.color_by.field == field && slice.color_by.colors.empty()) shown = slice.color_by.named;
+  });
+  scene.entities.each<scene::Volume>([&](scene::Entity, const scene::Volume& volume) {
+    if (!shown && volume.field == field && !volume.transfer.named.map.empty()) shown = volume.transfer.named;
+  });
+  if (shown) return *shown;
+  scene::NamedColors colors = chosen;
+  const auto& file = scene.entities.get<scene::FieldSource>(field).file;
+  if (file && field::read_units(file->path, file->grid).is_patient_space) colors.map = "grey";
+  return colors;
+}
+
 std::string make_item_json(const scene::Scene& scene, scene::Entity field, const field::AnyField& values, ShowAs as,
                            const std::vector<float>& sorted) {
   const Domain domain = domain_of(*values.get());
@@ -119,9 +137,11 @@ std::string make_item_json(const scene::Scene& scene, scene::Entity field, const
     case ShowAs::slice: {
       scene::Slice slice;
       slice.color_by = colors;
+      slice.color_by.named = shown_colors(scene, field, colors.named);
       slice.color_by.field = field;
       slice.point = {0, 0, middle.z};
-      if (values.scalar && !colors.named.map.empty()) slice.color_by.named.range = narrow_range_in_plane(*values.scalar, middle.z);
+      if (values.scalar && !slice.color_by.named.map.empty() && !slice.color_by.named.range)
+        slice.color_by.named.range = narrow_range_in_plane(*values.scalar, middle.z);
       return scene::to_json(scene, slice);
     }
     case ShowAs::glyphs: {
@@ -249,7 +269,10 @@ Result<std::string> make_widget_json(const scene::Scene& scene, const std::strin
   const std::string name = new_widget_name(scene, type);
 
   const Vec3 middle = bounds.empty() ? Vec3(0.0) : bounds.center(), size = bounds.empty() ? Vec3(1.0) : bounds.hi - bounds.lo;
-  const Vec3 half = kind == Kind::box ? size * 0.25 : Vec3(0.25 * max_abs(size), 0, 0);
+  Vec3 half = 0.25 * size;
+  if (kind != Kind::box)  // along the longest edge
+    for (int axis = 0, longest = size.y > size.x ? (size.z > size.y ? 2 : 1) : (size.z > size.x ? 2 : 0); axis < 3; ++axis)
+      if (axis != longest) half[axis] = 0;
   const bool two_ends = kind == Kind::rake || kind == Kind::ruler || kind == Kind::box;
   scene::Widget widget;
   widget.spec.kind = kind;

@@ -45,6 +45,7 @@ constexpr CommandRow kCommandRows[] = {
     by_pointer(kEye, "left drag", "orbit, or move the widget under the pointer"),
     by_pointer(kEye, "middle, shift+left", "pan"),
     by_pointer(kEye, "wheel", "zoom"),
+    by_pointer(kEye, "ctrl+shift+left", "window and level of the first volume or slice"),
     {Action::view_along_plus_x, "+x", alone(GLFW_KEY_1), kNoChord, kEye, "look along +x"},
     {Action::view_along_plus_y, "+y", alone(GLFW_KEY_2), kNoChord, nullptr, "+y"},
     {Action::view_along_plus_z, "+z", alone(GLFW_KEY_3), kNoChord, nullptr, "+z at the whole scene; with shift along -x, -y, -z"},

@@ -2,6 +2,7 @@
 #include "engine/app/viewer/panels/color_widgets.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 #include "engine/field/field_display_range.h"
@@ -20,7 +21,9 @@ std::optional<std::string> choose_color_map(const std::string& now, const char* 
   const bool reversed = now.ends_with("_r");
   const std::string base = reversed ? now.substr(0, now.size() - 2) : now;
   std::optional<std::string> chosen;
-  ImGui::SetNextItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
+  constexpr float kListWidth = 180, kMaxListHeight = 420;  // the longest name beside its preview
+  ImGui::SetNextItemWidth(0.42f * ImGui::GetContentRegionAvail().x);
+  ImGui::SetNextWindowSizeConstraints({kListWidth, 0}, {FLT_MAX, kMaxListHeight});
   if (ImGui::BeginCombo("##map", now.empty() ? otherwise : base.c_str())) {
     for (const std::string_view name : scene::color_map_names()) {
       const std::string word(name);
@@ -62,11 +65,26 @@ std::optional<scene::ValueMapping> choose_mapping(const scene::ValueMapping& now
   return chosen;
 }
 
-std::array<double, 2> first_threshold(const scene::NamedColors& named, const field::AnyField& shown) {
-  if (named.range || !shown.scalar || !shown.scalar->is_grid()) return named.range.value_or(std::array{0.0, 1.0});
-  const DisplayRange& range = field::display_range(*shown.scalar->grid());
-  return {range.lo, range.hi};
+std::array<double, 2> first_threshold(const field::AnyField& shown) {
+  if (!shown.scalar || !shown.scalar->is_grid()) return {0.0, 1.0};
+  return {shown.scalar->min_value(), shown.scalar->max_value()};
 }
+
+namespace {
+
+/// Returns the display range of the field that colors an item, else of the item's own field, whose magnitude is the speed; else 0 to 1.
+std::array<double, 2> shown_range(const scene::Scene& scene, const json::Node& item, const scene::ColorBy& by) {
+  scene::Entity field = by.field;
+  if (const json::Node* name = item.find("field"); !field && name != nullptr) field = scene::find_field(scene, name->string);
+  if (!field) return {0.0, 1.0};
+  const scene::FieldSource& source = scene.entities.get<scene::FieldSource>(field);
+  const field::AnyField& values = source.rendered.get() != nullptr ? source.rendered : source.loaded;
+  if (values.get() == nullptr || !values.get()->is_grid()) return {0.0, 1.0};
+  const DisplayRange range = field::display_range(values);
+  return scene::is_color_range(range.lo, range.hi) ? std::array{range.lo, range.hi} : std::array{0.0, 1.0};
+}
+
+}  // namespace
 
 void edit_threshold(Edits& edits, const std::string& pointer, const Threshold& threshold, const std::array<double, 2>& data) {
   ImGui::PushID("threshold");
@@ -119,7 +137,7 @@ void edit_color_scale(Edits& edits, const scene::Scene& scene, const json::Node&
       if (ImGui::Checkbox("##own", &own)) edits.remove(pointer + "/range", "range");
       show_short_tooltip("off: the range of the field's values");
     } else if (ImGui::Checkbox("own range", &own)) {
-      edits.set(pointer + "/range", "[0, 1]", "range");
+      edits.set(pointer + "/range", scene::to_json(shown_range(scene, item, by)), "range");
     }
   }
   if (const auto mapping = choose_mapping(named.mapping, 0)) {
@@ -130,7 +148,7 @@ void edit_color_scale(Edits& edits, const scene::Scene& scene, const json::Node&
               "mapping");
   }
   const field::AnyField shown = by.field ? scene.entities.get<scene::FieldSource>(by.field).rendered : field::AnyField{};
-  edit_threshold(edits, pointer + "/threshold", named.threshold, first_threshold(named, shown));
+  edit_threshold(edits, pointer + "/threshold", named.threshold, first_threshold(shown));
   ImGui::PopID();
 }
 

@@ -25,8 +25,8 @@ void edit_colors(Edits& edits, const scene::Scene& scene, const json::Node& item
 /// Draws a combo box of the color maps. Returns the chosen name, with "_r" if reversed; nothing if unchanged.
 std::optional<std::string> choose_color_map(const std::string& now, const char* otherwise);
 /// Draws the ranges of shown values; `pointer`: the key "threshold"; `data`: the range that a first threshold states.
-/// first_threshold() returns the range of the colors, else of the field's values, else 0 to 1.
-std::array<double, 2> first_threshold(const scene::NamedColors& named, const field::AnyField& shown);
+/// first_threshold() returns the range of all values of a grid, else 0 to 1.
+std::array<double, 2> first_threshold(const field::AnyField& shown);
 void edit_threshold(Edits& edits, const std::string& pointer, const Threshold& threshold, const std::array<double, 2>& data);
 /// Draws a combo box of the scales between points, and the linear part of symlog (`linear_below`: its resolved value). Returns the choice;
 /// nothing if unchanged.

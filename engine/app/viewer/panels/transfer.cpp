@@ -278,7 +278,8 @@ void draw_choices(Editor& editor) {
   edit_boolean(editor.edits, "shade", editor.volume.shaded, item_pointer(editor.volume.where) + "/shade");
   const scene::NamedColors& named = editor.volume.transfer.named;
   ImGui::SameLine();
-  edit_threshold(editor.edits, item_pointer(editor.volume.where) + "/threshold", named.threshold, reach);
+  edit_threshold(editor.edits, item_pointer(editor.volume.where) + "/threshold", named.threshold,
+                 first_threshold(scene::rendered_field(editor.context.scene.scene(), editor.volume.field)));
   if (!editor.volume.transfer.gradient_factors.empty()) ImGui::TextDisabled("gradient opacity: edit in the file");
 }
 

@@ -8,6 +8,7 @@
 #include "engine/base/threads.h"
 #include "engine/scene/prepare.h"
 #include "render/extract/extract.h"
+#include "render/passes/renderer.h"
 
 namespace catena::app {
 
@@ -127,8 +128,8 @@ Outcome SceneModel::edit_document(const std::function<Outcome(scene::Document&)>
 SceneModel::Validator SceneModel::make_validator(const HapticSession& hand) {
   return [&hand](scene::Scene& edited) -> Outcome {
     CATENA_CHECK(hand.validate(edited));
-    CATENA_CHECK(render::make_frame(edited, 16, 16));
-    return Done{};
+    CATENA_TRY(const render::FramePacket packet, render::make_frame(edited, 16, 16));
+    return render::check_ray_items(packet);
   };
 }
 

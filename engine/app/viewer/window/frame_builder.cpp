@@ -65,7 +65,7 @@ std::optional<FrameRequest> FrameBuilder::next_frame(bool moved, bool probe_move
   const FrameRequest next = frame_after_probe_motion(width, height);
   if (!next.settings.reuse_rays) mark_changed();
   // also refine during probe motion if time permits
-  if (next.settings.reuse_rays && rested_s >= kRefineDelayS && scheduler_.may_refine())
+  if (next.settings.reuse_rays && rested_s >= kRefineDelayS && scheduler_.may_refine() && !scheduler_.is_finished())
     if (auto better = refined_frame()) {
       discard_prebuilt();  // it may have fewer pixels
       return better;

@@ -9,8 +9,9 @@
 namespace catena::app {
 namespace {
 
-constexpr double kKeptBudgets = 3;       // frame budgets allowed for a frame that reuses rays, at its best quality
-constexpr double kStandingBudgets = 20;  // frame budgets allowed for a refined frame of exact rays
+constexpr double kKeptBudgets = 3;                       // frame budgets allowed for a frame that reuses rays, at its best quality
+constexpr double kStandingBudgets = 20;                  // frame budgets allowed for a refined frame of exact rays
+constexpr double kSmoothBelow = 0.2, kPlainAbove = 0.6;  // fractions of the budget: frames in motion get, and lose, antialiased contours
 constexpr double kFinerBelow = 0.7;  // fraction of the budget: hysteresis for increasing the pixel count, which would otherwise oscillate
 
 bool is_goal(const Quality& quality) { return quality.goal.has_value(); }
@@ -41,7 +42,7 @@ FrameRequest ProgressiveScheduler::request(const render::RefinementStep& step, s
   awaits_time_ = true;
   rmse_.reset();
   current_ = {step.settings, scale};
-  current_.settings.smooth_edges = !is_interactive_;
+  current_.settings.smooth_edges = !is_interactive_ || smooths_in_motion_;
   return current_;
 }
 
@@ -58,12 +59,20 @@ FrameRequest ProgressiveScheduler::interactive_frame(const RayWorkload& kind) {
 std::optional<FrameRequest> ProgressiveScheduler::refined_frame(const RayWorkload& kind) {
   set_workload(kind);
   reuse_too_slow_ = false;
-  if (is_finished_) return std::nullopt;
+  if (is_finished_ && current_.settings.smooth_edges) return std::nullopt;
+  if (is_finished_) {  // frames after it reused its rays without antialiased contours
+    current_.settings.smooth_edges = true;
+    FrameRequest next = current_;
+    next.settings.reuse_rays = true;
+    return next;
+  }
   const std::uint32_t scale = current_.pixel_stride;
   if (!is_goal(quality_) || !kind.uses_rays) {
     is_finished_ = true;
+    const bool shown = is_interactive_ && scale == 1 && !kind.uses_rays && current_.settings.smooth_edges;
     is_interactive_ = awaits_time_ = false;
     rmse_.reset();
+    if (shown) return std::nullopt;
     current_ = {quality_.settings, 1};
     current_.settings.smooth_edges = true;
     return current_;
@@ -84,6 +93,7 @@ FrameRequest ProgressiveScheduler::reused_frame() {
   // the time of this frame does not represent its setting
   awaits_time_ = false;
   is_reused_ = true;
+  current_.settings.smooth_edges = smooths_in_motion_;
   FrameRequest next = current_;
   next.settings.reuse_rays = true;
   return next;
@@ -110,6 +120,10 @@ void ProgressiveScheduler::on_interface_drawn(double ms) {
 
 void ProgressiveScheduler::on_rendered(double ms) {
   last_image_ms_ = ms;
+  if (is_interactive_ || is_reused_) {
+    if (ms < kSmoothBelow * budget_ms_) smooths_in_motion_ = true;
+    if (current_.settings.smooth_edges && ms > kPlainAbove * budget_ms_) smooths_in_motion_ = false;
+  }
   if (std::exchange(is_reused_, false) && ms > kKeptBudgets * budget_ms_) reuse_too_slow_ = true;
   if (awaits_time_) refinement_.record_render_ms(ms * current_.pixel_stride * current_.pixel_stride);
   awaits_time_ = false;

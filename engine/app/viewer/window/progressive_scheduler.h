@@ -6,7 +6,7 @@
 ///   reused:      the probe moves and nothing that rays meet has changed: as good as the last frame (RenderSettings::reuse_rays)
 ///   refined:     time=MS: quarter -> half -> every pixel; error=E: the same until the estimated error of a frame is at most E;
 ///                draft, balanced, reference, step=VOXELS: that setting immediately
-/// Contours of opaque items are antialiased in refined frames only.
+/// Contours of opaque items are antialiased in refined frames, and in motion where there is ample time.
 #pragma once
 #include <array>
 #include <cmath>
@@ -94,6 +94,7 @@ class ProgressiveScheduler {
   bool is_finished_ = false;
   bool is_reused_ = false;  ///< The last request is from reused_frame().
   bool reuse_too_slow_ = false;
+  bool smooths_in_motion_ = false;  ///< Frames in motion have antialiased contours.
   double last_image_ms_ = 0;
   double interface_ms_ = 0;  ///< moving average
   std::optional<double> rmse_;

@@ -225,6 +225,11 @@ std::optional<Failure> Viewport::draw(const FrameRequest& next, bool for_file) {
   // falls back to the embedded shaders if those of --shaders fail
   if (!drawn && reload_ && reload_->fall_back(presenter_->renderer(), drawn.error().message))
     drawn = presenter_->draw(*packet, next.settings);
+  if (!drawn && context_.frame_times.count() > 0 && !drawn.error().system_failure && !presenter_->renderer().device().is_lost()) {
+    // what cannot be drawn together comes from an edit: the last image stays
+    context_.state.show_message(drawn.error().message, true);
+    return std::nullopt;
+  }
   if (!drawn) return Failure{1, drawn.error().message};
   const bool recovered = presenter_->recovery_count() != recoveries;
   if (recovered) context_.state.show_message("the graphics device was lost and restarted", true);
