@@ -32,10 +32,7 @@ constexpr const char* kHost = R"(// mine
 
 SceneModel open(const std::string& path) {
   SceneModel model = value_of(SceneModel::open(value_of(scene::Document::open(path)), {}));
-  model.set_validator([](scene::Scene& edited) -> Outcome {
-    CATENA_CHECK(render::make_frame(edited, 16, 16));
-    return Done{};
-  });
+  model.set_validator(check_drawable);
   return model;
 }
 

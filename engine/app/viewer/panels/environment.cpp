@@ -83,6 +83,8 @@ void draw_scene_view(PanelContext& context) {
         edits.drag("/fog", "{\"max_opacity\": " + value + "}", "fog");
     }
   }
+  edit_vector(edits, "stretch", "/stretch", scene.stretch, 0);
+  show_short_tooltip("factors of the image along x, y and z; measuring and forces stay in world units; A shows everything");
   choose_projection(context);
   show_short_tooltip("key O switches the projection");
   choose_stereo(context);

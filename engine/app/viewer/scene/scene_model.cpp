@@ -125,11 +125,15 @@ Outcome SceneModel::edit_document(const std::function<Outcome(scene::Document&)>
   return Done{};
 }
 
+Outcome check_drawable(scene::Scene& scene) {
+  CATENA_TRY(const render::FramePacket packet, render::make_frame(scene, 16, 16));
+  return render::check_ray_items(packet);
+}
+
 SceneModel::Validator SceneModel::make_validator(const HapticSession& hand) {
   return [&hand](scene::Scene& edited) -> Outcome {
     CATENA_CHECK(hand.validate(edited));
-    CATENA_TRY(const render::FramePacket packet, render::make_frame(edited, 16, 16));
-    return render::check_ray_items(packet);
+    return check_drawable(edited);
   };
 }
 

@@ -93,6 +93,9 @@ struct LoadedScene {
 /// Loads a scene synchronously; any thread, since it owns its scene. Size in pixels. An Error, one line, if something cannot be loaded.
 Result<LoadedScene> load_scene(SceneModel host, std::uint32_t width, std::uint32_t height);
 
+/// Loads what the scene shows. An Error if it cannot be drawn.
+Outcome check_drawable(scene::Scene& scene);
+
 /// Loads one scene at a time on its own thread; the destructor waits for it.
 class SceneLoader {
  public:

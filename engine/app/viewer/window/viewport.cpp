@@ -71,7 +71,11 @@ bool Viewport::update_layout() {
   context_.window.size(width, height);
   presenter_->size(frame_width, frame_height);
   ViewState& state = context_.state;
-  context_.navigation.view.stretch = std::as_const(context_.scene).scene().stretch;  // an edit may have changed it
+  Navigation& navigation = context_.navigation;
+  if (const Vec3 stretch = std::as_const(context_.scene).scene().stretch; navigation.view.stretch != stretch) {  // by an edit
+    navigation.view.stretch = stretch;
+    navigation.bounds = context_.scene.bounds.scaled(stretch);
+  }
   state.image_area = compute_image_area(width, height, state.show_panels ? interface_insets() : Insets{});
   const auto before = pixel_rect_;
   if (frame_width > 0 && frame_height > 0) pixel_rect_ = to_pixel_rect(state.image_area, width, height, frame_width, frame_height);
