@@ -144,10 +144,11 @@ void prepare_stretch(scene::Scene& scene) {
   if (scene.stretch == Vec3(1.0)) return;
   if (!scene.cache.has<StretchCache>(kOwner)) scene.cache.emplace<StretchCache>(kOwner);
   auto& data = scene.cache.get<StretchCache>(kOwner).data;
-  if (!data || data->stretch != scene.stretch) data = std::make_shared<StretchedData>(scene.stretch);
+  if (!data || data->stretch != scene.stretch) data = std::make_shared<StretchedData>(StretchedData{scene.stretch, {}, {}, {}});
 }
 
 void stretch_cursor(const Vec3& stretch, double scale, CursorItem& cursor) {
+  if (stretch == Vec3(1.0)) return;
   cursor.probe *= stretch;
   for (Vec3& p : cursor.proxies) p *= stretch;
   if (cursor.foot_point) *cursor.foot_point *= stretch;

@@ -116,6 +116,12 @@ TEST_F(PlaneInput, ControlAndWheelZoomAboutThePointerAndAMiddleDragMovesTheImage
   EXPECT_EQ(controls_.ortho.zoom, 1) << "shows everything";
 }
 
+TEST_F(PlaneInput, AnAreaOfLessThanAPixelHasACamera) {
+  const Area area{0, 0, 0.5, 0.5};
+  EXPECT_TRUE(is_finite(plane_point(*packet_.planes[0], area, 0, 0)));
+  EXPECT_TRUE(is_finite(render::pixel_ray(make_area_camera(packet_.view, 0, 0), 0, 0).direction));
+}
+
 TEST_F(PlaneInput, InProbeModeTheProbeMovesInThePlane) {
   controls_.ortho.focus = Vec3(0, 0, 0.5);
   draw();

@@ -25,7 +25,7 @@ Vec3 rotated(const Vec3& v, const Vec3& axis, double angle) {
 }
 
 render::Camera make_viewport_camera(const render::View& view, const Input& input) {
-  return render::make_camera(view, std::max(1.0, input.width), std::max(1.0, input.height), Bounds());
+  return make_area_camera(view, input.width, input.height);
 }
 
 void pan(render::View& view, const Input& input) {
@@ -77,6 +77,10 @@ void look_along(Navigation& controls, std::string_view axis, double aspect) {
 }
 
 }  // namespace
+
+render::Camera make_area_camera(const render::View& view, double width, double height) {
+  return render::make_camera(view, std::max(1.0, width), std::max(1.0, height), Bounds());
+}
 
 Vec3 compliant_motion(const Vec3& motion, const Vec3& force_n, double max_force_n) {
   constexpr double kMinimum = 0.25;

@@ -67,6 +67,8 @@ struct NavigationChanges {
   bool any() const { return view || probe; }
 };
 
+/// Returns the camera of a view in an area of a window, in whose pixels its positions are. The area may be as small as it likes.
+render::Camera make_area_camera(const render::View& view, double width, double height);
 /// Applies an input segment and returns what changed.
 NavigationChanges apply(Navigation& controls, const Input& input);
 /// Starts probe mode: moves the probe to the pointer hit, if there is one.

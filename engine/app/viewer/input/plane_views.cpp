@@ -41,7 +41,8 @@ int page_view_at(const Area& page, double x, double y) {
 }
 
 Vec3 plane_point(const render::FramePacket& plane, const Area& area, double x, double y) {
-  const render::Camera camera = render::make_display_camera(plane.view, area.width, area.height, Bounds());
+  render::Camera camera = make_area_camera(plane.view, area.width, area.height);
+  camera.stretch = Vec3(1.0);  // the slice is in display units
   const render::Ray ray = render::pixel_ray(camera, x - area.x, y - area.y);
   const render::SliceItem& slice = plane.slices.front();
   const double distance = dot(slice.point - ray.origin, slice.normal) / dot(ray.direction, slice.normal);

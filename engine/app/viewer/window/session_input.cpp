@@ -324,8 +324,8 @@ NavigationChanges Session::process_segment(Input piece) {
     const auto under = viewport_.pick_under_pointer();
     controls.pointer_hit = under ? std::optional(under->world) : std::nullopt;
   }
-  if (drag_window_level(input) || drag_widget(input, render::make_camera(controls.view, input.width, input.height, Bounds()),
-                                              [&] { return viewport_.widget_at(input.x, input.y); }))
+  if (drag_window_level(input) ||
+      drag_widget(input, make_area_camera(controls.view, input.width, input.height), [&] { return viewport_.widget_at(input.x, input.y); }))
     input.dx = input.dy = 0;
   return apply(controls, input);
 }
@@ -398,7 +398,7 @@ std::optional<NavigationChanges> Session::process_plane_input(const Input& input
   if (!plane_ || gui_captures_pointer_ || (!pressed && gui_.covers(input.x, input.y))) return std::nullopt;
   // the plane may have moved since the press
   if (const auto now = viewport_.plane_at(plane_->area.x + 1, plane_->area.y + 1)) plane_ = now;
-  const render::Camera camera = render::make_camera(plane_->plane->view, plane_->area.width, plane_->area.height, Bounds());
+  const render::Camera camera = make_area_camera(plane_->plane->view, plane_->area.width, plane_->area.height);
   Input there = input;
   there.x -= plane_->area.x;
   there.y -= plane_->area.y;

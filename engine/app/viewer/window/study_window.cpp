@@ -144,7 +144,7 @@ void StudyWindow::place_probe_under_pointer() {
   if (!context_.haptic_session.is_mouse()) return;
   Navigation& controls = context_.navigation;
   const Area& area = context_.state.image_area;
-  const render::Camera camera = render::make_camera(controls.view, area.width, area.height, Bounds());
+  const render::Camera camera = make_area_camera(controls.view, area.width, area.height);
   const auto start = render::project(camera, session_.trial().start_position());
   if (!start) return;
   const std::array<double, 2> at = last_pointer_.value_or(std::array<double, 2>{0.5 * area.width, 0.5 * area.height});

@@ -398,7 +398,7 @@ bool Viewport::shows_single_view() const {
 std::optional<WidgetPart> Viewport::widget_at(double x, double y) const {
   if (context_.navigation.probe_mode || context_.navigation.fly || !shows_single_view()) return std::nullopt;
   const Area area = view_area();
-  const render::Camera camera = render::make_camera(context_.navigation.view, area.width, area.height, Bounds());
+  const render::Camera camera = make_area_camera(context_.navigation.view, area.width, area.height);
   const auto part = find_widget_part(std::as_const(context_.scene).scene(), context_.scene.bounds, camera, x, y);
   if (!part) return std::nullopt;
   const auto seen = frame_builder_.pick_at(x / area.width, y / area.height);
