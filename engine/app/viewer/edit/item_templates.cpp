@@ -269,10 +269,12 @@ Result<std::string> make_widget_json(const scene::Scene& scene, const std::strin
   const std::string name = new_widget_name(scene, type);
 
   const Vec3 middle = bounds.empty() ? Vec3(0.0) : bounds.center(), size = bounds.empty() ? Vec3(1.0) : bounds.hi - bounds.lo;
-  Vec3 half = 0.25 * size;
-  if (kind != Kind::box)  // along the longest edge
-    for (int axis = 0, longest = size.y > size.x ? (size.z > size.y ? 2 : 1) : (size.z > size.x ? 2 : 0); axis < 3; ++axis)
-      if (axis != longest) half[axis] = 0;
+  int longest = 0;
+  for (const int axis : {1, 2})
+    if (size[axis] > size[longest]) longest = axis;
+  Vec3 half(0.0);
+  half[longest] = 0.25 * size[longest];
+  if (kind == Kind::box) half = 0.25 * size;
   const bool two_ends = kind == Kind::rake || kind == Kind::ruler || kind == Kind::box;
   scene::Widget widget;
   widget.spec.kind = kind;
