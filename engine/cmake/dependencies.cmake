@@ -89,6 +89,16 @@ else()
   message(STATUS "Files of VTK, ITK and NumPy's .npz will not be read: libvtk9-dev, libinsighttoolkit5-dev, libgdcm-dev, libgiftiio-dev, libnetcdf-dev or libzip-dev is missing")
 endif()
 
+# What catena-read-chunks reads with: optional. HDF5 is the serial build, since a process must not hold two.
+pkg_check_modules(CHUNKS IMPORTED_TARGET blosc liblz4 libzstd zlib libtiff-4 hdf5-serial expat)
+set(CATENA_CHUNKS ${CHUNKS_FOUND})
+if(CATENA_CHUNKS)
+  add_library(catena_chunks INTERFACE)
+  target_link_libraries(catena_chunks INTERFACE PkgConfig::CHUNKS)
+else()
+  message(STATUS "Zarr, HDF5 and TIFF will not be read: libblosc-dev, liblz4-dev, libzstd-dev, libtiff-dev, libhdf5-dev or libexpat1-dev is missing")
+endif()
+
 # Headsets: the headers alone, since the loader is opened when one is asked for. Optional.
 find_path(OPENXR_INCLUDE_DIR openxr/openxr_platform.h)
 set(CATENA_XR ON)

@@ -10,10 +10,10 @@
 
 namespace catena::io {
 
-// all formats, each defined in the file of its reader; remote_formats: those that catena-read-vtk reads
+// all formats, each defined in the file of its reader; remote_formats: those that catena-read-vtk reads, store_formats: catena-read-chunks
 Format vdb_format(), nifti_format(), raw_format(), npy_format(), stl_format(), obj_format(), tck_format(), trk_format(), csv_format(),
     table_format();
-std::vector<Format> remote_formats();
+std::vector<Format> remote_formats(), store_formats();
 
 namespace {
 
@@ -21,7 +21,8 @@ std::vector<Format>& registry() {
   static std::vector<Format> all = [] {
     std::vector<Format> rows{vdb_format(), nifti_format(), raw_format(), npy_format(), stl_format(),
                              obj_format(), tck_format(),   trk_format(), csv_format(), table_format()};
-    for (Format& row : remote_formats()) rows.push_back(std::move(row));
+    for (std::vector<Format> more : {remote_formats(), store_formats()})
+      for (Format& row : more) rows.push_back(std::move(row));
     return rows;
   }();
   return all;
@@ -77,6 +78,8 @@ const Format* find_reader(std::string_view path, DataKind kind) {
   if (const Format* format = find_format(path)) return format->reads(kind) ? format : nullptr;
   std::error_code code;
   if (kind != DataKind::volume || (!std::filesystem::is_directory(path, code) && !field::has_dicom_magic(path))) return nullptr;
+  for (const Format& format : registry())
+    if (format.volume.recognizes_folder != nullptr && format.volume.recognizes_folder(std::string(path))) return &format;
   const auto found = std::ranges::find_if(registry(), [](const Format& format) { return format.volume.reads_folders; });
   return found == registry().end() ? nullptr : &*found;
 }

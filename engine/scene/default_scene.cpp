@@ -315,6 +315,12 @@ Result<DefaultScene> make_default_scene(const std::string& path, const std::stri
 
 FileSummary summarize_file(const std::string& path, const std::string& grid, int step) {
   FileSummary summary;
+  const std::string file = request_at(path, step).path;
+  if (const io::Format* format = io::find_reader(file, io::DataKind::volume); format != nullptr && format->volume.reads_parts) {
+    if (format->volume.notes != nullptr) summary.lines = format->volume.notes(file);
+    summary.steps = list_time_steps(path, {});
+    return summary;
+  }
   const auto default_scene = make_default_scene(path, grid, {}, step);
   if (!default_scene) return summary;
   if (!default_scene->note.empty()) summary.lines.push_back(default_scene->note);

@@ -41,9 +41,21 @@ std::string json_of_grid(const std::string& path, const field::GridInfo& g) {
       .add_if_not_empty("unit", units.value)
       .add_if_not_empty("length_unit", units.length)
       .add("patient", units.is_patient_space);
-  out.add("world_box", field::world_bounds(g.mapping, {lowest, lowest + size - Vec3(1.0)}))
-      .add("active_" + std::string(field::to_string(g.element_kind)), g.stats.active_voxels);
-  if (g.is_usable) {
+  out.add("world_box", field::world_bounds(g.mapping, {lowest, lowest + size - Vec3(1.0)}));
+  const auto size_of = [](const field::Size3& n) {
+    return to_json_value(Vec3(static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z)));
+  };
+  std::vector<std::string> levels;
+  for (const field::LevelInfo& level : g.levels)
+    levels.push_back(JsonObject().add_raw("size", size_of(level.size)).add_raw("chunk", size_of(level.chunk)).text());
+  if (levels.empty())
+    out.add("active_" + std::string(field::to_string(g.element_kind)), g.stats.active_voxels);
+  else
+    out.add_raw("levels", json_array(levels));
+  if (g.window.size() == 2) out.add_raw("window", json_array({to_json_value(g.window[0]), to_json_value(g.window[1])}));
+  if (g.color >= 0) out.add("color", fmt::format("#{:06x}", g.color));
+  if (g.range_level > 0) out.add("range_level", std::uint64_t{static_cast<std::uint32_t>(g.range_level)});
+  if (g.is_usable && g.range_level >= 0) {
     out.add_raw("range", json_array({to_json_value(g.stats.min), to_json_value(g.stats.max)}));
     out.add_raw("display_range", json_array({to_json_value(g.display_range.lo), to_json_value(g.display_range.hi)}));
     if (g.is_vector)

@@ -114,6 +114,21 @@ Outcome print_steps(const std::string& path, const scene::TimeSteps& steps, int 
   return Done{};
 }
 
+/// Prints the levels of a grid in a store of chunks, and what is known of its values.
+void print_levels(const field::GridInfo& g) {
+  const auto text = [](const field::Size3& n) { return fmt::format("{} {} {}", n.x, n.y, n.z); };
+  fmt::print("  levels       {}\n", g.levels.size());
+  for (std::size_t level = 0; level < g.levels.size(); ++level)
+    fmt::print("    {:<10} {} voxels, chunks of {}\n", level, text(g.levels[level].size), text(g.levels[level].chunk));
+  if (g.window.size() == 2) fmt::print("  window       {} .. {}\n", format_readable(g.window[0]), format_readable(g.window[1]));
+  if (g.color >= 0) fmt::print("  colour       #{:06x}\n", g.color);
+  if (g.range_level < 0)
+    fmt::print("  range        not known without reading all values\n");
+  else
+    fmt::print("  range        {}{}\n", format_range(g.display_range),
+               g.levels.size() > 1 ? fmt::format(" (level {})", g.range_level) : "");
+}
+
 Outcome describe_file(const std::string& path, const std::string& grid, int step) {
   const field::LoadRequest at = scene::request_at(path, step);
   CATENA_TRY(const std::vector<field::GridInfo> grids, read_grid_infos(at.path, grid, at.step));
@@ -134,6 +149,10 @@ Outcome describe_file(const std::string& path, const std::string& grid, int step
     const Vec3 edges(static_cast<double>(g.size.x - 1), static_cast<double>(g.size.y - 1), static_cast<double>(g.size.z - 1));
     const Bounds box = field::world_bounds(g.mapping, {lowest, lowest + edges});
     fmt::print("  world box    {} .. {}\n", format_position(box.lo), format_position(box.hi));
+    if (!g.levels.empty()) {
+      print_levels(g);
+      continue;
+    }
     fmt::print("  active       {} {}\n", g.stats.active_voxels, field::to_string(g.element_kind));
     if (g.is_usable) {
       fmt::print("  {}        {}\n", g.is_vector ? "speed" : "range", format_range(g.display_range));

@@ -172,7 +172,7 @@ bool seccomp(bool opens_files, bool raises_time) {
 }  // namespace
 
 Result<field::SandboxStatus> enter_sandbox(const ProcessLimits& limits, bool* root_changed) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (limits.ends_with_starter) ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   ::prctl(PR_SET_DUMPABLE, 0);
   set_limits(limits);
   field::SandboxStatus confinement;

@@ -110,6 +110,8 @@ void add_images_beside(const std::string& path, std::set<FileId>& files) {
 }  // namespace
 
 std::vector<FileId> find_data_files(const std::string& path) {
+  const io::Format* format = io::find_reader(path, io::DataKind::volume);
+  if (format != nullptr && format->volume.files != nullptr) return format->volume.files(path);
   static_cast<void>(read_file_metadata(path));  // the files that it opens are recorded, even if it fails
   std::set<FileId> files = files_opened_by_readers(path);
   if (names_files(path)) add_named(path, files);

@@ -166,7 +166,7 @@ void count_grid() { ++grids; }
 void count_mask() { ++masks; }
 LoadCounters load_counters() { return {files, grids, masks}; }
 
-/// Returns the reader of the file; nullptr for a folder with the extension of a format that is not read (Zarr).
+/// Returns the reader of the file; nullptr for a folder with the extension of a format that is not read.
 static const VolumeReader* reader_of(const std::string& path) {
   const io::Format* format = io::find_reader(path, io::DataKind::volume);
   const bool by_contents = format != nullptr && io::find_format(path) == nullptr;
@@ -183,8 +183,8 @@ Result<AnyField> load(const LoadRequest& request) {
       return unknown_kind(request.path);
     }
     Result<AnyField> field = Error{};
-    // a .vdb is cropped by its reader, unless it is transformed first
-    const bool crops = request.crop && (request.transform || !has_extension(request.path, ".vdb"));
+    // a .vdb and a store are cropped by their readers, unless it is transformed first
+    const bool crops = request.crop && (request.transform || !(has_extension(request.path, ".vdb") || reader->reads_parts));
     if (reader->load != nullptr) {
       LoadRequest whole = request;
       if (crops) whole.crop.reset();
@@ -210,7 +210,7 @@ Result<AnyField> load(const LoadRequest& request) {
       return Error{fmt::format("{}: the grid \"{}\" contains vectors, expected scalars for the interpolation \"nearest\"", request.path,
                                field->get()->name())};
     if (const ScalarGrid* grid = nearest ? field->scalar->grid() : nullptr) field->scalar = grid->with_interpolation(request.interpolation);
-    if (request.level > 0)
+    if (request.level > 0 && !reader->reads_parts)
       return downsample_to_level(request.path, std::move(*field), request.level, request.interpolation == Interpolation::cubic);
     if (request.interpolation == Interpolation::cubic) return with_cubic_interpolation(std::move(*field), request.path);
     return field;

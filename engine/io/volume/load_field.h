@@ -72,6 +72,12 @@ enum class ElementKind : std::uint8_t { voxels, points, cells };
 /// Returns "voxels", "points" or "cells".
 CATENA_EXPORT std::string_view to_string(ElementKind counted);
 
+/// A resolution level of a grid in a store of chunks.
+struct LevelInfo {
+  Size3 size;   ///< Voxels along x, y, z.
+  Size3 chunk;  ///< Voxels that are stored together.
+};
+
 /// Description of a grid in a file, without loading it.
 struct GridInfo {
   std::string name, type;                          ///< Type as named in the file: float, half, vec3s, bool, ...
@@ -86,6 +92,10 @@ struct GridInfo {
   bool is_vector = false;                          ///< Vectors with three components.
   std::string series_number;                       ///< Number of a DICOM series, which --grid accepts, too; empty: none.
   std::int32_t image_count = 0;                    ///< Number of images in a DICOM volume; 0: not counted.
+  std::vector<LevelInfo> levels;                   ///< Levels of a store of chunks, the finest first; empty: another file.
+  std::int32_t range_level = 0;                    ///< Level of which `stats` and `display_range` are; -1: they are not known.
+  std::vector<double> window;                      ///< Range to display that the file states, two numbers; empty: none.
+  std::int32_t color = -1;                         ///< Color that the file states, 0xRRGGBB; -1: none.
 };
 /// Describes every grid of a file, at a time step.
 CATENA_EXPORT Result<std::vector<GridInfo>> describe_grids(const std::string& path, int step = 0);

@@ -21,20 +21,16 @@ constexpr std::string_view kNibabel = "\"nib-convert IN OUT.nii.gz\" (pip instal
 constexpr std::string_view kBlender = "Blender imports it and exports .ply, .stl or .obj";
 
 constexpr ForeignKind kKinds[] = {
-    {" .ome.tif .ome.tiff .ome.tf2 .ome.btf ", "an OME-TIFF image", kFiji},
-    {" .tif .tiff .tf8 .btf ", "a TIFF image", kFiji},
-    {" .czi .lsm .nd2 .lif .oib .oif .oir .ims .stk .dv .vsi .lei .zvi .flex ", "a microscope image", kFiji},
+    {" .czi .lsm .nd2 .lif .oib .oif .oir .stk .dv .vsi .lei .zvi .flex ", "a microscope image", kFiji},
     {" .png .jpg .jpeg .bmp .gif .webp ", "a 2D image",
      "Fiji combines slices into a volume (File > Import > Image Sequence) and saves .nrrd (File > Save As > Nrrd)"},
-    {" .ome.zarr .zarr .zarr.zip ", "a Zarr store",
-     "python3 -c \"import zarr, numpy; numpy.save('OUT.npy', zarr.open('IN', mode='r')['0'][:])\", with the array's name in place of 0 "
-     "(pip install zarr)"},
+    {" .zarr.zip ", "a packed Zarr store", "\"unzip IN -d OUT.zarr\""},
     {" .n5 ", "an N5 store", "Fiji opens it (File > Import > HDF5/N5/Zarr) and saves .nrrd (File > Save As > Nrrd)"},
     {" .cas .cas.h5 .dat.h5 ", "a Fluent case", kParaView},
-    {" .h5 .hdf5 .hdf .he5 .h5ad .nxs ", "an HDF5 file",
+    {" .h5ad ", "an annotated matrix",
      "python3 -c \"import h5py, numpy; numpy.save('OUT.npy', h5py.File('IN')['NAME'][:])\" with the name of an array as listed by h5ls "
      "(pip install h5py)"},
-    {" .vtkhdf .xdmf .xmf .xdmf2 .xdmf3 .silo .plt .szplt .d3plot ", "a simulation file", kParaView},
+    {" .xdmf .xmf .xdmf2 .xdmf3 .silo .plt .szplt .d3plot ", "a simulation file", kParaView},
     {" .e .ex2 .exo .exii .g .gen ", "an Exodus file", kParaView},
     {" .msh .inp .med .bdf .nas .unv .mesh .meshb ", "a finite element mesh", kMeshio},
     {" .grib .grb .grib2 .grb2 .gb2 ", "a GRIB file", "\"cdo -f nc copy IN OUT.nc\" (package cdo)"},

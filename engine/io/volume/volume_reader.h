@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/input_files.h"
 #include "engine/base/result.h"
 #include "engine/field/grid/dense.h"
 #include "engine/field/number_type.h"
@@ -37,8 +38,12 @@ struct VolumeReader {
   Result<std::vector<GridInfo>> (*describe)(const std::string& path, int step) = nullptr;
   Units (*units)(const std::string& path, const std::string& grid) = nullptr;  ///< Null: the format has no units.
   std::vector<double> (*times)(const std::string& path) = nullptr;             ///< Null: the format has one time step.
+  std::vector<std::string> (*notes)(const std::string& path) = nullptr;        ///< On the whole file; with `reads_parts` only.
+  std::vector<FileId> (*files)(const std::string& path) = nullptr;             ///< Data files; null: those that a reader opened.
+  bool (*recognizes_folder)(const std::string& path) = nullptr;                ///< By its contents, whatever its name.
   bool needs_layout = false;   ///< The file does not describe itself: LoadRequest::raw is required.
-  bool reads_folders = false;  ///< Reads folders and DICOM files without an extension, too.
+  bool reads_folders = false;  ///< Reads folders that no format recognizes, and DICOM files without an extension, too.
+  bool reads_parts = false;    ///< `load` applies level and crop itself; `describe` does not read all values.
 };
 
 /// Loads the values of a dense file into a grid.

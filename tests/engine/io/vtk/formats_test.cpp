@@ -301,18 +301,14 @@ TEST_F(ForeignFormats, APlyKeepsDoublesFarFromTheOrigin) {
 }
 
 TEST_F(ForeignFormats, UnsupportedFormatsNameAConversion) {
-  std::filesystem::create_directories(folder_ / "a.ome.zarr/0");
-  for (const auto& [name, word] : {std::pair{"a.TIF", "Fiji"},
-                                   {"a.ome.tif", "OME-TIFF"},
-                                   {"a.h5", "h5py"},
-                                   {"a.czi", "Fiji"},
+  for (const auto& [name, word] : {std::pair{"a.czi", "Fiji"},
+                                   {"a.zarr.zip", "unzip"},
+                                   {"a.h5ad", "h5py"},
                                    {"a.exo", "ParaView"},
                                    {"a.xdmf", "ParaView"},
                                    {"a.grib", "cdo"},
-                                   {"a.mrc", "mrcfile"},
-                                   {"a.ome.zarr", "zarr.open"},
-                                   {"a.ome.zarr/", "zarr.open"}}) {
-    if (std::string_view(name).find("zarr") == std::string_view::npos) file(name, "x");
+                                   {"a.mrc", "mrcfile"}}) {
+    file(name, "x");
     EXPECT_TRUE(has(error_of(folder_ / name), word));
     EXPECT_FALSE(describe_grids(folder_ / name)) << name;
   }

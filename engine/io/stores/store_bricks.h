@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+/// Bricks of a grid in a store, at one time step. Any thread.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+#include "engine/field/bricks/brick_source.h"
+#include "engine/io/stores/store.h"
+
+namespace catena::field {
+
+/// Ranges become known when bricks are read, and by find_empty_bricks().
+class StoreBricks final : public BrickSource {
+ public:
+  /// Makes the source of a grid, by its index in the description, at a time step. Both exist.
+  StoreBricks(std::shared_ptr<Store> store, int grid, int step);
+
+  BrickRange range(int level, const Index3& brick) const noexcept override;
+  Outcome read(int level, const Index3& brick, std::span<std::byte> values) const override;
+
+  /// Finds the bricks of a level for which nothing is stored, by listing the store. Blocks, for a second per million stored chunks.
+  Outcome find_empty_bricks(int level) const;
+
+ private:
+  struct Ranges {
+    std::mutex mutex;
+    std::unordered_map<std::uint64_t, BrickRange> known;
+    std::vector<std::uint8_t> present;  ///< Empty: not listed.
+  };
+  static std::uint64_t number_of(const BrickLevel& level, const Index3& brick);
+
+  std::shared_ptr<Store> store_;
+  int grid_, step_;
+  double fill_value_;
+  std::vector<std::unique_ptr<Ranges>> ranges_;  ///< One per level.
+};
+
+}  // namespace catena::field
