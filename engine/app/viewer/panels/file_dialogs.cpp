@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Dialogs Open and Save as: the files of a folder, and a text field for a path, with completion by Tab.
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <array>
@@ -52,12 +53,18 @@ std::string start_folder(const PanelContext& context, bool saves = false) {
   return folder.lexically_normal().string();
 }
 
+/// Completes the path by Tab. The undo history is emptied, since its positions are those of the shorter text.
 int complete(ImGuiInputTextCallbackData* data) {
   if (data->EventFlag != ImGuiInputTextFlags_CallbackCompletion) return 0;
   const Browser& browser = *static_cast<const Browser*>(data->UserData);
   const std::string longer = complete_path(browser.folder, std::string(data->Buf, static_cast<std::size_t>(data->BufTextLen)));
   data->DeleteChars(0, data->BufTextLen);
   data->InsertChars(0, longer.c_str());
+  auto& history = ImGui::GetCurrentContext()->InputTextState.Stb.undostate;
+  history.undo_point = 0;
+  history.undo_char_point = 0;
+  history.redo_point = STB_TEXTEDIT_UNDOSTATECOUNT;
+  history.redo_char_point = STB_TEXTEDIT_UNDOCHARCOUNT;
   return 0;
 }
 

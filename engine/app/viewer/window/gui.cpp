@@ -34,6 +34,14 @@ void choose_style(float scale) {
   style.ScaleAllSizes(scale);
 }
 
+/// Starts a frame of ImGui. A text field without focus starts anew when it gains it: ImGui 1.86 would retain the undo history, and undoing
+/// writes outside the text if the program has replaced it by a shorter one.
+void start_frame() {
+  ImGui::NewFrame();
+  ImGuiContext& context = *ImGui::GetCurrentContext();
+  if (context.ActiveId != context.InputTextState.ID) context.InputTextState.ID = 0;
+}
+
 }  // namespace
 
 struct Gui::Impl {
@@ -104,7 +112,7 @@ void Gui::Impl::make(const Input& buttons, double x, double y, const Frame& fram
   io.MouseDown[1] = buttons.right;
   io.MouseDown[2] = buttons.middle;
   wheel += std::exchange(io.MouseWheel, 0.0f);
-  ImGui::NewFrame();
+  start_frame();
   framed();
   frame.draw_panels();
   ImGui::EndFrame();
@@ -150,7 +158,7 @@ void Gui::begin() {
     io.MousePos = *pointed;
     io.MouseDown[0] = impl_->pressed;
   }
-  ImGui::NewFrame();
+  start_frame();
   impl_->framed();
 }
 
