@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Default visualization of grids: parts of a scene file, chosen by the kind of data (classify_scalar.h, classify_vector.h). Private to
-/// this module. Levels and ranges are in the field's unit.
+/// Default visualization of grids: parts of a scene file, chosen by the kind of data (classify_scalar.h, classify_vector.h). Levels
+/// and ranges are in the field's unit.
 ///   image        grid that is one or two voxels thick, whatever its kind: a slice with its scalar bar, gray in patient space and for
 ///                integers (photographs, microscopy), else in the colors of a quantity
 ///   CT           skin (-300 HU, translucent) and bone (250 HU), as far as the values reach these levels

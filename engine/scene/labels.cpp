@@ -84,6 +84,15 @@ Result<std::vector<double>> values_of(const LabelSource& source, const LabelMap&
 
 }  // namespace
 
+std::vector<double> labels_inside(const LabelSource& surface, const LabelMap& map) {
+  std::vector<double> inside;
+  const auto is_in = [](const auto& list, const auto& item) { return std::ranges::find(list, item) != list.end(); };
+  for (const LabelEntry& label : map.labels)
+    if (surface.all_labels || is_in(surface.values, label.value) || (!label.name.empty() && is_in(surface.names, label.name)))
+      inside.push_back(label.value);
+  return inside;
+}
+
 std::string surface_label_name(const Scene& scene, std::string_view field) {
   const Entity entity = find_field(scene, field);
   if (!entity) return {};

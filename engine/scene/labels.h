@@ -38,6 +38,9 @@ void load_label_map(FieldSource& source);
 /// Returns the labels of a loaded field; nullptr if it is no label map.
 const LabelMap* find_label_map(const Scene& scene, Entity field);
 
+/// Returns the labels of the map that are inside the surface, rising. Names that the map does not have are left out.
+std::vector<double> labels_inside(const LabelSource& surface, const LabelMap& map);
+
 /// Returns "Precentral_L (1)", or "17" for a label without a name, or "no label" for 0.
 std::string describe_label(const LabelMap& map, double value);
 /// Returns the label's name if the field is the surface of exactly one named label ("Precentral_L"); else empty.

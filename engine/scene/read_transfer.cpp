@@ -29,19 +29,6 @@ Result<std::vector<std::vector<double>>> read_table(const json::Node& node, std:
   return rows;
 }
 
-/// Reads "range": [lo, hi].
-Result<std::optional<Pair>> read_range(const json::Node& object) {
-  const json::Node* node = object.find("range");
-  if (node == nullptr) return std::optional<Pair>();
-  if (node->kind != json::Kind::array || node->items.size() != 2)
-    return json::error_at(*node, "\"range\" is no pair; two rising numbers [lo, hi] were expected");
-  CATENA_TRY(const double lo, json::as_number(node->items[0], "range[0]"));
-  CATENA_TRY(const double hi, json::as_number(node->items[1], "range[1]"));
-  if (!is_color_range(lo, hi))
-    return json::error_at(*node, "\"range\" is [" + to_text(lo) + ", " + to_text(hi) + "]; two rising numbers [lo, hi] were expected");
-  return std::optional<Pair>({lo, hi});
-}
-
 /// Reads "threshold": [lo, hi], or two such ranges that rise.
 Result<Threshold> read_threshold(const json::Node& object) {
   const json::Node* node = object.find("threshold");
@@ -92,7 +79,7 @@ Outcome check_mapping(const json::Node& object, const TransferFunction& transfer
 
 /// Reads "color", "range" and "mapping".
 Outcome read_colors(const json::Node& object, std::vector<ColorPoint>& colors, NamedColors& named) {
-  CATENA_TRY(named.range, read_range(object));
+  CATENA_TRY(named.range, read_range(object, "range"));
   CATENA_TRY(const std::optional<ValueMapping> mapping, read_mapping(object));
   named.mapping = mapping.value_or(ValueMapping{});
   const json::Node* color = object.find("color");
@@ -210,7 +197,7 @@ Result<TransferFunction> read_transfer_file(const std::string& scene_path, const
   CATENA_TRY(const std::string text, read_text_file(path, "a transfer file (JSON)", kMaxJsonBytes));
   CATENA_TRY(TransferFunction transfer, parse_transfer(text, path));
   transfer.file = path;
-  CATENA_TRY(const std::optional<Pair> range, read_range(object));
+  CATENA_TRY(const std::optional<Pair> range, read_range(object, "range"));
   CATENA_TRY(const std::optional<ValueMapping> explicit_mapping, read_mapping(object));
   const ValueMapping mapping = explicit_mapping.value_or(transfer.named.mapping);
   if (range) CATENA_CHECK(stretch_to_range(transfer, *range, mapping, *object.find("range")));
@@ -220,6 +207,17 @@ Result<TransferFunction> read_transfer_file(const std::string& scene_path, const
 }
 
 }  // namespace
+
+Result<std::optional<Pair>> read_range(const json::Node& object, std::string_view key) {
+  const json::Node* node = object.find(key);
+  if (node == nullptr) return std::optional<Pair>();
+  const std::string expected = "two rising numbers [lo, hi] were expected";
+  if (node->kind != json::Kind::array || node->items.size() != 2) return json::error_at(*node, in_quotes(key) + " is no pair; " + expected);
+  CATENA_TRY(const double lo, json::as_number(node->items[0], std::string(key) + "[0]"));
+  CATENA_TRY(const double hi, json::as_number(node->items[1], std::string(key) + "[1]"));
+  if (!is_color_range(lo, hi)) return json::error_at(*node, in_quotes(key) + " is [" + to_text(lo) + ", " + to_text(hi) + "]; " + expected);
+  return std::optional<Pair>({lo, hi});
+}
 
 Result<std::vector<ColorPoint>> read_color_table(const json::Node& node, std::string_view what) {
   std::vector<ColorPoint> colors;

@@ -195,6 +195,8 @@ struct ColorScale {
   NamedColors named;                                 ///< Color map used if `colors` is empty; its mapping always applies
 };
 
+/// Reads the range of values [lo, hi] at `key`; nullopt: absent.
+Result<std::optional<std::array<double, 2>>> read_range(const json::Node& object, std::string_view key);
 /// Reads "color", "range", "mapping" and "transfer" of an object.
 Result<ColorScale> read_color_scale(const std::string& scene_path, const json::Node& object);
 /// Reads the colors and opacities of a volume.

@@ -31,10 +31,12 @@ Result<std::optional<ColorSource>> color_source(const scene::Scene& scene, const
   for (const auto& c : scene::make_display_color_table(scene, by->field, by->colors, by->named, range.lo, range.hi))
     source.colors.push_back({c.value, c.color.r, c.color.g, c.color.b});
   source.linear_below = scene::linear_below(by->named.mapping, source.colors.front()[0], source.colors.back()[0]);
-  // a surface of labels lies between labeled and unlabeled voxels
+  // a surface of labels lies between their voxels and others, and has the colors of its own labels
   const auto& label = scene.entities.get<scene::FieldSource>(of).label;
-  source.is_categorical = scene::find_label_map(scene, by->field) != nullptr;
+  const scene::LabelMap* map = scene::find_label_map(scene, by->field);
+  source.is_categorical = map != nullptr;
   source.spread_labels = source.is_categorical && label && label->label_map == entity_name(scene, by->field);
+  if (source.spread_labels && !label->all_labels) source.labels = scene::labels_inside(*label, *map);
   return std::optional<ColorSource>(std::move(source));
 }
 

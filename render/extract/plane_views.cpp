@@ -21,6 +21,7 @@ namespace {
 constexpr double kMargin = 1.06, kOverlayOpacity = 0.5;
 constexpr Color kPlaneColors[] = {{1.0f, 0.5f, 0.45f}, {0.35f, 0.8f, 0.3f}, {0.95f, 0.85f, 0.25f}};  // of the planes' lines in the others
 constexpr double kLetterPt = 16, kNamePt = 12;
+constexpr double kTextScale = 1.6;  // a plane is half as high as the page, which is read as one image
 
 /// Scalar fields that the scene shows, in the order of preference for the base.
 std::vector<scene::Entity> shown_fields(const scene::Scene& scene) {
@@ -145,6 +146,14 @@ void project_widgets(FramePacket& packet, const Vec3& on_plane, const Vec3& back
   packet.widgets.meshes.clear();
 }
 
+/// Writes the values that are shown as black and white in the first plane.
+void add_window_text(FramePacket& plane) {
+  const SliceItem& base = plane.slices.front();
+  if (base.hidden_label || base.colors.empty()) return;
+  plane.overlay.texts.push_back(
+      {fmt::format("{:.4g} .. {:.4g}", base.colors.front()[0], base.colors.back()[0]), Anchor::bottom_left, {8, -6}, kNamePt, false, {}});
+}
+
 /// Lines of the two other planes, and of the texts.
 void add_marks(const OrthoPlanes& planes, std::size_t plane, const Vec3& focus, const std::string& unit, FramePacket& packet) {
   const PlaneFrame& frame = planes.frames[plane];
@@ -209,7 +218,7 @@ Result<OrthoPlanes> find_ortho_planes(scene::Scene& scene) {
   return planes;
 }
 
-Outcome add_plane_views(const scene::Scene& scene, const OrthoPlanes& planes, const PlaneViewState& state, FramePacket& packet) {
+Outcome add_plane_views(const scene::Scene& scene, const OrthoPlanes& planes, const scene::OrthogonalViews& state, FramePacket& packet) {
   if (!packet.eyes.empty()) return Error{"orthogonal views are not shown in stereo; --stereo mono was expected"};
   const Vec3 focus = state.focus.value_or(planes.center), at = scene.stretch * focus;
   const Vec3 center = scene.stretch * state.center.value_or(planes.center);
@@ -235,9 +244,10 @@ Outcome add_plane_views(const scene::Scene& scene, const OrthoPlanes& planes, co
     for (SliceItem& slice : plane->slices) slice.point = focus, slice.normal = scene.stretch * frame.back;
     stretch_slices(scene, *plane);
     plane->overlay.font = packet.overlay.font;
-    plane->overlay.scale = packet.overlay.scale;
+    plane->overlay.scale = kTextScale * packet.overlay.scale;
     update_widgets(scene, data_bounds(packet), *plane);
     project_widgets(*plane, at, frame.back);
+    if (k == 0) add_window_text(*plane);
     add_marks(planes, k, focus, scene::length_unit(scene), *plane);
     packet.planes.push_back(std::move(plane));
   }

@@ -35,16 +35,8 @@ struct OrthoPlanes {
 /// Finds the fields and frames. An Error if the scene shows no scalar field.
 Result<OrthoPlanes> find_ortho_planes(scene::Scene& scene);
 
-/// What the planes show. World units.
-struct PlaneViewState {
-  std::optional<Vec3> focus{};                    ///< common point of the planes; nothing: the middle of the base field
-  std::optional<std::array<double, 2>> window{};  ///< values shown as black and white; nothing: the display range
-  double zoom = 1;                                ///< magnification; 1: every plane shows the whole field
-  std::optional<Vec3> center{};                   ///< point in the middle of every image; nothing: the middle of the base field
-};
-
 /// Turns the packet of the 3D view into a page of four views of its size: adds the packets of the planes, with the widgets of the scene
 /// projected onto them. Call it after prepare_frame().
-Outcome add_plane_views(const scene::Scene& scene, const OrthoPlanes& planes, const PlaneViewState& state, FramePacket& packet);
+Outcome add_plane_views(const scene::Scene& scene, const OrthoPlanes& planes, const scene::OrthogonalViews& state, FramePacket& packet);
 
 }  // namespace catena::render

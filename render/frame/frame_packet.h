@@ -103,9 +103,10 @@ enum class Projection { composite, maximum, minimum, average };
 struct ColorSource {
   std::shared_ptr<const field::ScalarGrid> grid;  ///< field that gives the colors
   std::vector<std::array<double, 4>> colors;      ///< value, r, g, b
-  bool is_categorical = false;  ///< values are whole numbers (labels), each with its own color; 0 is no label and has no color
-  bool spread_labels = false;   ///< if the nearest voxel has no label: the color of the nearest voxel of the cell that has one
-  double linear_below = 0;      ///< as in TransferTable
+  bool is_categorical = false;   ///< values are whole numbers (labels), each with its own color; 0 is no label and has no color
+  bool spread_labels = false;    ///< if the nearest voxel has no color: that of the nearest voxel of the cell that has one
+  double linear_below = 0;       ///< as in TransferTable
+  std::vector<double> labels{};  ///< labels that have a color, rising; empty: all but 0
   bool operator==(const ColorSource&) const = default;
 };
 

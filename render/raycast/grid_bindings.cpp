@@ -101,14 +101,16 @@ shared::TableData table_data(const TransferLut& lut, std::uint32_t start) {
 
 Result<bool> ColorGrid::update(vk::Device& device, std::shared_ptr<const ResidentGrid> next_resident, const ColorSource& next) {
   const bool same_grid = resident == next_resident && map.image;
-  if (same_grid && source.colors == next.colors && source.is_categorical == next.is_categorical &&
-      source.spread_labels == next.spread_labels && source.linear_below == next.linear_below)
-    return false;
+  ColorSource on_this_grid = next;
+  on_this_grid.grid = source.grid;
+  if (same_grid && source == on_this_grid) return false;
   resident = std::move(next_resident);
   source = next;
-  // alpha marks values that have a color: of labels all but 0
+  // alpha marks values that have a color
   TransferTable table{next.colors, {}, {}, 0, next.is_categorical, next.linear_below};
-  if (next.is_categorical) table.extinctions = {{-0.5, 1}, {-0.5, 0}, {0.5, 0}, {0.5, 1}};
+  if (next.is_categorical && next.labels.empty()) table.extinctions = {{-0.5, 1}, {-0.5, 0}, {0.5, 0}, {0.5, 1}};
+  for (const double label : next.labels)
+    table.extinctions.insert(table.extinctions.end(), {{label - 0.5, 0}, {label - 0.5, 1}, {label + 0.5, 1}, {label + 0.5, 0}});
   lut = make_transfer_lut(table, value_range(*resident), 1);
   if (!next.is_categorical)
     for (std::vector<glm::vec4>* looks : {&lut.entries, &lut.control_points})

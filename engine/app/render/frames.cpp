@@ -33,20 +33,22 @@ Result<render::FramePacket> Frames::packet(int frame) {
 }
 
 Outcome Frames::add_planes(render::FramePacket& packet) {
-  std::optional<Vec3> focus;
+  scene::OrthogonalViews views = scene_.orthogonal_views.value_or(scene::OrthogonalViews{});
   if (!options_.focus.empty()) {
-    focus.emplace(0.0);
+    views.focus.emplace(0.0);
     for (int i = 0; i < 3; ++i) {
       const auto number = parse_double(options_.focus[static_cast<std::size_t>(i)]);
       if (!number || !std::isfinite(*number)) return Error{"--focus: three finite numbers X Y Z were expected"};
-      (*focus)[i] = *number;
+      (*views.focus)[i] = *number;
     }
   }
   CATENA_TRY(const render::OrthoPlanes planes, render::find_ortho_planes(scene_));
   Bounds box;
   for (const Vec3& corner : planes.corners) box.extend(corner);
-  if (focus && !box.contains(*focus)) return Error{"--focus: the point is outside of the field; a point inside was expected"};
-  return render::add_plane_views(scene_, planes, {.focus = focus}, packet);
+  if (views.focus && !box.contains(*views.focus))
+    return Error{std::string(options_.focus.empty() ? "orthogonal_views" : "--focus") +
+                 ": the point is outside of the field; a point inside was expected"};
+  return render::add_plane_views(scene_, planes, views, packet);
 }
 
 Result<double> Frames::draw(int frame, Outputs* outputs) {

@@ -7,10 +7,12 @@
 
 #include "engine/app/viewer/edit/histogram_cache.h"
 #include "engine/app/viewer/edit/item_templates.h"
+#include "engine/app/viewer/edit/label_opacity.h"
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/document.h"
 #include "render/extract/extract.h"
+#include "tests/support/nifti_file.h"
 #include "tests/support/results.h"
 #include "tests/support/support.h"
 
@@ -126,6 +128,31 @@ TEST_F(EditedScene, ANewIsosurfaceHasTheLevelOfTheFirstLink) {
   const std::string item =
       *make_item_edits(without_links, scene::find_field(without_links, "ball"), drawn, ShowAs::isosurface, {}).front().value;
   EXPECT_EQ(item.find("1.25"), std::string::npos) << "else of its own range: " << item;
+}
+
+TEST(LabelOpacity, ALabelLeavesTheSurfaceThatItSharesAndIsFoundAgain) {
+  const test::TemporaryFolder folder;
+  test::NiftiFile labels({6, 6, 6}, 2, 8);
+  for (int i = 0; i < 216; ++i) labels.append(static_cast<std::uint8_t>(i % 6 < 2 ? 1 : i % 6 < 4 ? 2 : i < 108 ? 7 : 0));
+  test::write_file(folder / "l.nii", labels.bytes());
+  test::write_file(folder / "s.json", R"({"fields": {"l": {"file": "l.nii", "interpolation": "nearest"}, "all": {"label": "*", "of": "l"}},
+    "isosurfaces": [{"field": "all", "level": 0.5, "opacity": 0.9}]})");
+  auto document = test::value_of(scene::Document::open(folder / "s.json"));
+  const auto opacities = [&] {
+    auto scene = test::value_of(document.read());
+    test::value_of(render::make_frame(scene, 16, 16));
+    return std::array{label_opacity(scene, "l", 1), label_opacity(scene, "l", 2), label_opacity(scene, "l", 7)};
+  };
+  EXPECT_EQ(opacities(), (std::array{0.9, 0.9, 0.9}));
+  for (const double opacity : {0.25, 0.5}) {
+    auto scene = test::value_of(document.read());
+    test::value_of(render::make_frame(scene, 16, 16));
+    const TextEdits edits = make_label_opacity_edits(scene, "l", 2, opacity);
+    EXPECT_EQ(edits.size(), opacity == 0.25 ? 3u : 1u) << "the second change is of the label's own surface";
+    test::value_of(document.apply(edits, "opacity"));
+    EXPECT_EQ(opacities(), (std::array{0.9, opacity, 0.9}));
+  }
+  EXPECT_NE(document.text().find("\"label\": [1, 7]"), std::string::npos) << document.text();
 }
 
 }  // namespace catena::app::scene_items_test

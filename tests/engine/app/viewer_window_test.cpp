@@ -81,6 +81,25 @@ TEST_F(ViewerWindow, TheOpenDialogOpensTypedNamesAndAFailureKeepsTheScene) {
   EXPECT_TRUE(is_color(end, 895, 100, 0, 0, 102));
 }
 
+TEST_F(ViewerWindow, ThePlanesAreSavedAndOpenedAgain) {
+  play((folder_ / "ball.json") + " --size 900x600",
+       "keys 4; sleep 0.5; xdotool mousemove 480 180; sleep 0.3; xdotool click 5; sleep 0.3\n"
+       "keys ctrl+shift+s; sleep 0.3; xdotool type --delay 60 'planes'; keys Return; written planes.json; keys ctrl+q");
+  const std::string saved = test::read_file(folder_ / "planes.json");
+  EXPECT_NE(saved.find("\"orthogonal_views\": {\"focus\": ["), std::string::npos) << saved;
+  play((folder_ / "planes.json") + " --size 900x600",
+       "keys 4; sleep 0.5; keys ctrl+s\nfor n in $(seq 50); do grep -q orthogonal planes.json || break; sleep 0.2; done; keys ctrl+q");
+  EXPECT_EQ(test::read_file(folder_ / "planes.json").find("orthogonal_views"), std::string::npos) << "4 turned them off";
+}
+
+TEST_F(ViewerWindow, UndoInATextFieldDoesNotApplyToTheTextOfAnEarlierUse) {
+  play(scene_ + " --size 900x600",
+       "keys ctrl+shift+s; sleep 0.3; xdotool type --delay 60 'some much longer name'; keys Escape ctrl+shift+s; sleep 0.3\n"
+       "keys ctrl+z ctrl+z End 2 Return; written flow.json2.json\n"
+       "keys ctrl+shift+s; sleep 0.3; xdotool type --delay 60 'ball.js'; keys Tab ctrl+z End 3 Return; written ball.json3.json; keys "
+       "ctrl+q");
+}
+
 TEST_F(ViewerWindow, RepeatedResizingKeepsTheImagesSizeRight) {
   play(scene_ + " --size 800x500",
        "for s in '300 200' '900 650' '40 30' '1 1' '700 400' '820 610'; do xdotool windowsize $W $s; sleep 0.15; done\n"

@@ -48,6 +48,7 @@ TEST_F(PlaneViews, PatientPlanesAreRadiologicalAndShareOneScale) {
   const OrthoPlanes planes = value_of(find_ortho_planes(scene));
   value_of(add_plane_views(scene, planes, {.focus = Vec3(5, 8, 9)}, packet));
   ASSERT_EQ(packet.planes.size(), 3u);
+  EXPECT_EQ(packet.planes[0]->overlay.texts.front().text, "50 .. 200") << "window of values";
   const char* names[] = {"axial", "coronal", "sagittal"};
   const char* texts[] = {"axial 9 mm", "coronal 8 mm", "sagittal 5 mm"};
   const Vec3 backs[] = {{0, 0, -1}, {0, 1, 0}, {-1, 0, 0}};
@@ -127,6 +128,20 @@ TEST_F(PlaneViews, ThePageShowsThePlanesBesideTheView) {
     EXPECT_LT(gray_at({-5, -9, 12}), 15) << "dark";
   }
   EXPECT_EQ(renderer->stats().validation_messages, 0u);
+}
+
+TEST_F(PlaneViews, TheirStateIsReadAndWritten) {
+  const auto read = [](const std::string& views) {
+    return scene::parse_scene(R"({"fields": {"v": {"analytic": "sphere"}}, "orthogonal_views": )" + views + "}", "s.json");
+  };
+  const scene::OrthogonalViews state{Vec3(1, -2, 0.1), std::array{-5.0, 40.0}, 3, std::nullopt};
+  EXPECT_EQ(value_of(read(scene::to_json(state))).orthogonal_views, state);
+  EXPECT_EQ(value_of(read("{}")).orthogonal_views, scene::OrthogonalViews());
+  for (const char* bad : {R"({"window": [4, 4]})", R"({"zoom": 0})", R"({"focus": [1, 2]})", R"({"middle": [1, 2, 3]})", "[]"}) {
+    const auto scene = read(bad);
+    ASSERT_FALSE(scene) << bad;
+    EXPECT_NE(scene.error().message.find("s.json:1: "), std::string::npos);
+  }
 }
 
 TEST_F(PlaneViews, ASceneWithoutScalarFieldIsRefused) {

@@ -117,6 +117,25 @@ TEST_F(LabelImage, AVolumeDoesNotBlendColorsBetweenLabels) {
   EXPECT_EQ(green, 0);
 }
 
+TEST_F(LabelImage, TheSurfaceOfALabelHasNoColorOfItsNeighbors) {
+  const field::Index3 n{16, 16, 16};
+  const auto map = make_grid(n, [](const Vec3& p) { return p.x < 7.5 ? 41.0 : 40.0; })->with_interpolation(field::Interpolation::nearest);
+  const auto inside = make_grid(n, [](const Vec3& p) { return p.x < 7.5 ? 0.0 : 1.0; });
+  FramePacket packet = make_packet({-30, 7.5, 7.5}, {7.5, 7.5, 7.5});
+  ColorSource colors{map, label_rows(), true, true};
+  colors.labels = {40};
+  packet.isosurfaces = {{inside, 0.5, {1, 0, 0}, 1, 1, true, colors}};
+  const Image8 image = draw(packet, {}, "neighbors");
+  int green = 0, others = 0;
+  for (const auto& [x, y] : pixels_of(packet)) {
+    const Rgb got = rgb(image, x, y);
+    green += got[1] > 100;
+    others += got[0] > 60 || got[2] > 60;
+  }
+  EXPECT_GT(green, 500);
+  EXPECT_EQ(others, 0) << "blue of the label in front of the surface";
+}
+
 /// A ball in one grid, coloured by labels of another, rotated grid: the colour depends on the half-space of the pixel's point.
 TEST_F(LabelImage, ASurfaceIsColoredByAGridWithAnotherTransform) {
   const auto ball = make_grid(

@@ -8,10 +8,12 @@
 #include "engine/app/viewer/edit/histogram_cache.h"
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/base/json.h"
+#include "engine/base/json_edit.h"
 #include "engine/base/text.h"
 #include "engine/field/field_display_range.h"
 #include "engine/io/volume/units.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/default_visualization.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/to_json.h"
 #include "engine/scene/widgets.h"
@@ -114,6 +116,15 @@ scene::NamedColors shown_colors(const scene::Scene& scene, scene::Entity field, 
   return colors;
 }
 
+/// Returns the streamlines that a file with this field alone would show; empty: none, or the field is a formula.
+std::string default_streamlines(const std::string& name, const field::VectorField& field) {
+  if (field.grid() == nullptr) return {};
+  const auto shown = scene::choose_default_visualization(scene::to_json(name), *field.grid(), scene::NamedColors{});
+  const auto members = json::parse("{" + shown.scene_members + "}", name);
+  const json::Node* lines = members ? members->find("streamlines") : nullptr;
+  return lines != nullptr && !lines->items.empty() ? json::serialize_node(lines->items.front()) : std::string();
+}
+
 std::string make_item_json(const scene::Scene& scene, scene::Entity field, const field::AnyField& values, ShowAs as,
                            const std::vector<float>& sorted) {
   const Domain domain = domain_of(*values.get());
@@ -157,6 +168,7 @@ std::string make_item_json(const scene::Scene& scene, scene::Entity field, const
       return scene::to_json(scene, set);
     }
     case ShowAs::streamlines:
+      if (std::string lines = default_streamlines(entity_name(scene, field), *values.vector); !lines.empty()) return lines;
       break;
   }
   scene::StreamlineSet set;

@@ -19,7 +19,9 @@ void CameraController::adopt_scene(const LoadedScene& loaded) {
   navigation_.probe = haptic_session_.initial_probe();
   navigation_.view = navigation_.home = saved_view_ = loaded.packet.view;
   navigation_.bounds = loaded.bounds.scaled(loaded.packet.view.stretch);
-  navigation_.ortho = {{}, navigation_.ortho.is_on};
+  saved_planes_ = scene_.scene().orthogonal_views;
+  const bool was_on = navigation_.ortho.is_on;
+  navigation_.ortho = {saved_planes_.value_or(scene::OrthogonalViews{}), was_on || saved_planes_};
   flight_ = {};
   pin_camera();
 }
@@ -59,6 +61,15 @@ bool CameraController::has_unsaved_view() const {
   const render::View &a = navigation_.view, &b = saved_view_;
   return a.position != b.position || a.target != b.target || a.up != b.up || a.fovy_deg != b.fovy_deg || a.orthographic != b.orthographic ||
          (a.orthographic && a.height != b.height);
+}
+
+std::optional<scene::OrthogonalViews> CameraController::shown_planes() const {
+  return navigation_.ortho.is_on ? std::optional<scene::OrthogonalViews>(navigation_.ortho) : std::nullopt;
+}
+
+void CameraController::mark_saved() {
+  saved_view_ = navigation_.view;
+  saved_planes_ = shown_planes();
 }
 
 }  // namespace catena::app

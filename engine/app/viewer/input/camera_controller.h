@@ -28,15 +28,20 @@ class CameraController {
 
   /// Returns whether the view differs from that of the last read or save.
   bool has_unsaved_view() const;
-  void mark_saved() { saved_view_ = navigation_.view; }
+  /// Returns the state of the orthogonal views that are shown; nothing: none.
+  std::optional<scene::OrthogonalViews> shown_planes() const;
+  /// Returns whether the orthogonal views differ from those of the last read or save.
+  bool has_unsaved_planes() const { return shown_planes() != saved_planes_; }
+  void mark_saved();
 
  private:
   Navigation& navigation_;
   SceneModel& scene_;
   const HapticSession& haptic_session_;
   Flight flight_;
-  std::int64_t last_update_ns_ = 0;  ///< 0: update() has not been called.
-  render::View saved_view_;          ///< The view in the scene's text, or the initial one.
+  std::int64_t last_update_ns_ = 0;                     ///< 0: update() has not been called.
+  render::View saved_view_;                             ///< The view in the scene's text, or the initial one.
+  std::optional<scene::OrthogonalViews> saved_planes_;  ///< Those in the scene's text.
 };
 
 }  // namespace catena::app

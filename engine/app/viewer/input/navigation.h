@@ -35,7 +35,7 @@ struct Input {
 };
 
 /// Orthogonal views beside the 3D view.
-struct OrthoViews : render::PlaneViewState {
+struct OrthoViews : scene::OrthogonalViews {
   bool is_on = false;  ///< Requested by the user; shown if the scene has a scalar field, without stereo.
 };
 

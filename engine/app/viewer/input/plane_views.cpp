@@ -51,7 +51,7 @@ Vec3 plane_point(const render::FramePacket& plane, const Area& area, double x, d
 
 namespace {
 
-constexpr double kPlaneZoomPerNotch = 1.15, kMinZoom = 0.2, kMaxZoom = 500;
+constexpr double kPlaneZoomPerNotch = 1.15;
 
 /// Point at the middle of the images, world units.
 Vec3 shown_center(const OrthoViews& views, const render::FramePacket& plane) {
@@ -63,7 +63,7 @@ Vec3 shown_center(const OrthoViews& views, const render::FramePacket& plane) {
 /// Magnifies about the point under the pointer, which stays where it is.
 void zoom_planes(OrthoViews& views, const render::FramePacket& plane, const Vec3& at, double notches) {
   const double before = views.zoom;
-  views.zoom = std::clamp(before * std::pow(kPlaneZoomPerNotch, notches), kMinZoom, kMaxZoom);
+  views.zoom = std::clamp(before * std::pow(kPlaneZoomPerNotch, notches), scene::kMinPlaneZoom, scene::kMaxPlaneZoom);
   const Vec3 in_plane = at - plane.view.target / plane.view.stretch;
   views.center = shown_center(views, plane) + (1 - before / views.zoom) * in_plane;
 }

@@ -7,6 +7,7 @@
 
 #include "engine/field/field_display_range.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/labels.h"
 
 namespace catena::app {
 
@@ -110,20 +111,23 @@ void edit_threshold(Edits& edits, const std::string& pointer, const Threshold& t
   ImGui::PopID();
 }
 
-void edit_color_scale(Edits& edits, const scene::Scene& scene, const json::Node& item, const scene::ColorBy& by) {
+void edit_color_scale(Edits& edits, const scene::Scene& scene, const json::Node& item, const scene::ColorBy& by, bool has_threshold) {
   const auto& table = by.colors;
   const scene::NamedColors& named = by.named;
   // the item has the keys itself, or inside its "color_by"
   const std::string pointer = item_pointer(item) + (by.where.label == "color_by" ? "/color_by" : "");
   const bool file = by.where.find("transfer") != nullptr;
+  const bool labels = by.field && scene::shows_labels(scene, by.field, table, named);
   ImGui::PushID("scale");
-  if (const auto map = choose_color_map(table.empty() && named.map.empty() ? std::string(scene::kDefaultLineColorMap) : named.map,
-                                        file ? "from a file" : "custom")) {
+  if (const auto map = choose_color_map(
+          table.empty() && named.map.empty() && !labels ? std::string(scene::kDefaultLineColorMap) : named.map, labels ? "colours of labels"
+                                                                                                                : file ? "from a file"
+                                                                                                                       : "custom")) {
     TextEdits change{{pointer + "/color", scene::to_json(*map)}};
     if (file) change.insert(change.begin(), {{pointer + "/transfer", std::nullopt}, {pointer + "/range", std::nullopt}});
     edits.set(change, "colours");
   }
-  if (table.empty() && !file) {
+  if (table.empty() && !file && !labels) {
     bool own = named.range.has_value();
     if (named.range) {
       std::array<double, 2> range = *named.range;
@@ -140,20 +144,22 @@ void edit_color_scale(Edits& edits, const scene::Scene& scene, const json::Node&
       edits.set(pointer + "/range", scene::to_json(shown_range(scene, item, by)), "range");
     }
   }
-  if (const auto mapping = choose_mapping(named.mapping, 0)) {
+  if (const auto mapping = labels ? std::nullopt : choose_mapping(named.mapping, 0)) {
     const auto stated = [](bool is, const std::string& text) { return is ? std::optional(text) : std::nullopt; };
     edits.set({{pointer + "/mapping",
                 stated(mapping->kind != scene::ValueMapping::Kind::linear, scene::to_json(scene::to_string(mapping->kind)))},
                {pointer + "/linear_below", stated(mapping->linear_below > 0, scene::to_json(mapping->linear_below))}},
               "mapping");
   }
-  const field::AnyField shown = by.field ? scene.entities.get<scene::FieldSource>(by.field).rendered : field::AnyField{};
-  edit_threshold(edits, pointer + "/threshold", named.threshold, first_threshold(shown));
+  if (has_threshold) {
+    const field::AnyField shown = by.field ? scene.entities.get<scene::FieldSource>(by.field).rendered : field::AnyField{};
+    edit_threshold(edits, pointer + "/threshold", named.threshold, first_threshold(shown));
+  }
   ImGui::PopID();
 }
 
 void edit_colors(Edits& edits, const scene::Scene& scene, const json::Node& item, const Color& color,
-                 const std::optional<scene::ColorBy>& by, const std::vector<std::string>& quantities) {
+                 const std::optional<scene::ColorBy>& by, const std::vector<std::string>& quantities, bool has_threshold) {
   using What = scene::ColorBy::Source;
   const std::string pointer = item_pointer(item), alone = "one colour";
   const std::string now = !by                         ? alone
@@ -175,7 +181,8 @@ void edit_colors(Edits& edits, const scene::Scene& scene, const json::Node& item
         scene::ColorBy other;
         other.source = i > quantities.size() ? What::field : choice == "speed" ? What::speed : What::arc_length;
         if (other.source == What::field) other.field = scene::find_field(scene, choice);
-        other.named.map = by && !by->named.map.empty() ? by->named.map : std::string(scene::kDefaultLineColorMap);
+        const bool is_label_map = other.field && scene::find_label_map(scene, other.field) != nullptr;
+        if (!is_label_map) other.named.map = by && !by->named.map.empty() ? by->named.map : std::string(scene::kDefaultLineColorMap);
         change.push_back({pointer + "/color_by", scene::to_json(scene, other)});
       }
       edits.set(change, "colours");
@@ -183,7 +190,7 @@ void edit_colors(Edits& edits, const scene::Scene& scene, const json::Node& item
     ImGui::EndCombo();
   }
   if (by)
-    edit_color_scale(edits, scene, item, *by);
+    edit_color_scale(edits, scene, item, *by, has_threshold);
   else
     edit_color(edits, "colour", color, pointer + "/color");
 }

@@ -16,12 +16,12 @@
 
 namespace catena::app {
 
-/// Draws the color scale of an item colored by values: color map, reversed or not, range, mapping, threshold.
-void edit_color_scale(Edits& edits, const scene::Scene& scene, const json::Node& item, const scene::ColorBy& by);
+/// Draws the color scale of an item colored by values: color map, reversed or not, range, mapping, and a threshold if the item has one.
+void edit_color_scale(Edits& edits, const scene::Scene& scene, const json::Node& item, const scene::ColorBy& by, bool has_threshold = true);
 /// Draws the colors of an item that has either one color ("color") or is colored by values ("color_by"): those of a field, or one of its
 /// own `quantities`.
 void edit_colors(Edits& edits, const scene::Scene& scene, const json::Node& item, const Color& color,
-                 const std::optional<scene::ColorBy>& by, const std::vector<std::string>& quantities);
+                 const std::optional<scene::ColorBy>& by, const std::vector<std::string>& quantities, bool has_threshold = true);
 /// Draws a combo box of the color maps. Returns the chosen name, with "_r" if reversed; nothing if unchanged.
 std::optional<std::string> choose_color_map(const std::string& now, const char* otherwise);
 /// Draws the ranges of shown values; `pointer`: the key "threshold"; `data`: the range that a first threshold states.

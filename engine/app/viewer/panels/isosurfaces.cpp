@@ -41,12 +41,8 @@ void draw_isosurfaces(PanelContext& context) {
   const scene::Scene& scene = context.scene.scene();
   scene.entities.each<scene::Isosurface>([&](scene::Entity e, const scene::Isosurface& surface) {
     if (!begin_item(edits, surface.where, !is_hidden(scene.entities, e), "isosurface", entity_name(scene, surface.field))) return;
-    const std::string pointer = item_pointer(surface.where);
     draw_level(context, edits, surface);
-    if (surface.color_by)
-      ImGui::TextDisabled("coloured by %s", entity_name(scene, surface.color_by->field).c_str());
-    else
-      edit_color(edits, "colour", surface.color, pointer + "/color");
+    edit_colors(edits, scene, surface.where, surface.color, surface.color_by, {}, false);
     edit_simple_keys(edits, "isosurfaces", surface.where);
     end_item();
   });

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Statistics of the labels of a label map, in the panel of measuring.
 #include <fmt/format.h>
+#include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "engine/app/viewer/edit/histogram_cache.h"
+#include "engine/app/viewer/edit/label_opacity.h"
 #include "engine/app/viewer/panels/measure.h"
 #include "engine/app/viewer/panels/property_widgets.h"
 #include "engine/scene/labels.h"
@@ -43,11 +46,14 @@ void number_cell(double value) {
   ImGui::TextUnformatted(text.c_str());
 }
 
-void draw_row(const LabelStatistics& row, bool with_values) {
+void draw_row(const LabelStatistics& row, bool with_values, std::optional<double>& selected) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   const std::string number = fmt::format("{}", row.label);
-  ImGui::TextUnformatted(row.name.empty() ? number.c_str() : row.name.c_str());
+  ImGui::PushID(number.c_str());
+  if (ImGui::Selectable(row.name.empty() ? number.c_str() : row.name.c_str(), selected == row.label, ImGuiSelectableFlags_SpanAllColumns))
+    selected = selected == row.label ? std::nullopt : std::optional(row.label);
+  ImGui::PopID();
   show_tooltip(row.name.empty() ? "label " + number : row.name + ", label " + number);
   ImGui::TableNextColumn();
   ImGui::TextUnformatted(std::to_string(row.voxels).c_str());
@@ -93,8 +99,23 @@ void draw_table(AppearanceState::Measure& shown, bool with_values, const std::st
   ImGuiListClipper visible;
   visible.Begin(static_cast<int>(shown.rows.size()));
   while (visible.Step())
-    for (int n = visible.DisplayStart; n < visible.DisplayEnd; ++n) draw_row(shown.rows[static_cast<std::size_t>(n)], with_values);
+    for (int n = visible.DisplayStart; n < visible.DisplayEnd; ++n)
+      draw_row(shown.rows[static_cast<std::size_t>(n)], with_values, shown.selected);
   ImGui::EndTable();
+}
+
+/// Draws the opacity of the selected label.
+void draw_opacity(PanelContext& context, const AppearanceState::Measure& shown) {
+  const auto row = std::ranges::find_if(shown.rows, [&](const LabelStatistics& r) { return r.label == shown.selected; });
+  if (row == shown.rows.end()) return ImGui::TextDisabled("a click on a row selects a label");
+  const scene::Scene& scene = context.scene.scene();
+  auto opacity = static_cast<float>(label_opacity(scene, shown.map, row->label));
+  if (ImGui::SliderFloat("opacity", &opacity, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp)) {
+    TextEdits edits = make_label_opacity_edits(scene, shown.map, row->label, round_within(opacity, 0, 1, 100));
+    if (edits.empty()) return context.state.show_message(fmt::format("the surface has more than {} labels", kMaxListedLabels), true);
+    context.edits.drag(std::move(edits), "opacity of a label");
+  }
+  show_tooltip("of the selected label; it gets a surface of its own");
 }
 
 }  // namespace
@@ -130,6 +151,7 @@ void draw_label_statistics(PanelContext& context) {
   }
   const std::string unit = context.state.unit_length.empty() ? "" : context.state.unit_length + "3";
   draw_table(chosen, with_values, unit);
+  draw_opacity(context, chosen);
   if (ImGui::Button("Copy table as CSV")) {
     ImGui::SetClipboardText(labels_to_csv(chosen.rows, with_values).c_str());
     context.state.show_message(fmt::format("copied {} labels of {}", chosen.rows.size(), chosen.map));

@@ -52,6 +52,7 @@ struct AppearanceState {
     LabelColumn sorted_by = LabelColumn::name;                 ///< Order of the rows.
     bool is_descending = false;
     std::vector<LabelStatistics> rows;  ///< Sorted rows of the table.
+    std::optional<double> selected;     ///< Label of the selected row.
   } measure;
 
   std::map<std::string, std::string> disabled_text;  ///< Disabled text by the JSON pointer of its place.

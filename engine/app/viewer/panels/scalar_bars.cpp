@@ -12,6 +12,19 @@ namespace catena::app {
 
 namespace {
 
+/// Returns words for an item: "volume of T1".
+std::string describe_item(const scene::Scene& scene, const scene::Drawable& kind, scene::Entity item) {
+  const scene::Entity field = kind.color_field(scene.entities, item);
+  return std::string(kind.singular) + (field ? " of " + entity_name(scene, field) : "");
+}
+
+/// Returns the title of a bar, or the item that it shows.
+std::string bar_name(const scene::Scene& scene, const scene::ScalarBar& bar) {
+  if (bar.title && !bar.title->empty()) return *bar.title;
+  const scene::Drawable* kind = scene::find_drawable(scene.entities, bar.target);
+  return kind != nullptr ? describe_item(scene, *kind, bar.target) : bar.where.label;
+}
+
 void draw_bar(Edits& edits, const scene::ScalarBar& bar, const std::string& name) {
   const std::string pointer = item_pointer(bar.where);
   ImGui::PushID(pointer.c_str());
@@ -38,8 +51,9 @@ void draw_new_bar(Edits& edits, const scene::Scene& scene) {
     if (kind.bar_key.empty()) continue;
     int index = 0;
     for (const auto& [entity, where] : kind.items(scene.entities)) {
-      if (ImGui::Selectable(where->label.c_str()))
-        edits.set("/scalar_bars/-", fmt::format("{{\"{}\": {}}}", kind.bar_key, index), "scalar bar of " + where->label);
+      const std::string name = describe_item(scene, kind, entity);
+      if (kind.has_colors(scene.entities, entity) && ImGui::Selectable((name + "##" + where->label).c_str()))
+        edits.set("/scalar_bars/-", fmt::format("{{\"{}\": {}}}", kind.bar_key, index), "scalar bar of the " + name);
       ++index;
     }
   }
@@ -48,8 +62,7 @@ void draw_new_bar(Edits& edits, const scene::Scene& scene) {
 
 void draw_scalar_bars(PanelContext& context) {
   const scene::Scene& scene = context.scene.scene();
-  for (const scene::ScalarBar& bar : scene.annotations.scalar_bars)
-    draw_bar(context.edits, bar, bar.title && !bar.title->empty() ? *bar.title : bar.where.label);
+  for (const scene::ScalarBar& bar : scene.annotations.scalar_bars) draw_bar(context.edits, bar, bar_name(scene, bar));
   draw_new_bar(context.edits, scene);
 }
 

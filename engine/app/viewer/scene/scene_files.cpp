@@ -139,6 +139,11 @@ bool SceneFiles::write(const std::string& path) {
   SceneModel& scene = context_.scene;
   ViewState& state = context_.state;
   if (camera_.has_unsaved_view()) state.show_error(scene.set("/camera", scene::to_json(scene.scene().camera), "view"));
+  if (camera_.has_unsaved_planes()) {
+    const auto planes = camera_.shown_planes();
+    state.show_error(planes ? scene.set("/orthogonal_views", scene::to_json(*planes), "planes")
+                            : scene.remove("/orthogonal_views", "planes"));
+  }
   const Outcome saved = scene.save(path);
   state.show_message(saved ? "saved " + scene.document().path() : saved.error().message, !saved);
   if (!saved) return false;
