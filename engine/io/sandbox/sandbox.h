@@ -2,8 +2,8 @@
 /// Sandbox of a process that handles an untrusted file; entered before the first byte is read. Afterwards only the open descriptors can be
 /// used: no file can be opened (Landlock where the kernel supports it, and seccomp), no socket, program or process created, no memory made
 /// executable, no other process affected. There are no capabilities, even when started by root. The process is killed with the thread that
-/// started it (unless it ends with a connection), writes no core file, and has resource limits. A reader of formats that span several files may read the files of one folder:
-/// enforced by Landlock, else by a change of the root directory.
+/// started it (unless it ends with a connection), writes no core file, and has resource limits. A reader of formats that span several files
+/// may read the files of one folder: enforced by Landlock, else by a change of the root directory.
 #pragma once
 #include "engine/io/protocol.h"
 
