@@ -19,8 +19,8 @@ struct OrthogonalViews {
   bool operator==(const OrthogonalViews&) const = default;
 };
 
-/// Limits of OrthogonalViews::zoom.
-inline constexpr double kMinPlaneZoom = 0.2, kMaxPlaneZoom = 500;
+inline constexpr double kMinPlaneZoom = 0.2;  ///< Lower limit of OrthogonalViews::zoom
+inline constexpr double kMaxPlaneZoom = 500;  ///< Upper limit of OrthogonalViews::zoom
 
 /// Returns the state as a JSON object.
 CATENA_EXPORT std::string to_json(const OrthogonalViews& views);
