@@ -26,7 +26,7 @@ def stand_in(arguments):
     for folder in "python", "manual":
         shutil.copytree(BUILD / folder, made / folder, dirs_exist_ok=True)
     # the module finds the library as that build's would: what is installed must find it by itself
-    old, new = (re.search(r'OLD_RPATH "(.*)"', (root / "cmake_install.cmake").read_text(encoding="utf-8")).group(1) for root in (BUILD, made))
+    old, new = (re.search(r'_catena[^"]*\.so"\s*OLD_RPATH "(.*)"', (root / "cmake_install.cmake").read_text(encoding="utf-8")).group(1) for root in (BUILD, made))
     module = next((made / "python/catena").glob("_catena*.so"))
     script = made / "rpath.cmake"
     script.write_text(f'file(RPATH_CHANGE FILE "{module}" OLD_RPATH "{old}" NEW_RPATH "{new}")\n', encoding="utf-8")
