@@ -69,7 +69,9 @@ void add_render(CLI::App& program, CommandAction& chosen) {
   command->add_flag("--fit", options->fit, "fits the whole scene into the image, without turning the camera");
   CLI::Option* layout =
       command->add_option("--layout", options->layout, "ortho: axial, coronal and sagittal planes beside the 3D view")->type_name("LAYOUT");
-  command->add_option("--focus", options->focus, "point that the planes of --layout ortho share (default: as saved in the scene, or the middle of the field)")
+  command
+      ->add_option("--focus", options->focus,
+                   "point that the planes of --layout ortho share (default: as saved in the scene, or the middle of the field)")
       ->type_name("X Y Z")
       ->expected(3)
       ->needs(layout);

@@ -28,7 +28,8 @@ std::vector<LabelSurface> label_surfaces(const scene::Scene& scene, const std::s
   scene.entities.each<scene::Isosurface>([&](scene::Entity e, const scene::Isosurface& surface) {
     const scene::FieldSource& source = scene.entities.get<scene::FieldSource>(surface.field);
     if (scene::is_hidden(scene.entities, e) || !source.label || source.label->label_map != map) return;
-    surfaces.push_back({entity_name(scene, surface.field), item_pointer(surface.where), scene::labels_inside(*source.label, *known), surface.opacity});
+    surfaces.push_back(
+        {entity_name(scene, surface.field), item_pointer(surface.where), scene::labels_inside(*source.label, *known), surface.opacity});
   });
   return surfaces;
 }
