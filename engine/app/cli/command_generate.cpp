@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// catena generate NAME -o OUT.vdb --resolution N [--box LO HI]
+/// catena generate NAME -o OUT.vdb --resolution N [--box LO HI]; an OUT.zarr may be larger than memory
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -14,12 +14,14 @@
 #include "engine/base/text.h"
 #include "engine/field/analytic/analytic.h"
 #include "engine/io/volume/load_field.h"
+#include "engine/io/volume/voxel_source.h"
+#include "engine/io/zarr/write_zarr.h"
 
 namespace catena::app {
 
 namespace {
 
-constexpr int kMaxResolution = 1024;
+constexpr int kMaxResolution = 1024, kMaxZarrResolution = 32768;
 
 struct GenerateOptions {
   std::string name, output;
@@ -35,8 +37,10 @@ Outcome check(const GenerateOptions& o) {
     const auto names = field::analytic_names();
     return Error{"no analytic field " + in_quotes(o.name) + suggestion(o.name, names) + "; known: " + join_words(names)};
   }
-  if (o.resolution < 2 || o.resolution > kMaxResolution)
-    return Error{fmt::format("--resolution {}: expected 2 to {} nodes along each axis", o.resolution, kMaxResolution)};
+  const int max_resolution = has_extension(o.output, ".zarr") ? kMaxZarrResolution : kMaxResolution;
+  if (o.resolution < 2 || o.resolution > max_resolution)
+    return Error{fmt::format("--resolution {}: expected 2 to {} nodes along each axis{}", o.resolution, max_resolution,
+                             max_resolution == kMaxResolution ? fmt::format(" ({} for .zarr)", kMaxZarrResolution) : "")};
   if (!std::isfinite(o.box[0]) || !std::isfinite(o.box[1]) || !(o.box[0] < o.box[1]))
     return Error{fmt::format("--box {} {}: expected two finite numbers, LO < HI", to_text(o.box[0]), to_text(o.box[1]))};
   if (!std::isfinite(o.scale) || o.scale == 0)
@@ -44,30 +48,58 @@ Outcome check(const GenerateOptions& o) {
   if (o.direction_given && o.name != "uniform") return Error{"--direction: applies only to uniform, not to " + o.name};
   const Vec3 d(o.direction[0], o.direction[1], o.direction[2]);
   if (!is_finite(d) || norm(d) == 0) return Error{"--direction: expected three finite numbers, not all zero"};
-  if (!o.output.ends_with(".vdb") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .vdb"};
+  if (has_extension(o.output, ".zarr")) {
+    if (const auto parts = field::analytic_parts(o.name); parts.size() > 1)
+      return Error{
+          fmt::format("{}: {} consists of {} fields, expected one for .zarr (.vdb stores several)", o.output, o.name, parts.size())};
+    return Done{};  // write_zarr() checks the rest
+  }
+  if (!o.output.ends_with(".vdb") && !o.output.starts_with("/dev/"))
+    return Error{o.output + ": expected an output that ends in .vdb or .zarr"};
   IoConflictChecker files;
   files.add_output("-o", o.output);
   return files.check();
 }
 
-Outcome generate(const GenerateOptions& o) {
-  CATENA_CHECK(check(o));
+field::AnalyticParameters parameters_of(const GenerateOptions& o) {
+  field::AnalyticParameters parameters;
+  parameters.scale = o.scale;
+  parameters.direction = Vec3(o.direction[0], o.direction[1], o.direction[2]);
+  return parameters;
+}
+
+Outcome generate_zarr(const GenerateOptions& o) {
+  CATENA_TRY(const field::AnyField exact, field::make_analytic(o.name, parameters_of(o)));
+  CATENA_TRY(field::VoxelSource source, field::voxels_of_formula(exact, o.resolution, o.box[0], o.box[1]));
+  source.name = o.name;
+  source.identity += fmt::format("formula {}, scale {}\n", o.name, to_text(o.scale));
+  ProgressLine progress("generate", 1);
+  CATENA_CHECK(field::write_zarr(o.output, std::move(source), [&](double part) { progress.update(part); }));
+  return Done{};
+}
+
+Outcome generate_vdb(const GenerateOptions& o) {
   std::vector<field::NamedGrid> items;
   const auto parts = field::analytic_parts(o.name);
   ProgressLine progress("generate", static_cast<double>(parts.size()));
   for (const std::string_view part : parts) {
-    field::AnalyticParameters parameters;
-    parameters.scale = o.scale;
-    parameters.direction = Vec3(o.direction[0], o.direction[1], o.direction[2]);
+    field::AnalyticParameters parameters = parameters_of(o);
     if (parts.size() > 1) parameters.part = std::string(part);
     CATENA_TRY(const field::AnyField exact, field::make_analytic(o.name, parameters));
     CATENA_TRY(const field::AnyField sampled, field::try_sample_on_grid(exact, o.resolution, o.box[0], o.box[1]));
     items.push_back({sampled, std::string(part)});
     progress.update(static_cast<double>(items.size()));
   }
-  CATENA_CHECK(field::write_vdb(o.output, items));
+  return field::write_vdb(o.output, items);
+}
+
+Outcome generate(const GenerateOptions& o) {
+  CATENA_CHECK(check(o));
+  const bool as_zarr = has_extension(o.output, ".zarr");
+  CATENA_CHECK(as_zarr ? generate_zarr(o) : generate_vdb(o));
   fmt::print("{}:", sanitize_for_terminal(o.output));
-  for (const field::NamedGrid& item : items) fmt::print(" {}", sanitize_for_terminal(item.name));
+  const auto parts = as_zarr ? std::vector<std::string_view>{o.name} : field::analytic_parts(o.name);
+  for (const std::string_view part : parts) fmt::print(" {}", sanitize_for_terminal(part));
   fmt::print(", {0} x {0} x {0} nodes, spacing {1}\n", o.resolution, to_text((o.box[1] - o.box[0]) / (o.resolution - 1)));
   return Done{};
 }
@@ -81,8 +113,12 @@ void add_generate(CLI::App& program, CommandAction& chosen) {
       ->type_name("FORMULA")
       ->check(accepted_words(join_words(field::analytic_names(), field::analytic_names().size())))
       ->required();
-  command->add_option("-o,--output", options->output, "grid to write")->type_name("FILE.vdb")->required();
-  command->add_option("--resolution", options->resolution, "nodes along each axis, both ends included")
+  command->add_option("-o,--output", options->output, "grid to write: .vdb, or .zarr, which may be larger than memory")
+      ->type_name("FORMULAFILE")
+      ->required();
+  command
+      ->add_option("--resolution", options->resolution,
+                   fmt::format("nodes along each axis, both ends included (.zarr: up to {})", kMaxZarrResolution))
       ->type_name("NODES")
       ->check(accepted("2 to " + std::to_string(kMaxResolution)))
       ->required();

@@ -16,6 +16,7 @@
 #include "engine/io/formats.h"
 #include "engine/io/volume/load_field.h"
 #include "engine/io/volume/write_field.h"
+#include "engine/io/zarr/write_zarr.h"
 #include "engine/scene/time_steps.h"
 
 namespace catena::app {
@@ -34,7 +35,10 @@ struct ImportOptions {
 Outcome check_outputs(const ImportOptions& o, const std::vector<std::string>& outputs) {
   IoConflictChecker files;
   files.add_input(o.input);
-  for (const std::string& output : outputs) files.add_output("-o", output);
+  for (const std::string& output : outputs) {
+    if (has_extension(output, ".zarr")) CATENA_CHECK(field::check_new_store(output));
+    files.add_output("-o", output);
+  }
   return files.check();
 }
 
@@ -42,7 +46,8 @@ Outcome check_outputs(const ImportOptions& o, const std::vector<std::string>& ou
 Outcome import_step(const ImportOptions& o, const field::LoadRequest& request, const std::string& output,
                     std::set<std::string>& printed_notes) {
   std::vector<std::string> notes;
-  CATENA_TRY(const std::string name, field::convert_file(request, output, o.name, &notes));
+  ProgressLine progress("import", 1);
+  CATENA_TRY(const std::string name, field::convert_file(request, output, o.name, &notes, [&](double part) { progress.update(part); }));
   for (const std::string& note : notes)
     if (printed_notes.insert(note).second) print_message("note: " + request.path + ": " + note);
   fmt::print("{}: {}\n", sanitize_for_terminal(output), sanitize_for_terminal(name));
@@ -51,6 +56,7 @@ Outcome import_step(const ImportOptions& o, const field::LoadRequest& request, c
 
 Result<int> count_steps(const field::LoadRequest& request) {
   if (scene::is_pattern(request.path)) return static_cast<int>(scene::expand_pattern(request.path).size());
+  if (const std::size_t steps = field::read_times(request.path).size(); steps > 1) return static_cast<int>(steps);
   CATENA_TRY(const field::AnyField first, field::load(request));
   return scene::list_time_steps(request.path, first).count;
 }
@@ -107,7 +113,7 @@ Outcome import_file(const ImportOptions& o) {
 
 void add_import(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<ImportOptions>();
-  CLI::App* command = program.add_subcommand("import", "converts a data file to .vdb, .vti, .nrrd or NIfTI");
+  CLI::App* command = program.add_subcommand("import", "converts a data file to .vdb, .vti, .nrrd, NIfTI or OME-Zarr");
   add_source(*command, "IN", options->input, io::describe_expected(io::DataKind::volume))->type_name("DATA")->required();
   command
       ->add_option("-o,--output", options->output,

@@ -12,28 +12,15 @@
 #include "engine/io/formats.h"
 #include "engine/io/stores/level_reader.h"
 #include "engine/io/stores/store.h"
+#include "engine/io/stores/store_voxels.h"
 #include "engine/io/volume/crop.h"
 #include "engine/io/volume/downsample.h"
+#include "engine/io/zarr/write_zarr.h"
 
 namespace catena::field {
 namespace {
 
 std::string size_text(const Index3& n) { return fmt::format("{} x {} x {}", n.x, n.y, n.z); }
-
-/// Returns the index of the requested grid.
-Result<int> choose_grid(const Store& store, const std::string& name) {
-  const std::vector<StoreGrid>& grids = store.description().grids;
-  if (name.empty() && grids.size() == 1) return 0;
-  std::vector<std::string_view> names;
-  for (const StoreGrid& grid : grids) names.push_back(grid.name);
-  if (name.empty())
-    return Error{
-        one_line(fmt::format("{}: the store has several grids, expected the name of one of: {}", store.path(), join_words(names)))};
-  const auto found = std::ranges::find(names, name);
-  if (found == names.end())
-    return Error{one_line(fmt::format("{}: there is no grid {}, the store has: {}", store.path(), in_quotes(name), join_words(names)))};
-  return static_cast<int>(found - names.begin());
-}
 
 /// Returns the voxels of a level that a request needs.
 Result<StoreBox> needed_box(const std::string& path, const StoreGrid& grid, const StoreLevel& level, const std::optional<Box>& crop) {
@@ -84,15 +71,13 @@ Result<LevelPart> find_part(const LoadRequest& request, LevelPart part) {
 
 Result<AnyField> load_stored(const LoadRequest& request) {
   CATENA_TRY(const std::shared_ptr<Store> store, find_store(request.path));
-  CATENA_TRY(const int chosen, choose_grid(*store, request.grid));
+  CATENA_TRY(const int chosen, find_grid(*store, request.grid));
   const StoreDescription& all = store->description();
   const StoreGrid& grid = all.grids[static_cast<std::size_t>(chosen)];
   if (request.mask_required) return Error{request.path + ": a store of chunks has no mask"};
-  const int steps = std::max(1, static_cast<int>(all.times.size()));
-  if (request.step >= std::max(steps, grid.steps))
-    return Error{fmt::format("{}: there is no time step {}, the last one is {}", request.path, request.step, steps - 1)};
+  CATENA_TRY(const int step, find_step(*store, chosen, request.step));
   const int finest = static_cast<int>(level_for(grid, request.level));
-  CATENA_TRY(const LevelPart part, find_part(request, {store, chosen, finest, std::min(request.step, grid.steps - 1), StoreBox{}}));
+  CATENA_TRY(const LevelPart part, find_part(request, {store, chosen, finest, step, StoreBox{}}));
   const auto reader = std::make_shared<LevelReader>(part);
   const MemoryReservation slab(reader->slab_bytes());
   DenseFile file{grid.name, grid.type, one_line(fmt::format("{}: the grid {} ", request.path, in_quotes(grid.name))), {}, 1, {}};
@@ -167,7 +152,7 @@ Result<std::vector<GridInfo>> describe_stored(const std::string& path, int step)
 Units stored_units(const std::string& path, const std::string& name) {
   const auto store = find_store(path);
   if (!store) return {};
-  const auto grid = choose_grid(**store, name);
+  const auto grid = find_grid(**store, name);
   if (!grid) return {};
   const StoreGrid& found = (*store)->description().grids[static_cast<std::size_t>(*grid)];
   Units units;
@@ -204,6 +189,7 @@ constexpr VolumeReader kStoredVolume{.load = load_stored,
                                      .times = stored_times,
                                      .notes = stored_notes,
                                      .files = stored_files,
+                                     .open_voxels = open_stored_voxels,
                                      .reads_parts = true};
 
 bool is_zarr_folder(const std::string& path) {
@@ -232,7 +218,11 @@ std::vector<Format> store_formats() {
   zarr.recognizes_folder = field::is_zarr_folder;
   tiff.recognizes_folder = field::is_tiff_folder;
   return {
-      {.name = "OME-Zarr, Zarr 2", .extensions = {".zarr"}, .volume = zarr, .layout = FileLayout::companions},
+      {.name = "OME-Zarr, Zarr 2",
+       .extensions = {".zarr"},
+       .volume = zarr,
+       .write_volume = field::write_field_as_zarr,
+       .layout = FileLayout::companions},
       {.name = "TIFF, BigTIFF, OME-TIFF",
        .extensions = {".tif", ".tiff", ".btf", ".tf8", ".tf2"},
        .volume = tiff,

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/base/input_files.h"
+#include "engine/base/text.h"
 #include "engine/field/bricks/brick_source.h"
 
 namespace catena::field {
@@ -33,9 +34,9 @@ Store::Store(StoreProcess first, std::string path)
   idle_.push_back(std::move(first));
 }
 
-Result<std::shared_ptr<Store>> Store::open(const std::string& path) {
+Result<std::shared_ptr<Store>> Store::open(const std::string& path, bool is_input) {
   CATENA_TRY(StoreProcess first, StoreProcess::start(path));
-  register_inputs(first.description().opened_files);
+  if (is_input) register_inputs(first.description().opened_files);
   return std::shared_ptr<Store>(new Store(std::move(first), path));
 }
 
@@ -139,6 +140,28 @@ Result<std::shared_ptr<Store>> find_store(const std::string& path) {
   opened.push_front({path, state, store});
   if (opened.size() > kMaxOpen) opened.pop_back();
   return store;
+}
+
+Result<int> find_grid(const Store& store, const std::string& name) {
+  const std::vector<StoreGrid>& grids = store.description().grids;
+  if (name.empty() && grids.size() == 1) return 0;
+  std::vector<std::string_view> names;
+  for (const StoreGrid& grid : grids) names.push_back(grid.name);
+  if (name.empty())
+    return Error{
+        one_line(fmt::format("{}: the store has several grids, expected the name of one of: {}", store.path(), join_words(names)))};
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end())
+    return Error{one_line(fmt::format("{}: there is no grid {}, the store has: {}", store.path(), in_quotes(name), join_words(names)))};
+  return static_cast<int>(found - names.begin());
+}
+
+Result<int> find_step(const Store& store, int grid, int step) {
+  const int steps = store.description().grids[static_cast<std::size_t>(grid)].steps;
+  const int times = std::max(1, static_cast<int>(store.description().times.size()));
+  if (step >= std::max(times, steps))
+    return Error{fmt::format("{}: there is no time step {}, the last one is {}", store.path(), step, times - 1)};
+  return std::min(step, steps - 1);
 }
 
 }  // namespace catena::field

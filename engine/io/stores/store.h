@@ -20,8 +20,9 @@ class Store {
   /// Reader processes that serve one store, at most.
   static constexpr int kReaders = 2;
 
-  /// Starts a reader and opens the store. The Error is a complete message.
-  static Result<std::shared_ptr<Store>> open(const std::string& path);
+  /// Starts a reader and opens the store, whose files become inputs of this process (engine/base/input_files.h) unless `is_input` is false.
+  /// The Error is a complete message.
+  static Result<std::shared_ptr<Store>> open(const std::string& path, bool is_input = true);
 
   /// Returns the path as it was given.
   const std::string& path() const { return path_; }
@@ -50,5 +51,10 @@ class Store {
 
 /// Returns the open store of a path; opens it unless it is open and its metadata files are unchanged. A few stores stay open.
 Result<std::shared_ptr<Store>> find_store(const std::string& path);
+
+/// Returns the index of the grid with a name; empty: of the only one. The Error is a complete message.
+Result<int> find_grid(const Store& store, const std::string& name);
+/// Returns the step of a grid at a time step of the store. The Error is a complete message.
+Result<int> find_step(const Store& store, int grid, int step);
 
 }  // namespace catena::field

@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: MIT
 // Loads raw numbers, x fastest, little-endian, slice by slice; the layout comes from the scene. Voxel (0, 0, 0) is at `origin`.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <fstream>
 #include <vector>
 
+#include "engine/base/helper_process.h"
+#include "engine/base/system_failure.h"
+#include "engine/field/bricks/brick_source.h"
 #include "engine/field/number_type.h"
 #include "engine/io/formats.h"
+#include "engine/io/volume/voxel_source.h"
 
 namespace catena::field {
 
@@ -50,9 +58,18 @@ class RawLayers {
   std::vector<std::byte> bytes_;
 };
 
+/// The validated layout of a file.
+struct RawFile {
+  std::string name;
+  NumberType type;
+  std::size_t components;
+  Mapping mapping;
+};
+
 }  // namespace
 
-static Result<DenseFile> open_raw(const LoadRequest& request) {
+/// Checks the layout of a request against the file.
+static Result<RawFile> check_raw(const LoadRequest& request) {
   const std::string& path = request.path;
   CATENA_TRY(const std::uint64_t size, readable_file_size(path));
   if (!request.raw) return Error{fmt::format("{}: a .raw file needs shape, spacing, origin and type in the scene's \"fields\"", path)};
@@ -84,18 +101,62 @@ static Result<DenseFile> open_raw(const LoadRequest& request) {
   if (expected_size != static_cast<long double>(size))
     return Error{fmt::format("{}: the file has {} bytes, expected {:.0f} ({} x {} x {} voxels of {} bytes)", path, size,
                              static_cast<double>(expected_size), n.x, n.y, n.z, voxel_bytes)};
-  CATENA_CHECK(check_dense_memory(fmt::format("{}: the grid of {} x {} x {} voxels", path, n.x, n.y, n.z), n, static_cast<int>(components),
-                                  /*masked=*/false));
-
-  // the numbers
   Mat3 linear(0.0);
   for (int a = 0; a < 3; ++a) linear[a][a] = raw.spacing[a];
-  const auto layers = std::make_shared<RawLayers>(path, *type);
-  DenseFile file{name, raw.type, path + ": the data ", Mapping::from_linear(linear, raw.origin), static_cast<int>(components), {}};
+  return RawFile{name, *type, components, Mapping::from_linear(linear, raw.origin)};
+}
+
+static Result<DenseFile> open_raw(const LoadRequest& request) {
+  CATENA_TRY(const RawFile raw, check_raw(request));
+  const std::string& path = request.path;
+  const Index3& n = request.raw->shape;
+  CATENA_CHECK(check_dense_memory(fmt::format("{}: the grid of {} x {} x {} voxels", path, n.x, n.y, n.z), n,
+                                  static_cast<int>(raw.components),
+                                  /*masked=*/false));
+  const auto layers = std::make_shared<RawLayers>(path, raw.type);
+  DenseFile file{raw.name, request.raw->type, path + ": the data ", raw.mapping, static_cast<int>(raw.components), {}};
   file.rounding = layers->rounding;
   file.source.size = n;
   file.source.read = [layers](int, int, std::span<float> values, std::span<std::uint8_t>) { return layers->read(values); };
   return file;
+}
+
+/// Reads boxes of the file.
+static Result<VoxelSource> open_raw_voxels(const LoadRequest& request) {
+  CATENA_TRY(const RawFile raw, check_raw(request));
+  const std::string& path = request.path;
+  const RawLayout& layout = *request.raw;
+  const Index3& n = layout.shape;
+  if (raw.components > 1) return Error{path + ": these are vectors, expected scalars for OME-Zarr"};
+  VoxelSource source{raw.name, raw.type, n, raw.mapping};
+  source.identity = identify_file(path) + fmt::format("{} x {} x {} {}\n", n.x, n.y, n.z, layout.type);
+  // whole rows: their voxels lie one after the other
+  constexpr std::size_t kMaxBytes = 16 << 20, kRowBytes = std::size_t{kBrickEdge} * kBrickEdge * kBrickEdge;
+  source.bricks_at_once.x = std::min((n.x - 1) / kBrickEdge + 1, static_cast<int>(kMaxBytes / (kRowBytes * raw.type.bytes)));
+  const auto file = std::make_shared<FileDescriptor>(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file->get() < 0) return system_error(path + ": cannot be opened", errno);
+  source.read = [file, path, n, bytes = raw.type.bytes](const Index3& lo, const Index3& size, std::span<std::byte> values) -> Outcome {
+    // the voxels of a piece follow each other in the file
+    const int rows = size.x == n.x ? size.y : 1;
+    const std::size_t piece = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(rows) * bytes;
+    std::byte* to = values.data();
+    for (int z = 0; z < size.z; ++z)
+      for (int y = 0; y < size.y; y += rows, to += piece) {
+        const std::uint64_t voxel =
+            (static_cast<std::uint64_t>(lo.z + z) * static_cast<std::uint64_t>(n.y) + static_cast<std::uint64_t>(lo.y + y)) *
+                static_cast<std::uint64_t>(n.x) +
+            static_cast<std::uint64_t>(lo.x);
+        for (std::size_t done = 0; done < piece;) {
+          const ssize_t got = ::pread(file->get(), to + done, piece - done, static_cast<off_t>(voxel * bytes + done));
+          if (got < 0 && errno == EINTR) continue;
+          if (got < 0) return system_error(path + ": cannot be read", errno);
+          if (got == 0) return Error{path + ": cannot be read to the end"};
+          done += static_cast<std::size_t>(got);
+        }
+      }
+    return Done{};
+  };
+  return source;
 }
 
 static Result<std::vector<GridInfo>> describe_raw(const std::string& path, int) {
@@ -110,9 +171,10 @@ static Result<std::vector<GridInfo>> describe_raw(const std::string& path, int) 
 namespace catena::io {
 
 Format raw_format() {
-  return {.name = "Raw numbers",
-          .extensions = {".raw"},
-          .volume = {.open = field::open_raw, .describe = field::describe_raw, .needs_layout = true}};
+  return {
+      .name = "Raw numbers",
+      .extensions = {".raw"},
+      .volume = {.open = field::open_raw, .describe = field::describe_raw, .open_voxels = field::open_raw_voxels, .needs_layout = true}};
 }
 
 }  // namespace catena::io

@@ -16,6 +16,8 @@
 
 namespace catena::field {
 
+struct VoxelSource;  // voxel_source.h
+
 /// An opened file that contains one dense array: the layout has been validated and fits the memory budget.
 struct DenseFile {
   std::string name;    ///< Name of the grid.
@@ -40,8 +42,10 @@ struct VolumeReader {
   std::vector<double> (*times)(const std::string& path) = nullptr;             ///< Null: the format has one time step.
   std::vector<std::string> (*notes)(const std::string& path) = nullptr;        ///< On the whole file; with `reads_parts` only.
   std::vector<FileId> (*files)(const std::string& path) = nullptr;             ///< Data files; null: those that a reader opened.
-  bool (*recognizes_folder)(const std::string& path) = nullptr;                ///< By its contents, whatever its name.
-  bool needs_layout = false;   ///< The file does not describe itself: LoadRequest::raw is required.
+  /// Opens a scalar grid that is read in boxes, at full resolution, whatever its size; null: the grid is loaded.
+  Result<VoxelSource> (*open_voxels)(const LoadRequest& request) = nullptr;
+  bool (*recognizes_folder)(const std::string& path) = nullptr;  ///< By its contents, whatever its name.
+  bool needs_layout = false;                                     ///< The file does not describe itself: LoadRequest::raw is required.
   bool reads_folders = false;  ///< Reads folders that no format recognizes, and DICOM files without an extension, too.
   bool reads_parts = false;    ///< `load` applies level and crop itself; `describe` does not read all values.
 };

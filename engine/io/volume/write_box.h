@@ -33,7 +33,9 @@ class VoxelBox {
   /// Reads the validity (0 or 1) of the cells based at the voxels of a slice; 1 at the last voxel of an axis, where there is no cell.
   void read_cells(std::int32_t z, std::span<std::uint8_t> out) const;
   /// Reads the values of a slice, with NaN where a voxel is invalid.
-  void read_values_or_nan(std::int32_t z, std::span<float> out) const;
+  void read_values_or_nan(std::int32_t z, std::span<float> out) const { read_values_or_nan({0, 0, z}, {size.x, size.y, 1}, out); }
+  /// Reads the values of `count` voxels from `lo` on, with NaN where a voxel is invalid.
+  void read_values_or_nan(const Index3& lo, const Index3& count, std::span<float> out) const;
 
  private:
   AnyField field_;

@@ -82,14 +82,21 @@ void VoxelBox::read_cells(std::int32_t z, std::span<std::uint8_t> out) const {
   });
 }
 
-void VoxelBox::read_values_or_nan(std::int32_t z, std::span<float> out) const {
-  read_values(z, out);
-  if (!has_mask) return;
-  std::vector<std::uint8_t> valid(layer_voxels());
-  read_valid(z, valid);
+void VoxelBox::read_values_or_nan(const Index3& lo, const Index3& count, std::span<float> out) const {
+  const Index3 origin{first_index_.x + lo.x, first_index_.y + lo.y, first_index_.z + lo.z};
+  if (field_.scalar)
+    field_.scalar->grid()->read_block(origin, count, out);
+  else
+    field_.vector->grid()->read_block(origin, count, out);
+  const NanoMask* mask = mask_of(field_);
+  if (mask == nullptr) return;
+  const auto accessor = mask->getAccessor();
   const auto n = static_cast<std::size_t>(components);
-  for (std::size_t i = 0; i < valid.size(); ++i)
-    if (valid[i] == 0) std::fill_n(out.begin() + static_cast<std::ptrdiff_t>(i * n), n, std::numeric_limits<float>::quiet_NaN());
+  auto at = out.begin();
+  for (std::int32_t z = 0; z < count.z; ++z)
+    for (std::int32_t y = 0; y < count.y; ++y)
+      for (std::int32_t x = 0; x < count.x; ++x, at += components)
+        if (!accessor.getValue({origin.x + x, origin.y + y, origin.z + z})) std::fill_n(at, n, std::numeric_limits<float>::quiet_NaN());
 }
 
 /// Returns a note if single precision of axes and origin displaces voxels far from the origin; empty if none moves by more than a hundredth
@@ -162,7 +169,8 @@ Outcome write_box_with(Outcome (*write)(const std::string& path, const VoxelBox&
 }
 
 Result<std::string> convert_file(const LoadRequest& request, const std::string& path, const std::string& name,
-                                 std::vector<std::string>* notes) {
+                                 std::vector<std::string>* notes, const WriteProgress& progress) {
+  if (has_extension(path, ".zarr")) return convert_to_zarr(request, path, name, notes, progress);
   // import writes .vdb data if the extension is unknown
   const bool as_vdb = has_extension(path, ".vdb") || io::find_writer(path, io::DataKind::volume) == nullptr;
   if (as_vdb) {

@@ -148,7 +148,7 @@ TEST_F(ExportScene, MissingItemsAreRefusedInOneLine) {
       {"--slice 0 --details {d.csv}", "--details applies only to a recording"}};
   for (const auto& [more, part] : bad) expect_refused("export {s.json} -o {none.vtp} " + std::string(more), {part});
   expect_refused("export {s.json} --mesh tetrahedron -o {t.obj}", {"is also an input"});
-  expect_refused("import {g.vdb} -o {g.tif}", {".vdb, .nii, .nii.gz, .vti or .nrrd"});
+  expect_refused("import {g.vdb} -o {g.tif}", {".vdb, .nii, .nii.gz, .vti, .nrrd or .zarr"});
 }
 
 }  // namespace catena::export_scene_test

@@ -120,7 +120,7 @@ TEST(Write, UnknownExtensionsAreRefusedAndLinksAreFollowed) {
   const TemporaryFolder folder;
   const AnyField field{make_scalar_grid("a", {}, {2, 2, 2}, std::vector<float>(8, 1)), nullptr};
   const auto unknown = write_field(folder / "a.tif", field, "a", {});
-  EXPECT_TRUE(fails(unknown, ".vdb, .nii, .nii.gz, .vti or .nrrd"));
+  EXPECT_TRUE(fails(unknown, ".vdb, .nii, .nii.gz, .vti, .nrrd or .zarr"));
   std::ofstream(folder / "real.nii") << "old";
   std::filesystem::create_symlink(folder / "real.nii", folder / "link.nii");
   ASSERT_TRUE(write_field(folder / "link.nii", field, "a", {}));

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "engine/io/zarr/write_zarr.h"
+
+#include <algorithm>
+
+#include "engine/base/output_file.h"
+#include "engine/base/text.h"
+#include "engine/io/formats.h"
+#include "engine/io/zarr/pyramid_writer.h"
+#include "engine/io/zarr/zarr_folder.h"
+#include "engine/io/zarr/zarr_metadata.h"
+
+namespace catena::field {
+
+Outcome write_zarr(const std::string& path, VoxelSource source, const WriteProgress& progress) {
+  auto aligned = align_to_world(std::move(source));
+  if (!aligned) return Error{one_line(path) + ": " + aligned.error().message};
+  CATENA_TRY(const std::unique_ptr<ZarrFolder> folder, ZarrFolder::open(path, *aligned, halved_levels(aligned->size, aligned->mapping)));
+  const bool can_continue = !aligned->identity.empty();
+  Outcome done = PyramidWriter(*folder, *aligned, progress).write();
+  if (done) done = folder->commit(*aligned);
+  if (done) return done;
+  if (!can_continue) folder->remove();
+  Error error = done.error();
+  if (can_continue && error.system_failure) error.message += "; the same command continues where it ended";
+  return error;
+}
+
+Result<std::string> convert_to_zarr(const LoadRequest& request, const std::string& path, const std::string& name,
+                                    std::vector<std::string>* notes, const WriteProgress& progress) {
+  CATENA_CHECK(check_new_store(path));
+  if (is_path_within(path, request.path)) return Error{one_line(path) + ": lies in the folder that is imported, expected another folder"};
+  CATENA_TRY(VoxelSource source, open_voxels(request));
+  if (!name.empty()) source.name = name;
+  if (notes != nullptr) *notes = source.notes;
+  const std::string chosen_name = source.name;
+  CATENA_CHECK(write_zarr(path, std::move(source), progress));
+  return chosen_name;
+}
+
+Outcome write_field_as_zarr(const std::string& path, const AnyField& field, const std::string& name, const Units& units) {
+  CATENA_TRY(VoxelSource source, voxels_of_grid(path, field, name, units));
+  source.identity.clear();
+  return write_zarr(path, std::move(source));
+}
+
+}  // namespace catena::field
