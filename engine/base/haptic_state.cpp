@@ -27,7 +27,7 @@ const char* to_string(WidgetMode mode) {
 }
 
 const char* to_string(LinkStatus status) {
-  constexpr const char* words[] = {"OK", "FREE", "RELEASED", "BUDGET", "CRITICAL", "BOUNDARY", "NO_SURFACE", "BAD_PROBE"};
+  constexpr const char* words[] = {"OK", "FREE", "RELEASED", "BUDGET", "CRITICAL", "BOUNDARY", "NO_SURFACE", "BAD_PROBE", "COARSE"};
   return words[static_cast<int>(status)];
 }
 

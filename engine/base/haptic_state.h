@@ -74,9 +74,10 @@ enum class LinkStatus : std::uint8_t {
   critical,    ///< at a critical point, or the constraint is undefined there (LinkReport::sample_status)
   boundary,    ///< at the boundary of the domain
   no_surface,  ///< no surface was found
-  bad_probe    ///< the position of the probe is not finite
+  bad_probe,   ///< the position of the probe is not finite
+  coarse       ///< as ok, but of a coarser level of the data: the bricks at the proxy are not in memory yet. Only in a LinkReport
 };
-/// Returns OK FREE RELEASED BUDGET CRITICAL BOUNDARY NO_SURFACE BAD_PROBE.
+/// Returns OK FREE RELEASED BUDGET CRITICAL BOUNDARY NO_SURFACE BAD_PROBE COARSE.
 CATENA_EXPORT const char* to_string(LinkStatus status);
 
 /// Condition under which a tick ran, set by the servo from the clock and the device.
@@ -158,6 +159,7 @@ struct HapticState {
   ForceState force_state = ForceState::on;          ///< state of the force limiter
   // written by the servo
   std::uint64_t program_epoch = 0;     ///< epoch of the newest program that the tick has run
+  std::uint64_t brick_snapshot = 0;    ///< number of the snapshot of bricks of the tick; 0: none (haptics/servo/brick_pager.h)
   std::uint64_t missed_deadlines = 0;  ///< number of deadlines missed since the servo started
   double period_us = 0;                ///< time since the start of the preceding tick
   double compute_us = 0;               ///< duration of the tick alone

@@ -19,11 +19,19 @@
 
 namespace catena::field {
 
-/// Cell cache of a sequence of fetches: the grid nodes and the cell that were accessed last. Plain bytes, one per thread; it never changes
-/// a result. Zero-initialized it belongs to no grid; a fetch from a different grid resets it.
+class BrickSnapshot;
+class PagedGrid;
+
+/// Cell cache of a sequence of fetches: the grid nodes and the cell that were accessed last. Plain bytes, one per thread; the cache never
+/// changes a result. Zero-initialized it belongs to no grid; a fetch from a different grid resets it.
+/// For paged grids (engine/field/bricks/paged_grid.h) it also selects the bricks that are in memory.
 struct Cursor {
   const void* owner = nullptr;  ///< the grid to which the bytes belong; null: none yet
-  /// Private data of that grid.
+  /// Bricks of paged grids; null: their coarse level is sampled.
+  const BrickSnapshot* bricks = nullptr;
+  bool is_coarse = false;                             ///< set when a fetch uses the coarse level of a paged grid; reset by the user
+  std::uint64_t missing_grid = 0, missing_brick = 0;  ///< the last brick that such a fetch lacked: PagedGrid::version(), number
+  /// Private data of the owner.
   alignas(16) std::byte memory[1280]{};
 };
 
@@ -76,7 +84,7 @@ class CATENA_EXPORT Field {
   double domain_length() const { return domain_length_; }
   /// Returns the longest edge of a voxel, world units; 1 without a grid.
   double max_voxel_edge() const { return max_voxel_edge_; }
-  /// Returns true when the field is sampled on a grid (then grid() returns it), false for a formula or a function.
+  /// Returns true when the field is sampled on a grid, false for a formula or a function.
   virtual bool is_grid() const noexcept { return false; }
   /// Returns the memory of the field in bytes; 0 for a formula.
   virtual std::size_t bytes() const noexcept { return 0; }
@@ -96,6 +104,7 @@ class CATENA_EXPORT Field {
   double domain_length_ = 0, max_voxel_edge_ = 0;
 };
 
+class CellField;
 class ScalarGrid;
 class VectorGrid;
 
@@ -108,10 +117,26 @@ class CATENA_EXPORT ScalarField : public Field {
   virtual double min_value() const noexcept = 0;
   /// Returns the maximum of the field, over the same set as min_value().
   virtual double max_value() const noexcept = 0;
-  /// Returns the grid, or null when the field is not a grid.
+  /// Returns the grid, or null when the field is not a grid that is in memory as a whole.
   virtual const ScalarGrid* grid() const noexcept { return nullptr; }
+  /// Returns the field as cells, or null when it has none: a formula.
+  virtual const CellField* cells() const noexcept { return nullptr; }
   /// Returns the interpolation between voxel centers; a formula is exact and returns linear.
   virtual Interpolation interpolation() const noexcept { return Interpolation::linear; }
+};
+
+/// Scalar field of voxels, in trilinear cells: a grid, of which all or some voxels are in memory. The const functions may be called from
+/// any thread, each with its own Cursor; no allocation, lock or throw.
+class CATENA_EXPORT CellField : public ScalarField {
+ public:
+  const CellField* cells() const noexcept final { return this; }
+  bool is_grid() const noexcept final { return true; }
+  /// Returns the cell at `base`, clamped such that base and base + 1 are in the index box.
+  virtual ScalarCell cell(const Index3& base, Cursor& cursor) const noexcept = 0;
+  /// Returns the base voxel of the cell that contains an index position: its floor, clamped to valid bases.
+  virtual Index3 cell_base(const Vec3& index) const noexcept = 0;
+  /// Returns the grid that is in memory as a whole: this one, or a coarser level of it.
+  virtual const ScalarGrid& resident_grid() const noexcept = 0;
 };
 
 /// Vector field, in world axes.
@@ -143,6 +168,9 @@ struct AnyField {
   std::int64_t newest_mtime_ns = 0;
   /// Differences between the field and its file: sentences without a final period.
   std::vector<std::string> notes{};
+  /// Finest level of data of which `scalar` is a coarser one, because they do not fit into memory: a PagedGrid, which haptics samples.
+  /// Null: `scalar` has the full resolution, or the one that was requested.
+  std::shared_ptr<const PagedGrid> paged{};
   /// Returns the common base of both kinds; null when neither is set.
   const Field* get() const { return scalar ? static_cast<const Field*>(scalar.get()) : vector.get(); }
 };

@@ -10,7 +10,7 @@
 
 #include "engine/python/module.h"
 #include "haptics/build/build_program.h"
-#include "haptics/chain/tick.h"
+#include "haptics/chain/offline_ticks.h"
 #include "haptics/device/registry.h"
 #include "haptics/servo/device_limits.h"
 
@@ -105,7 +105,7 @@ class Chain {
       ++since_;
       probe.position = {place[0], place[1], place[2]};
       if (!pressed.empty()) probe.buttons = pressed[i];
-      haptics::tick(*program_, probe, *state_, *scratch_, last_);
+      runner_.run(*program_, probe, *state_, *scratch_, last_);
       hash_.add(last_);
       ++ticks_;
       rows.add(last_);
@@ -163,6 +163,7 @@ class Chain {
   std::shared_ptr<const haptics::HapticProgram> program_;
   std::unique_ptr<haptics::ChainState> state_;
   std::unique_ptr<haptics::ChainScratch> scratch_;
+  haptics::OfflineTicks runner_;
   haptics::StateHash hash_;
   HapticState last_;
   std::uint64_t ticks_ = 0, since_ = 0;  ///< since_: ticks since from_s_, where no times are given

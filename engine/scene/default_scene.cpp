@@ -13,6 +13,7 @@
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
+#include "engine/field/bricks/paged_grid.h"
 #include "engine/field/field_display_range.h"
 #include "engine/io/formats.h"
 #include "engine/scene/color_maps.h"
@@ -224,7 +225,7 @@ Result<DefaultScene> scene_of_one_file(const std::string& path, const std::strin
     return Error{one_line(path + ": opacities of labels are those of a label map; a map of whole numbers was expected")};
   if (visualization.is_label_map) {
     result.request.interpolation = field::Interpolation::nearest;
-    result.field.scalar = result.field.scalar->grid()->with_interpolation(result.request.interpolation);
+    result.field = field::with_interpolation(std::move(result.field), result.request.interpolation);
     result.text += ", \"interpolation\": \"nearest\"";
     if (const std::string table = find_label_table(path); !table.empty()) {
       const std::string table_name = std::filesystem::path(table).filename().string();
@@ -393,7 +394,7 @@ Result<Scene> scene_for_field(const field::AnyField& grid, const FileColors& col
   const std::string name = "\"field\"";
   const DefaultVisualization visualization = grid.scalar ? choose_default_visualization(name, *grid.scalar->grid(), {}, colors)
                                                          : choose_default_visualization(name, *grid.vector->grid(), colors.named);
-  if (visualization.is_label_map) with.in_memory_field.scalar = grid.scalar->grid()->with_interpolation(field::Interpolation::nearest);
+  if (visualization.is_label_map) with.in_memory_field = field::with_interpolation(grid, field::Interpolation::nearest);
   // `extra_fields` starts with a comma
   const std::string extra_fields = visualization.extra_fields.empty() ? visualization.extra_fields : visualization.extra_fields.substr(1);
   CATENA_TRY(Scene scene, parse_scene("{\"fields\": {" + extra_fields + "},\n" + visualization.scene_members + "}", "field", {with}));

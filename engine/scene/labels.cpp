@@ -142,7 +142,11 @@ Result<field::AnyField> resolve_label_surface(Scene& scene, Entity field) {
   CATENA_TRY(const std::vector<double> values, values_of(label, *map, json::member_or_parent(where, "label")));
   auto made = field::make_label_surface(*grid, map->counts, values, label.smoothing_voxels, name);
   if (!made) return with_cause(json::error_at(where, made.error().message), made.error());
-  return field::AnyField{*made, nullptr};
+  field::AnyField surface{*made, nullptr};
+  if (of.paged)
+    scene.notes.push_back(fmt::format("field {}: links feel the level of {} that is loaded, not the finest one", in_quotes(name),
+                                      in_quotes(label.label_map)));
+  return surface;
 }
 
 }  // namespace catena::scene

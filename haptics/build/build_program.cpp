@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "haptics/build/build_program.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <string>
@@ -8,6 +10,7 @@
 #include "engine/base/hash.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/field/bricks/paged_grid.h"
 #include "engine/scene/labels.h"
 #include "haptics/constraints/common/link_schema.h"
 #include "haptics/constraints/presets/mode_presets.h"
@@ -190,7 +193,14 @@ Result<Mode> make_mode(const scene::Mode& from, const LinksOf& links_of) {
 
 Result<std::shared_ptr<const HapticProgram>> build_program(scene::Scene& scene, const DeviceLimits& limits) {
   BuildContext context;
-  context.field = [&scene](const json::Node& where, const std::string& name) { return scene::resolve_field(scene, name, where); };
+  std::vector<std::shared_ptr<const field::PagedGrid>> paged_grids;
+  context.field = [&](const json::Node& where, const std::string& name) -> Result<field::AnyField> {
+    CATENA_TRY(field::AnyField field, scene::resolve_field(scene, name, where));
+    if (field.paged == nullptr) return field;
+    if (std::ranges::find(paged_grids, field.paged) == paged_grids.end()) paged_grids.push_back(field.paged);
+    field.scalar = field.paged;
+    return field;
+  };
   context.curve = [&scene](const json::Node& where, const std::string&, const flow::Flow& flow, const Vec3& seed) {
     return scene::resolve_streamline(scene, flow, seed, where);
   };
@@ -232,6 +242,7 @@ Result<std::shared_ptr<const HapticProgram>> build_program(scene::Scene& scene, 
     return nullptr;
   };
   CATENA_CHECK(add_widgets(scene, named, *program));
+  program->paged_grids = std::move(paged_grids);
   program->epoch = ++newest_epoch;
   return std::shared_ptr<const HapticProgram>(std::move(program));
 }

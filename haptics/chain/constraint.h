@@ -71,6 +71,8 @@ struct LinkState {
   bool started = false;                    ///< `start` has been called
   bool released = false;                   ///< the link is released; it re-engages by the constraint's own rule
   bool switched_on = false;                ///< the link's switch is on
+  bool data_changed = false;               ///< other values are in memory around the chain than in the last tick (bricks.h)
+  bool is_coarse = false;                  ///< the last field samples were of a coarser level of the data
   double weight = 1;                       ///< weight w_i of the force law, 0..1
   widget::LinkShape shape{};               ///< link of a widget: shape in this tick (widgets.h)
   alignas(16) std::array<std::byte, 1024> memory{};         ///< private memory of the constraint, zero at start; see memory_as
@@ -132,6 +134,14 @@ const T& wrapper_memory_as(const LinkState& state) {
 struct LinkScratch {
   std::array<field::Cursor, 4> cursors{};                ///< cursors of the constraint
   field::Cursor parameter_cursor{}, stiffness_cursor{};  ///< cursors of the constraint's parameters and of the link's stiffness
+
+  /// Calls visit(cursor) for all cursors.
+  template <class Visit>
+  void for_cursors(const Visit& visit) {
+    for (field::Cursor& cursor : cursors) visit(cursor);
+    visit(parameter_cursor);
+    visit(stiffness_cursor);
+  }
 };
 
 /// Haptic primitive: linear approximation of a constraint near a point, as used by the baselines of the paper's section 3.

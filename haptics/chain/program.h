@@ -104,6 +104,8 @@ struct HapticProgram {
   double meters_per_unit = 1;    ///< scale S: meters of probe travel per world unit
   Vec3 workspace_origin{0.0};    ///< position of the device's origin, world units
   Mat3 workspace_rotation{1.0};  ///< rotation from device axes to world axes
+  /// Grids that the links sample and of which only some bricks are in memory (bricks.h); each once.
+  std::vector<std::shared_ptr<const field::PagedGrid>> paged_grids;
 
   /// Returns the number of links of the scene, without those of the widgets.
   std::size_t scene_link_count() const { return first_widget_link < 0 ? links.size() : static_cast<std::size_t>(first_widget_link); }

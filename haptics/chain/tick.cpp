@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "haptics/chain/begin_link.h"
+#include "haptics/chain/bricks.h"
 #include "haptics/chain/state_hash.h"
 
 namespace catena::haptics {
@@ -160,6 +161,30 @@ SampleStatus reason_of(const LinkState& link) noexcept {
   return link.status == LinkStatus::critical || link.status == LinkStatus::boundary ? link.reason : SampleStatus::ok;
 }
 
+/// Returns the status that is reported: a link holds to the coarse level of a paged grid as to any other values.
+LinkStatus reported_status(const LinkState& link) noexcept {
+  return link.is_coarse && link.status == LinkStatus::ok ? LinkStatus::coarse : link.status;
+}
+
+/// Takes over the bricks of this tick.
+void take_bricks(const HapticProgram& program, const ProbeSample& probe, ChainState& state, ChainScratch& scratch) noexcept {
+  // the limit stays until the ramp offset has faded
+  if (state.limited_ticks > 1 || (state.limited_ticks == 1 && max_abs(state.ramp.offset) == 0)) --state.limited_ticks;
+  bool has_changed = false;
+  if (probe.bricks != scratch.bricks) {
+    std::array<Vec3, kMaxLinks + 2> positions{probe.position, state.last_probe};
+    for (std::size_t i = 0; i < program.links.size(); ++i) positions[i + 2] = state.links[i].proxy;
+    has_changed =
+        state.has_probe && bricks_differ(program.paged_grids, scratch.bricks, probe.bricks, {positions.data(), program.links.size() + 2});
+    scratch.bricks = probe.bricks;
+  }
+  if (has_changed) state.limited_ticks = kLimitedTicks;
+  for (std::size_t i = 0; i < program.links.size(); ++i) {
+    state.links[i].data_changed = has_changed;
+    begin_bricks(probe.bricks, scratch.links[i]);
+  }
+}
+
 void report(const HapticProgram& program, const ChainState& state, HapticState& out) noexcept {
   out.tick = state.ticks;
   out.t_s = state.last_probe_t_s;
@@ -181,7 +206,7 @@ void report(const HapticProgram& program, const ChainState& state, HapticState& 
     to.stiffness_n_per_m = link.stiffness_n_per_m;
     to.accounted_j = bounded(state.passivity.accounted_j(i));
     to.evaluations = link.evaluations;
-    to.status = link.status;
+    to.status = reported_status(link);
     to.sample_status = reason_of(link);
     to.active = link.active();
     to.curve = link.curve_index;
@@ -218,6 +243,8 @@ void tick(const HapticProgram& program, const ProbeSample& probe, ChainState& st
   out.program_epoch = program.epoch;
   out.orientation = probe.orientation;
   out.condition = probe.condition;
+  out.brick_snapshot = probe.bricks ? probe.bricks->number() : 0;
+  if (!program.paged_grids.empty() || scratch.bricks != nullptr) take_bricks(program, probe, state, scratch);
   const bool stopped = probe.condition == TickCondition::no_device || probe.condition == TickCondition::watchdog;
   if (stopped || !is_finite(probe.position) || !is_finite(probe.orientation) || !std::isfinite(probe.t_s))
     return hold_all(program, probe.t_s, state, out);
@@ -237,6 +264,10 @@ void tick(const HapticProgram& program, const ProbeSample& probe, ChainState& st
   const Coupled coupled = is_single(program) ? one_proxy(program, order, probe.position, dt, state, scratch)
                                              : chain(program, order, probe.position, dt, ramp_step, state, scratch);
 
+  if (!program.paged_grids.empty())
+    for (std::size_t i = 0; i < program.links.size(); ++i)
+      if (state.links[i].evaluations > 0) state.links[i].is_coarse = is_coarse(scratch.links[i]);
+
   if (!program.widgets.empty()) move_widgets(program, last_proxy(order, probe.position, state), state.widgets);
 
   // release cues and reports of the links
@@ -255,7 +286,8 @@ void tick(const HapticProgram& program, const ProbeSample& probe, ChainState& st
   const bool huge = !std::isfinite(norm(coupled.force_n));
   const Vec3 pull = huge ? huge_direction(program, order, probe.position, 0, state) * maximum : clamp_norm(coupled.force_n, maximum);
   if (!state.has_probe) state.ramp.last_force = pull;
-  const double fall = program.coupling.ramp_s > 0 ? maximum * ramp_step : std::numeric_limits<double>::infinity();
+  double fall = program.coupling.ramp_s > 0 ? maximum * ramp_step : std::numeric_limits<double>::infinity();
+  if (state.limited_ticks > 0) fall = std::fmin(fall, kSlipFraction * maximum);
   const Vec3 ramped = step_ramp(state.ramp, pull, coupled.newtons_per_unit * norm(move), fall);
   const Vec3 requested = coupled.force_n + ramped + cues;
   state.requested_force_n = {bounded(requested.x), bounded(requested.y), bounded(requested.z)};

@@ -34,6 +34,8 @@ struct ProbeSample {
   Quat orientation{kIdentityRotation};              ///< rotation from tool axes to world axes
   TickCondition condition = TickCondition::normal;  ///< condition of the tick, set by the servo
   bool forces_on = true;                            ///< the user's force switch and the device's own switch are both on
+  /// Bricks of the program's paged grids that are in memory; null: none, the coarse levels are felt. That of the last tick must be alive.
+  const field::BrickSnapshot* bricks = nullptr;
 };
 
 /// Complete state of the chain between ticks: plain data, allocated before the loop. Used by one thread at a time.
@@ -43,6 +45,7 @@ struct ChainState {
   SwitchState switches;                                   ///< switches of links and modes
   LinkOrder order;                                        ///< link order of the last tick
   Ramp ramp;                                              ///< ramp of the force
+  std::int32_t limited_ticks = 0;                         ///< ticks in which steps of the force are limited (bricks.h)
   UnaccountedEnergy unaccounted;                          ///< energy that a conservative force does not account for
   AlignmentState alignment;                               ///< rotational chain
   WidgetsState widgets;                                   ///< widgets
@@ -59,9 +62,10 @@ struct ChainState {
 };
 static_assert(std::is_trivially_copyable_v<ChainState>);
 
-/// Caches that never change a result. Zero at first; one per ChainState.
+/// Caches that never change a result, and the bricks of the last tick. Zero at first; one per ChainState.
 struct ChainScratch {
-  std::array<LinkScratch, kMaxLinks> links{};  ///< caches of each link
+  std::array<LinkScratch, kMaxLinks> links{};    ///< caches of each link
+  const field::BrickSnapshot* bricks = nullptr;  ///< ProbeSample::bricks of the last tick
 };
 
 /// Runs one tick: advances `state` and sets all of `out` but what the servo writes. Haptic thread: no allocation, lock, throw.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "haptics/chain/bricks.h"
 #include "haptics/chain/state_hash.h"
 
 namespace catena::haptics {
@@ -19,7 +20,8 @@ bool is_sane(const LinkOrder& order) {
 }
 
 bool is_sane(const LinkState& link) {
-  return is_valid_enum(link.status, LinkStatus::bad_probe) && are_valid_bools(link.started, link.released, link.switched_on) &&
+  return is_valid_enum(link.status, LinkStatus::bad_probe) &&
+         are_valid_bools(link.started, link.released, link.switched_on, link.data_changed, link.is_coarse) &&
          is_valid_enum(link.shape.kind, widget::LinkShape::Kind::point) && link.evaluations >= 0 && link.evaluations <= kMaxCounted &&
          link.other_work >= 0 && link.other_work <= kMaxCounted && is_valid_enum(link.reason, SampleStatus::parallel);
 }
@@ -57,9 +59,10 @@ bool are_sane(const HapticProgram& program, const WidgetsState& state) {
 
 Outcome validate_state(const HapticProgram& program, const ChainState& state) {
   const bool chain = are_valid_bools(state.has_probe) && are_valid_bools(state.unaccounted.has_previous) && is_sane(state.order) &&
-                     is_sane(state.single_proxy) && is_sane(state.force_limiter) && is_sane(state.passivity) &&
-                     are_valid_bools(state.switches.link_on) && are_valid_bools(state.switches.mode_on) && are_sane(state.release_cues) &&
-                     is_finite(state.last_probe) && is_finite(state.chain_force_n);
+                     state.limited_ticks >= 0 && state.limited_ticks <= kLimitedTicks && is_sane(state.single_proxy) &&
+                     is_sane(state.force_limiter) && is_sane(state.passivity) && are_valid_bools(state.switches.link_on) &&
+                     are_valid_bools(state.switches.mode_on) && are_sane(state.release_cues) && is_finite(state.last_probe) &&
+                     is_finite(state.chain_force_n);
   if (!chain) return Error{"the state of the chain is damaged or forged, expected the state after a tick"};
   if (!are_sane(program, state.widgets)) return Error{"the state of the widgets is damaged or forged, expected the state after a tick"};
   for (std::size_t i = 0; i < program.links.size(); ++i)

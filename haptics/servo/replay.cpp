@@ -38,12 +38,13 @@ ReplayStats replay(const HapticProgram& program, std::span<const ProbeSample> pa
                    const std::function<bool(const HapticState&)>& on_tick) {
   auto state = std::make_unique<ChainState>();
   auto scratch = std::make_unique<ChainScratch>();
+  OfflineTicks ticks;
   HapticState out;
   ReplayMeter meter;
   meter.reserve(path.size());
   for (const ProbeSample& probe : path) {
     const std::int64_t start = now_ns();
-    tick(program, probe, *state, *scratch, out);
+    ticks.run(program, probe, *state, *scratch, out);
     meter.add(static_cast<double>(now_ns() - start), out);
     if (!on_tick(out)) break;
   }

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "engine/base/export.h"
+#include "haptics/chain/offline_ticks.h"
 #include "haptics/chain/state_hash.h"
-#include "haptics/chain/tick.h"
 
 namespace catena::haptics {
 

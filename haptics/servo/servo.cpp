@@ -6,8 +6,10 @@
 #include <ctime>
 
 #include "engine/base/clock.h"
+#include "engine/base/console.h"
 #include "engine/base/result.h"
 #include "engine/base/threads.h"
+#include "haptics/servo/brick_pager.h"
 #include "haptics/servo/servo_tick.h"
 #include "haptics/servo/watchdog.h"
 
@@ -49,13 +51,34 @@ Servo::Servo(Device& device, std::shared_ptr<const HapticProgram> program, const
   CATENA_ASSERT(program && program->links.size() <= static_cast<std::size_t>(kMaxLinks));
   CATENA_ASSERT(options.rate_hz >= ServoOptions::kMinRateHz && options.rate_hz <= ServoOptions::kMaxRateHz && options.watchdog_s >= 0);
   program_ = program.get();
+  page_bricks(*program);
   programs_.push_back(std::move(program));
 }
 
 Servo::~Servo() { stop(); }
 
+/// Keeps the bricks around the hand in memory, if the program has paged grids. Frame thread.
+void Servo::page_bricks(const HapticProgram& program) {
+  if (!pager_ && program.paged_grids.empty()) return;
+  if (!pager_) {
+    auto pager = BrickPager::start(BrickPager::default_bytes());
+    if (!pager) return print_message("note: " + pager.error().message + "; a coarser level is felt");
+    pager_ = std::move(*pager);
+    if (thread_.joinable()) observe_bricks(requested_sink_.load(std::memory_order_relaxed));
+    active_pager_.store(pager_.get(), std::memory_order_release);
+  }
+  pager_->set_grids(program.paged_grids);
+}
+
+/// Passes all further snapshots to a sink. Frame thread.
+void Servo::observe_bricks(TickSink* sink) {
+  if (!pager_) return;
+  pager_->set_observer(sink == nullptr ? BrickPager::Observer() : [sink](const field::BrickSnapshot& bricks) { sink->add_bricks(bricks); });
+}
+
 Outcome Servo::start() {
   CATENA_ASSERT(!thread_.joinable());
+  observe_bricks(requested_sink_.load(std::memory_order_relaxed));
   if (options_.paced && options_.watchdog_s > 0) {
     const double limit_s = std::max(options_.watchdog_s, 4 / options_.rate_hz);
     CATENA_TRY(watchdog_, Watchdog::make(device_, limit_s, counters_.watchdog_trips));
@@ -83,17 +106,20 @@ void Servo::resume_from(const Servo& other) {
 void Servo::stop() {
   stop_.store(true, std::memory_order_release);
   if (thread_.joinable()) thread_.join();
+  observe_bricks(nullptr);  // the sink may end before the servo
   watchdog_.reset();
 }
 
 void Servo::set_program(std::shared_ptr<const HapticProgram> program) {
   CATENA_ASSERT(program && program->links.size() <= static_cast<std::size_t>(kMaxLinks));
   for (const auto& alive : programs_) CATENA_ASSERT(alive->epoch != program->epoch);
+  page_bricks(*program);
   next_program_.publish(program.get());
   programs_.push_back(std::move(program));
 }
 
 bool Servo::set_sink(TickSink* sink, double timeout_s) {
+  observe_bricks(sink);
   requested_sink_.store(sink, std::memory_order_release);
   const std::int64_t began = now_ns();
   while (running() && active_sink_.load(std::memory_order_acquire) != sink) {
@@ -154,11 +180,16 @@ void Servo::run_tick(double t_s, const TickTiming& beat, HapticState& out) noexc
   if (takes_up) {
     sink_ = wanted;
     active_sink_.store(wanted, std::memory_order_release);
+    const field::BrickSnapshot* bricks = scratch_.bricks;
     scratch_ = ChainScratch{};
+    scratch_.bricks = bricks;
     if (sink_ != nullptr) sink_->begin(state_);
   }
   ProbeSample probe = make_probe_sample(*program_, input, t_s);
   probe.forces_on = input.forces_on && forces_enabled();
+  // a recording begins with the bricks of the tick before it
+  BrickPager* pager = active_pager_.load(std::memory_order_acquire);
+  if (pager != nullptr) probe.bricks = takes_up ? scratch_.bricks : pager->newest();
 
   // a tick that finds the watchdog's flag outputs no force; the next tick may drive the device
   const bool stalled = watchdog_ && (beat.stalled || stalled_in_tick_);
@@ -173,6 +204,7 @@ void Servo::run_tick(double t_s, const TickTiming& beat, HapticState& out) noexc
                                 : TickCondition::normal;
   tick(*program_, probe, state_, scratch_, out);
   const std::int64_t computed = now_ns();
+  if (pager != nullptr) pager->put(out);
   stalled_in_tick_ = watchdog_ && computed - began > watchdog_->limit_ns();
   if (stalled_in_tick_) watchdog_->report_stall();
 

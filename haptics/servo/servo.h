@@ -27,8 +27,11 @@ class CATENA_EXPORT TickSink {
   virtual void begin(const ChainState& state) noexcept { static_cast<void>(state); }
   /// Receives input and output of a tick; the servo's timings are in `output`.
   virtual void put(const ProbeSample& input, const HapticState& output) noexcept = 0;
+  /// Receives a snapshot of the bricks of a program's paged grids (brick_pager.h), before a tick can use it. Not on the haptic thread.
+  virtual void add_bricks(const field::BrickSnapshot& bricks) { static_cast<void>(bricks); }
 };
 
+class BrickPager;
 class Watchdog;
 
 /// Options of a servo.
@@ -101,6 +104,8 @@ class CATENA_EXPORT Servo {
  private:
   void loop() noexcept;
   void run_tick(double t_s, const TickTiming& beat, HapticState& out) noexcept;
+  void page_bricks(const HapticProgram& program);
+  void observe_bricks(TickSink* sink);
   void release_priority_if_overloaded(bool missed, std::int64_t now_ns) noexcept;
 
   static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::uint64_t>::is_always_lock_free &&
@@ -111,6 +116,7 @@ class CATENA_EXPORT Servo {
   TripleBuffer<HapticState> published_;
   std::atomic<bool> stop_{false}, running_{false}, prepared_{false}, forces_enabled_;
   std::atomic<TickSink*> requested_sink_, active_sink_;
+  std::atomic<BrickPager*> active_pager_{nullptr};  ///< that of pager_
   ServoCounters counters_;
 
   // used by the haptic thread only, after start()
@@ -128,6 +134,7 @@ class CATENA_EXPORT Servo {
   RealtimeReport realtime_;
   std::vector<std::shared_ptr<const HapticProgram>> programs_;
   std::unique_ptr<Watchdog> watchdog_;  ///< null: no watchdog
+  std::unique_ptr<BrickPager> pager_;   ///< null: no program had paged grids
   std::thread thread_;
 };
 

@@ -38,11 +38,11 @@ ServoStepper::ServoStepper(Device& device, const HapticProgram& program, double 
   device_.resume();
 }
 
-const HapticState& ServoStepper::step() noexcept {
+const HapticState& ServoStepper::step() {
   const DeviceInput input = device_.read();
   ProbeSample probe = make_probe_sample(program_, input, t_s());
   probe.condition = input.status == DeviceStatus::ready ? TickCondition::normal : TickCondition::no_device;
-  tick(program_, probe, *state_, *scratch_, out_);
+  runner_.run(program_, probe, *state_, *scratch_, out_);
   device_.write(make_device_output(program_, out_, *state_));
   ++ticks_;
   if (sink_ != nullptr) sink_->put(probe, out_);

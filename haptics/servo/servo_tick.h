@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "engine/base/export.h"
-#include "haptics/chain/tick.h"
+#include "haptics/chain/offline_ticks.h"
 #include "haptics/device/device.h"
 #include "haptics/servo/servo.h"
 
@@ -31,7 +31,7 @@ class CATENA_EXPORT ServoStepper {
   ServoStepper(Device& device, const HapticProgram& program, double rate_hz, TickSink* sink = nullptr);
 
   /// Runs one tick. The result is valid until the next call.
-  const HapticState& step() noexcept;
+  const HapticState& step();
   /// Returns the time of the next tick, seconds.
   double t_s() const noexcept { return static_cast<double>(ticks_) / rate_hz_; }
 
@@ -43,6 +43,7 @@ class CATENA_EXPORT ServoStepper {
   std::uint64_t ticks_ = 0;
   std::unique_ptr<ChainState> state_ = std::make_unique<ChainState>();
   std::unique_ptr<ChainScratch> scratch_ = std::make_unique<ChainScratch>();
+  OfflineTicks runner_;
   HapticState out_;
 };
 

@@ -72,7 +72,8 @@ Outcome check_one_step(const ImportOptions& o, const field::LoadRequest& request
   return check_step(o.step, steps - 1, fmt::format("--step {}", o.step), o.input);
 }
 
-Outcome import_file(const ImportOptions& o) {
+Outcome import_file(ImportOptions o) {
+  while (o.output.size() > 1 && o.output.ends_with(".zarr/")) o.output.pop_back();  // a store is a folder
   if (io::find_writer(o.output, io::DataKind::volume) == nullptr && !o.output.starts_with("/dev/"))
     return Error{o.output + ": expected an output that ends in " + io::writable_extensions(io::DataKind::volume)};
   const bool raw_file = io::needs_layout(o.input);

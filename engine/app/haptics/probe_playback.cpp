@@ -33,7 +33,7 @@ void ProbePlayback::seek(scene::Scene& scene, double share) {
     scratch_ = std::make_unique<haptics::ChainScratch>();
     ticks_done_ = 0;
   }
-  for (; ticks_done_ < wanted; ++ticks_done_) haptics::tick(*program_, path_[ticks_done_], *state_, *scratch_, last_state_);
+  for (; ticks_done_ < wanted; ++ticks_done_) ticks_.run(*program_, path_[ticks_done_], *state_, *scratch_, last_state_);
   scene::update_cursor(scene, last_state_);
   scene::Cursor& cursor = scene.entities.get<scene::Cursor>(scene.cursor);
   cursor.names.clear();

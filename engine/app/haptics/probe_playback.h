@@ -8,7 +8,7 @@
 #include "engine/base/csv.h"
 #include "engine/base/result.h"
 #include "engine/scene/scene.h"
-#include "haptics/chain/tick.h"
+#include "haptics/chain/offline_ticks.h"
 
 namespace catena::app {
 
@@ -34,6 +34,7 @@ class ProbePlayback {
   std::size_t ticks_done_ = 0;  ///< Number of ticks that were run
   std::unique_ptr<haptics::ChainState> state_;
   std::unique_ptr<haptics::ChainScratch> scratch_;
+  haptics::OfflineTicks ticks_;
   HapticState last_state_;
 };
 

@@ -40,6 +40,11 @@ class TickObserver final : public haptics::TickSink {
   void begin(const haptics::ChainState& state) noexcept override;
   void put(const haptics::ProbeSample& input, const HapticState& output) noexcept override;
 
+  // Planning thread of the pager of bricks.
+  void add_bricks(const field::BrickSnapshot& bricks) override {
+    if (next_sink_ != nullptr) next_sink_->add_bricks(bricks);
+  }
+
  private:
   static constexpr std::size_t kWordsPerTick = 9;
 

@@ -70,7 +70,8 @@ double compute_max_magnitude(const VectorField& field) {
   return largest(field, [&](const Vec3& world, Cursor& cursor) { return norm(field.sample(world, cursor).value); });
 }
 
-double compute_max_gradient(const ScalarField& field) {
+double compute_max_gradient(const ScalarField& any) {
+  const ScalarField& field = any.cells() ? any.cells()->resident_grid() : any;
   const DisplayRange range = display_range(field);
   return largest(field, [&](const Vec3& world, Cursor& cursor) {
     const ScalarSample sample = field.sample(world, cursor);

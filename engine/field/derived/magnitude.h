@@ -15,7 +15,7 @@ namespace catena::field {
 
 /// Returns the largest magnitude of a vector field, in its own unit.
 double compute_max_magnitude(const VectorField& field);
-/// Returns the largest gradient magnitude of a scalar field, its unit per world unit.
+/// Returns the largest gradient magnitude of a scalar field, its unit per world unit; of a paged grid that of its coarse level.
 double compute_max_gradient(const ScalarField& field);
 
 /// Makes a grid of |v| at the voxels as 32-bit floats, NaN where v is not finite; cells that the vector grid excludes stay excluded. `what`

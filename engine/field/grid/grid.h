@@ -23,7 +23,7 @@ struct GridStats {
 };
 
 /// Scalar grid: immutable and shared; every const function may be called from any thread.
-class CATENA_EXPORT ScalarGrid final : public ScalarField {
+class CATENA_EXPORT ScalarGrid final : public CellField {
  public:
   struct Storage;  ///< NanoVDB buffers
   struct Halo;     ///< halo samples of a cubic grid
@@ -41,8 +41,6 @@ class CATENA_EXPORT ScalarGrid final : public ScalarField {
   double max_value() const noexcept override;
   /// Returns this grid.
   const ScalarGrid* grid() const noexcept override { return this; }
-  /// Returns true.
-  bool is_grid() const noexcept override { return true; }
   /// Returns the interpolation between voxel centers. It is fixed; as_cubic(), as_linear() and with_interpolation() return another grid.
   Interpolation interpolation() const noexcept override { return interpolation_; }
   /// Returns the memory of voxels, mask and halo samples in bytes.
@@ -61,9 +59,9 @@ class CATENA_EXPORT ScalarGrid final : public ScalarField {
   const CubicSamples<1>* cubic_samples(const Index3& base, Cursor& cursor) const noexcept;
 
   /// Returns the cell at `base`, clamped such that base and base + 1 are in the index box.
-  ScalarCell cell(const Index3& base, Cursor& cursor) const noexcept;
-  /// Returns the base voxel of the cell that contains an index position: its floor, clamped to valid bases.
-  Index3 cell_base(const Vec3& index) const noexcept;
+  ScalarCell cell(const Index3& base, Cursor& cursor) const noexcept override;
+  Index3 cell_base(const Vec3& index) const noexcept override;
+  const ScalarGrid& resident_grid() const noexcept override { return *this; }
   /// Returns the statistics of all voxels, computed when the grid was made.
   const GridStats& stats() const { return stats_; }
   /// Returns the value of voxels that the tree does not contain.

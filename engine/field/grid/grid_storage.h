@@ -13,6 +13,7 @@
 #include <type_traits>
 
 #include "engine/base/display_range.h"
+#include "engine/field/grid/cell_range.h"
 #include "engine/field/grid/grid.h"
 #include "engine/field/nanovdb/nano_statistics.h"
 
@@ -22,14 +23,12 @@ inline nanovdb::Coord to_nano_coord(const Index3& i) { return {i.x, i.y, i.z}; }
 
 /// Buffers of a grid with values of type T. Read-only after construction, except for the cached display range, which range_mutex protects.
 template <class T>
-struct GridStorage {
+struct GridStorage : CellRange {
   using Value = T;
   NanoMemory values_memory, voxels_memory, cells_memory;
   const nanovdb::NanoGrid<T>* values = nullptr;
   const NanoMask* valid_voxels = nullptr;  ///< null: no mask
   const NanoMask* valid_cells = nullptr;
-  Index3 first_base, last_base;  ///< valid base indices: first_base..last_base
-  Index3 step;                   ///< offset to the next corner: 1, or 0 along an axis with a single slice
   bool has_invalid_cells = false;
   /// `valid_cells` excludes cells that `valid_voxels` alone would not.
   bool has_cell_mask = false;
@@ -40,37 +39,10 @@ struct GridStorage {
   mutable std::optional<DisplayRange> cached_range;
 
   std::size_t bytes() const { return values_memory.size() + voxels_memory.size() + cells_memory.size(); }
-  /// Sets the range of base indices from the first and the last voxel.
-  void set_box(const Index3& first, const Index3& final_voxel) {
-    first_base = first;
-    step = {first.x < final_voxel.x, first.y < final_voxel.y, first.z < final_voxel.z};
-    last_base = {final_voxel.x - step.x, final_voxel.y - step.y, final_voxel.z - step.z};
-  }
   /// Returns true when `base` is a valid base index and the mask of valid cells contains it.
   template <class Accessor>
   bool is_cell_valid(const Accessor& cells, const Index3& base) const {
     return is_legal_base(base) && cells.getValue(nanovdb::Coord(base.x, base.y, base.z));
-  }
-  Index3 last_voxel() const { return {last_base.x + step.x, last_base.y + step.y, last_base.z + step.z}; }  ///< last voxel of the index box
-  /// Returns true when base and base + step are in the index box.
-  bool is_legal_base(const Index3& b) const {
-    return b.x >= first_base.x && b.y >= first_base.y && b.z >= first_base.z && b.x <= last_base.x && b.y <= last_base.y &&
-           b.z <= last_base.z;
-  }
-  /// Returns the nearest valid base index.
-  Index3 clamp_base(const Index3& b) const {
-    return {std::min(std::max(b.x, first_base.x), last_base.x), std::min(std::max(b.y, first_base.y), last_base.y),
-            std::min(std::max(b.z, first_base.z), last_base.z)};
-  }
-  /// Returns the floor of an index position, clamped before the conversion to integers: safe for any input.
-  Index3 cell_base(const Vec3& index) const {
-    const auto axis = [](double x, std::int32_t first, std::int32_t final_base) {
-      if (!(x >= first)) return first;
-      if (x >= final_base) return final_base;
-      const std::int32_t i = static_cast<std::int32_t>(x);
-      return i - (x < i);
-    };
-    return {axis(index.x, first_base.x, last_base.x), axis(index.y, first_base.y, last_base.y), axis(index.z, first_base.z, last_base.z)};
   }
 };
 
@@ -187,15 +159,6 @@ void fetch_cubic_samples(W& walk, const Storage& storage, const Index3& base) {
         }
   }
 }
-
-/// Returns the position relative to the base voxel, clamped far outside of the cell to a range in which the polynomial cannot overflow.
-inline Vec3 position_in_cell(const Vec3& index, const Index3& base) {
-  static constexpr double far = 1e9;
-  const auto axis = [](double x, std::int32_t b) { return std::min(std::max(x - b, -far), far); };
-  return {axis(index.x, base.x), axis(index.y, base.y), axis(index.z, base.z)};
-}
-
-constexpr double kDomainSlack = 1e-9;  ///< tolerance at the faces of the domain, voxels
 
 /// Returns why a position is not inside, given the cache at its cell. `finite` returns whether a corner is finite.
 template <class W, class Finite>

@@ -8,10 +8,12 @@
 
 #include "engine/base/memory_limit.h"
 #include "engine/base/text.h"
+#include "engine/field/bricks/paged_grid.h"
 #include "engine/field/grid/dense.h"
 #include "engine/io/formats.h"
 #include "engine/io/stores/level_reader.h"
 #include "engine/io/stores/store.h"
+#include "engine/io/stores/store_bricks.h"
 #include "engine/io/stores/store_voxels.h"
 #include "engine/io/volume/crop.h"
 #include "engine/io/volume/downsample.h"
@@ -69,6 +71,20 @@ Result<LevelPart> find_part(const LoadRequest& request, LevelPart part) {
   }
 }
 
+/// Adds the finest level of a part to the field, which was loaded from a coarser one. A level of one voxel along an axis is left out.
+Outcome add_paged_grid(const LevelPart& part, const LoadRequest& request, AnyField& field) {
+  const StoreGrid& grid = part.description();
+  CATENA_TRY(const StoreBox box, needed_box(request.path, grid, grid.levels.front(), request.crop));
+  if (std::min({box.size.x, box.size.y, box.size.z}) < 2) return Done{};
+  const Mapping& mapping = grid.levels.front().mapping;
+  const Mapping of_part =
+      Mapping::from_linear(mapping.world_from_index_linear, mapping.world_from_index(Vec3(box.lo.x, box.lo.y, box.lo.z)));
+  field.paged = std::make_shared<const PagedGrid>(std::make_shared<const StoreBricks>(part.store, part.grid, part.step),
+                                                  PagedGrid::Part{box.lo, box.size, of_part},
+                                                  std::static_pointer_cast<const ScalarGrid>(field.scalar));
+  return Done{};
+}
+
 Result<AnyField> load_stored(const LoadRequest& request) {
   CATENA_TRY(const std::shared_ptr<Store> store, find_store(request.path));
   CATENA_TRY(const int chosen, find_grid(*store, request.grid));
@@ -100,9 +116,10 @@ Result<AnyField> load_stored(const LoadRequest& request) {
   }
   if (!(part.grid_size() == part.box.size)) file.notes.push_back("flat data get a thickness of one voxel");
   CATENA_TRY(AnyField field, load_dense(file));
+  if (part.level > 0 && request.level == 0) CATENA_CHECK(add_paged_grid(part, request, field));
   const int remaining = std::min(request.level - halvings(grid, static_cast<std::size_t>(part.level)), kMaxLevels);
   if (remaining <= 0) return field;
-  if (request.interpolation == Interpolation::nearest) field.scalar = field.scalar->grid()->with_interpolation(Interpolation::nearest);
+  if (request.interpolation == Interpolation::nearest) field = with_interpolation(std::move(field), Interpolation::nearest);
   return downsample_to_level(request.path, std::move(field), remaining);
 }
 

@@ -2,7 +2,9 @@
 #include "engine/io/stores/store_bricks.h"
 
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <type_traits>
 
 namespace catena::field {
 namespace {
@@ -16,16 +18,17 @@ std::vector<BrickLevel> levels_of(const StoreGrid& grid) {
 /// Returns the range of the finite numbers of one type.
 template <class T>
 BrickRange range_of(std::span<const std::byte> values) {
-  BrickRange range{true, true, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  T lo = std::numeric_limits<T>::max(), hi = std::numeric_limits<T>::lowest();
   for (std::size_t at = 0; at + sizeof(T) <= values.size(); at += sizeof(T)) {
     T value;
     std::memcpy(&value, values.data() + at, sizeof value);
-    const auto number = static_cast<double>(value);
-    if (!std::isfinite(number)) continue;
-    range.min = std::fmin(range.min, number);
-    range.max = std::fmax(range.max, number);
+    if constexpr (std::is_floating_point_v<T>)
+      if (!std::isfinite(value)) continue;
+    lo = value < lo ? value : lo;
+    hi = value > hi ? value : hi;
   }
-  return range;
+  if (lo > hi) return {true, true, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  return {true, true, static_cast<double>(lo), static_cast<double>(hi)};
 }
 
 BrickRange range_of(std::string_view type, std::span<const std::byte> values) {
@@ -73,6 +76,7 @@ Outcome StoreBricks::read(int level, const Index3& brick, std::span<std::byte> v
   const BrickLevel& at = levels()[static_cast<std::size_t>(level)];
   const StoreBox box{{brick.x * kBrickEdge, brick.y * kBrickEdge, brick.z * kBrickEdge}, brick_size(at, brick)};
   CATENA_CHECK(store_->read(grid_, level, step_, box, values));
+  if (this->range(level, brick).is_known) return Done{};
   const BrickRange range = range_of(type().name, values);
   Ranges& ranges = *ranges_[static_cast<std::size_t>(level)];
   const std::scoped_lock lock(ranges.mutex);

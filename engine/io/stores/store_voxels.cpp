@@ -2,13 +2,17 @@
 #include "engine/io/stores/store_voxels.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 
+#include "engine/base/hash.h"
+#include "engine/base/input_files.h"
 #include "engine/base/memory_limit.h"
 #include "engine/io/stores/store.h"
 #include "engine/io/stores/store_bricks.h"
@@ -67,6 +71,26 @@ struct PieceReader {
   }
 };
 
+/// Returns a line that changes with every file of a folder: their names, sizes and times. A folder with more than kMaxFiles is too large
+/// for that, and has the times of its metadata only.
+std::string state_of_files(const std::string& path) {
+  namespace fs = std::filesystem;
+  constexpr std::uint64_t kMaxFiles = 4'000'000;
+  std::error_code code;
+  std::uint64_t count = 0, sum = 0;  // the order of the files is not defined
+  for (fs::recursive_directory_iterator at(path, code), end; !code && at != end && count < kMaxFiles; at.increment(code), ++count) {
+    struct stat about {};
+    if (::lstat(at->path().c_str(), &about) != 0 || S_ISDIR(about.st_mode)) continue;
+    Fnv1a file;
+    const std::string name = at->path().lexically_relative(path).string();
+    file.add_bytes(name.data(), name.size());
+    file.add(static_cast<std::uint64_t>(about.st_size));
+    file.add(static_cast<std::uint64_t>(modified_ns(about)));
+    sum += file.value;
+  }
+  return count == 0 || count == kMaxFiles ? std::string() : fmt::format("{} entries, {:016x}\n", count, sum);
+}
+
 }  // namespace
 
 Index3 bricks_that_share_chunks(const Index3& size, const Index3& chunk, std::size_t voxel_bytes, double max_bytes) {
@@ -105,8 +129,10 @@ Result<VoxelSource> open_stored_voxels(const LoadRequest& request) {
   VoxelSource source{grid.name, *find_number_type(grid.type), level.size, level.mapping, read_units(request.path, grid.name)};
   if (grid.has_window) source.window = {grid.window[0], grid.window[1]};
   source.color = grid.color;
-  source.identity = identify_file(request.path) + fmt::format("grid {}, step {}, newest file {}, {} files\n", grid.name, step,
-                                                              all.newest_mtime_ns, all.opened_files.size());
+  source.identity =
+      identify_file(request.path) +
+      fmt::format("grid {}, step {}, newest file {}, {} files\n", grid.name, step, all.newest_mtime_ns, all.opened_files.size()) +
+      state_of_files(request.path);
   // a share of the memory for each of two threads, of what is read at once
   constexpr double kMaxGroupBytes = 256e6, kShare = 0.25;
   const double max_bytes = std::min(kMaxGroupBytes, kShare * static_cast<double>(available_memory()));

@@ -16,6 +16,7 @@
 #include "engine/base/system_failure.h"
 #include "engine/base/text.h"
 #include "engine/base/threads.h"
+#include "engine/field/bricks/paged_grid.h"
 #include "engine/field/field_display_range.h"
 #include "engine/io/formats.h"
 #include "engine/io/volume/crop.h"
@@ -66,6 +67,12 @@ std::string magnitude_hint(const AnyField& field) {
       stats->min, stats->max);
 }
 
+/// Leaves out the finest level, with a note.
+void leave_paged(AnyField& field, const std::string& cause) {
+  if (field.paged) field.notes.push_back(fmt::format("with {}, links feel this level too, not the finest one", cause));
+  field.paged.reset();
+}
+
 Error unknown_kind(const std::string& path) {
   if (const std::string conversion = conversion_hint(path); !conversion.empty())
     return Error{fmt::format("{}: this is {}", path, conversion)};
@@ -80,6 +87,7 @@ Result<AnyField> with_cubic_interpolation(AnyField field, const std::string& pat
     auto cubic = field.scalar->grid()->as_cubic();
     if (!cubic) return with_path(cubic.error());
     field.scalar = *cubic;
+    leave_paged(field, "cubic interpolation");
   }
   if (field.vector && field.vector->grid()) {
     auto cubic = field.vector->grid()->as_cubic();
@@ -204,12 +212,13 @@ Result<AnyField> load(const LoadRequest& request) {
     }
     if (crops) {
       CATENA_TRY(field, crop_field(request.path, *field, *request.crop));
+      leave_paged(*field, "\"transform\" with \"crop\"");
     }
     const bool nearest = request.interpolation == Interpolation::nearest;
     if (nearest && field->vector)
       return Error{fmt::format("{}: the grid \"{}\" contains vectors, expected scalars for the interpolation \"nearest\"", request.path,
                                field->get()->name())};
-    if (const ScalarGrid* grid = nearest ? field->scalar->grid() : nullptr) field->scalar = grid->with_interpolation(request.interpolation);
+    if (nearest && field->scalar->grid() != nullptr) field = with_interpolation(std::move(*field), request.interpolation);
     if (request.level > 0 && !reader->reads_parts)
       return downsample_to_level(request.path, std::move(*field), request.level, request.interpolation == Interpolation::cubic);
     if (request.interpolation == Interpolation::cubic) return with_cubic_interpolation(std::move(*field), request.path);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "engine/base/memory_limit.h"
+#include "engine/field/bricks/paged_grid.h"
 #include "engine/field/grid/dense.h"
 #include "engine/io/volume/write_box.h"
 
@@ -77,7 +78,16 @@ Result<AnyField> transform_field(const std::string& path, AnyField field, const 
   const Mapping mapping = Mapping::from_linear(moved.linear, moved.offset);
   if (!mapping.is_invertible())
     return Error{fmt::format("{}: \"transform\" flattens the data or moves them to infinity; an invertible map was expected", path)};
-  if (field.scalar) field.scalar = field.scalar->grid()->with_mapping(mapping);
+  if (field.scalar) {
+    const std::shared_ptr<const ScalarGrid> grid = field.scalar->grid()->with_mapping(mapping);
+    field.scalar = grid;
+    // a map of flirt depends on the number of voxels, which a coarser level does not have
+    if (!transform.flirt_reference.empty()) field.paged.reset();
+    if (field.paged) {
+      const AffineMap finer = map.after(as_map(field.paged->mapping()));
+      field.paged = field.paged->over(grid, Mapping::from_linear(finer.linear, finer.offset));
+    }
+  }
   if (field.vector) {
     CATENA_TRY(field.vector, turn_vectors(path, field, mapping, map.linear));
   }

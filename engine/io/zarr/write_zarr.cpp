@@ -30,6 +30,8 @@ Result<std::string> convert_to_zarr(const LoadRequest& request, const std::strin
                                     std::vector<std::string>* notes, const WriteProgress& progress) {
   CATENA_CHECK(check_new_store(path));
   if (is_path_within(path, request.path)) return Error{one_line(path) + ": lies in the folder that is imported, expected another folder"};
+  if (is_path_within(request.path, path + ".part"))
+    return Error{one_line(path) + ".part: contains the input, expected a free name: the store is built there"};
   CATENA_TRY(VoxelSource source, open_voxels(request));
   if (!name.empty()) source.name = name;
   if (notes != nullptr) *notes = source.notes;

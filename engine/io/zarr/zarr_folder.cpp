@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
@@ -36,12 +37,21 @@ Outcome write_store_text(const std::string& path, const std::string& text) {
   return Done{};
 }
 
+constexpr std::string_view kIdentityStart = "catena OME-Zarr 1\n";
+
+std::string read_identity(const std::string& folder) {
+  std::ifstream in(folder + "/identity", std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 /// Returns whether a folder has nothing of a store: it is new, or the program ended while it was created or removed.
 bool has_no_store(const std::string& folder) {
   std::error_code code;
+  const bool is_own = read_identity(folder).starts_with(kIdentityStart);
   for (fs::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
     const std::string name = at->path().filename().string();
-    if (name != "identity" && !name.starts_with("identity.part") && name != "log") return false;
+    const bool is_temporary = name.starts_with("identity.part") && std::isdigit(static_cast<unsigned char>(name.c_str()[13])) != 0;
+    if (!is_temporary && !(is_own && (name == "identity" || name == "log"))) return false;
   }
   return !code;
 }
@@ -63,7 +73,9 @@ Outcome write_metadata(const std::string& store, const VoxelSource& source, cons
 
 Outcome check_new_store(const std::string& path) {
   std::error_code code;
-  if (fs::symlink_status(path, code).type() != fs::file_type::not_found)
+  const fs::file_status status = fs::symlink_status(path, code);
+  if (!fs::status_known(status)) return Error{one_line(path) + ": cannot be written: " + code.message(), true};
+  if (status.type() != fs::file_type::not_found)
     return Error{one_line(path) + ": something with this name exists, expected a new name: a store is never overwritten"};
   return check_output(path, {});
 }
@@ -84,20 +96,21 @@ Result<std::unique_ptr<ZarrFolder>> ZarrFolder::open(const std::string& path, co
   CATENA_CHECK(check_new_store(path));
   const std::string part = path + ".part", store = part + "/store";
   std::error_code code;
+  if (const fs::file_status found = fs::symlink_status(part, code);
+      fs::status_known(found) && found.type() != fs::file_type::not_found && found.type() != fs::file_type::directory)
+    return Error{one_line(part) + ": is not a folder, expected a free name: the store is built there"};
   if (!fs::create_directory(part, code) && code) return store_error(part, code.value());
   auto lock = FolderLock::acquire(part);
   if (!lock) return lock.error();
   // all that the bytes of the store depend on
-  std::string identity = fmt::format("catena OME-Zarr 1\n{}", source.identity);
+  std::string identity = fmt::format("{}{}", kIdentityStart, source.identity);
   for (const BrickLevel& level : levels) identity += zarray_text(source, level);
   identity += zattrs_text(source, levels, {true, true, 0, 0});
   if (has_no_store(part)) {
     fs::remove(part + "/log", code);
     CATENA_CHECK(write_store_text(part + "/identity", identity));
   } else {
-    std::ifstream in(part + "/identity", std::ios::binary);
-    const std::string found{std::istreambuf_iterator<char>(in), {}};
-    if (found != identity || source.identity.empty())
+    if (read_identity(part) != identity || source.identity.empty())
       return Error{one_line(part) +
                    ": an unfinished store of another input, or with other options, is in the way; finish it with the "
                    "command that began it, or remove this folder"};

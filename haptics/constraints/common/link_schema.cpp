@@ -39,6 +39,7 @@ Result<double> require_level(const json::Node& link, std::string_view key, const
   if (const std::string why = field::no_surface_hint(field, link.find(key)->string); !why.empty())
     return json::error_at(*link.find(key), why);
   CATENA_TRY(const double level, json::require_number(link, "level"));
+  if (field.cells() != nullptr && field.grid() == nullptr) return level;  // the range of its finest level is not known
   const double minimum = field.min_value(), maximum = field.max_value();
   if (!(level >= minimum && level <= maximum))
     return json::error_at(*link.find("level"),

@@ -139,9 +139,9 @@ void start_on_surface(ContactSurface& surface, const SideRules& rules, const Vec
 
 void advance_on_surface(ContactSurface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept {
   state.limit = rules.release;
-  // skip a resting probe, unless the proxy was moved from outside
+  // skip a resting probe, unless the proxy was moved from outside or the data have changed
   const bool untouched = !memory.initialized || bitwise_equal(memory.proxy, state.proxy);
-  if (memory.initialized && untouched && memory.settled && bitwise_equal(memory.probe, probe)) {
+  if (memory.initialized && untouched && memory.settled && !state.data_changed && bitwise_equal(memory.probe, probe)) {
     leave(memory.proxy, memory.residual, memory.status, state, memory.reason);
     return;
   }

@@ -25,7 +25,7 @@ void fetch(LevelSetField& field, const Vec3& world, LevelPoint& out) noexcept {
   out.p = p;
   if (field.out_of_budget()) return;
   field.count_fetch();
-  const field::ScalarGrid* grid = field.grid();
+  const field::CellField* grid = field.grid();
   const field::ScalarSample sample = grid ? grid->sample(out.p, field.cursor()) : field.field().sample(out.p, field.cursor());
   out.finite = std::isfinite(sample.value) && is_finite(sample.gradient);
   out.valid = out.finite && (sample.inside || grid == nullptr);
@@ -104,13 +104,13 @@ void Contact::handle_lost_surface() noexcept {
 
 bool Contact::begin() noexcept {
   const bool untouched = memory_.initialized && bitwise_equal(memory_.proxy, state_.proxy);
-  if (untouched && memory_.settled && bitwise_equal(memory_.probe, probe_)) {
+  if (untouched && memory_.settled && !state_.data_changed && bitwise_equal(memory_.probe, probe_)) {
     state_.residual = memory_.residual;
     state_.limit = memory_.limit;
     state_.status = memory_.status;
     return false;
   }
-  if (!untouched) memory_ = ContactMemory{};
+  if (!untouched || state_.data_changed) memory_ = ContactMemory{};
   previous_point_ = memory_.surface_point;
 
   if (!spec_.level) {

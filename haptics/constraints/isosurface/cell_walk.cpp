@@ -83,7 +83,7 @@ Vec3 cut_short(const LevelSetField& field, const CellPiece& piece, const Vec3& p
 
 }  // namespace
 
-CellPoint to_cell_point(const field::ScalarGrid& grid, const Vec3& world) noexcept {
+CellPoint to_cell_point(const field::CellField& grid, const Vec3& world) noexcept {
   const Vec3 index = grid.mapping().index_from_world(world);
   CellPoint out;
   out.base = grid.cell_base(index);
@@ -96,13 +96,13 @@ CellPoint to_cell_point(const field::ScalarGrid& grid, const Vec3& world) noexce
   return out;
 }
 
-Vec3 world_position(const field::ScalarGrid& grid, const CellPoint& at) noexcept {
+Vec3 world_position(const field::CellField& grid, const CellPoint& at) noexcept {
   return grid.mapping().world_from_index({at.base.x + at.f.x, at.base.y + at.f.y, at.base.z + at.f.z});
 }
 
 PulledBackForce pull_back_cells(LevelSetField& field, const PieceFrames& frames, const Vec3& probe, const CellPoint& at,
                                 const Vec3& f) noexcept {
-  const field::ScalarGrid& grid = *field.trilinear_grid();
+  const field::CellField& grid = *field.trilinear_grid();
   const Corner corner(grid.index_box(), at);
   const unsigned own = corner.upper();
   CellCache cells(field);
@@ -135,7 +135,7 @@ PulledBackForce pull_back_cells(LevelSetField& field, const PieceFrames& frames,
 }
 
 WalkResult walk_cells(LevelSetField& field, const PieceFrames& frames, const Vec3& probe, CellPoint& at, TravelLimit* limit) noexcept {
-  const field::ScalarGrid& grid = *field.trilinear_grid();
+  const field::CellField& grid = *field.trilinear_grid();
   const field::Mapping& mapping = grid.mapping();
   const double length = field.length();
   CellCache cells(field);

@@ -65,7 +65,7 @@ class CellCache {
     return nullptr;
   }
   LevelSetField& field_;
-  const field::ScalarGrid& grid_;
+  const field::CellField& grid_;
   // raw bytes: most ticks need one cell, and clearing 32 would cost as much as the walk
   static constexpr std::size_t kCapacity = 32;
   field::ScalarCell* slot(std::size_t k) {
@@ -125,9 +125,9 @@ struct TravelLimit {
 };
 
 /// Returns the cell point of a world position (clamped to the domain).
-CellPoint to_cell_point(const field::ScalarGrid& grid, const Vec3& world) noexcept;
+CellPoint to_cell_point(const field::CellField& grid, const Vec3& world) noexcept;
 /// Returns the world position of a cell point.
-Vec3 world_position(const field::ScalarGrid& grid, const CellPoint& at) noexcept;
+Vec3 world_position(const field::CellField& grid, const CellPoint& at) noexcept;
 
 /// Moves `at` (on the level to about 1e-9 L) to the local closest point to the probe. `frames`: those of the grid.
 WalkResult walk_cells(LevelSetField& field, const PieceFrames& frames, const Vec3& probe, CellPoint& at,

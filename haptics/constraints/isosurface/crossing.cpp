@@ -85,7 +85,7 @@ double next_face(const Vec3& a, const Vec3& d, double t) {
 }
 
 LevelSetHit cross_cells(LevelSetField& field, const Vec3& from, const LevelPoint& to) noexcept {
-  const field::ScalarGrid& grid = *field.trilinear_grid();
+  const field::CellField& grid = *field.trilinear_grid();
   const field::Mapping& mapping = grid.mapping();
   const Vec3 a = mapping.index_from_world(from), d = mapping.index_from_world_linear * (to.p - from);
   const Part part(grid.index_box(), a, d);

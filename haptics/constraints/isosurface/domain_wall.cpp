@@ -37,7 +37,7 @@ CellPoint on_linear_level(LevelSetField& field, const Vec3& position) noexcept {
 WallResult onto_level(LevelSetField& field, const Vec3& probe, const ClosestPointCriteria& goal, const CellPoint& walked) noexcept {
   const Vec3& f = walked.f;
   const double slack = kLevelSlack * field.length();
-  const field::ScalarGrid& grid = *field.grid();
+  const field::CellField& grid = *field.grid();
   const field::Mapping& mapping = grid.mapping();
   const field::Box& box = grid.index_box();
   const Vec3 corner(walked.base.x, walked.base.y, walked.base.z), position = corner + f;

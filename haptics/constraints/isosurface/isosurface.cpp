@@ -24,6 +24,7 @@ constexpr int kSight = 16;           // field samples along the line of sight
 constexpr int kForLevel = 12;        // field samples reserved for the return to the level
 constexpr double kOnLevel = 1e-9;    // fraction of L; tolerance for a point on the level to continue from
 constexpr int kStepsAlong = 16;      // steps along a surface that decide whether two of its points are connected
+constexpr double kNewSurface = 4;    // voxels; distance in which the surface of other data is the held one
 constexpr double kThere = 1e-4;      // fraction of L; distance that the last of these steps must reach
 
 /// Memory of the link: the part of the side rules, the held point, the updated curvature.
@@ -390,7 +391,8 @@ class Isosurface final : public Constraint {
     const SideRules rules = rules_.rules_at_proxy(state, scratch);
     const SideMemory& side = memory.side;
     const bool finishes = side.initialized && side.status == LinkStatus::budget;
-    if (field_->grid() != nullptr && (finishes || is_long_step(side, probe, field_->domain_length()))) state.max_work = kThrownWork;
+    if (field_->cells() != nullptr && (finishes || is_long_step(side, probe, field_->domain_length()))) state.max_work = kThrownWork;
+    if (state.data_changed) move_to_new_data(memory, state, scratch);
     LevelSurface surface(LevelSetField(*field_, level_, scratch.cursors[0], state), frames_, tolerance_, rules, memory);
     advance_on_surface(surface, rules, probe, memory.side, state);
   }
@@ -430,6 +432,24 @@ class Isosurface final : public Constraint {
   double domain_length() const noexcept override { return field_->domain_length(); }
 
  private:
+  /// Replaces the samples in memory by those of other data: the held point moves along the gradient to the new surface, if that is near.
+  void move_to_new_data(IsosurfaceMemory& memory, LinkState& state, LinkScratch& scratch) const noexcept {
+    if (!memory.side.initialized) return;
+    LevelSetField field(*field_, level_, scratch.cursors[0], state);
+    memory.seen = field.at(memory.side.probe);
+    memory.side.value = memory.seen.sigma;
+    memory.side.has_value = memory.seen.valid;
+    if (!memory.side.holding) return;
+    const LevelSetHit surface = search_along_gradient(field, field.at(memory.side.proxy), memory.normal, kNewSurface * field.voxel_edge());
+    memory.side.holding = surface.found;
+    if (!surface.found) return;
+    memory.at = surface.point;
+    memory.normal = surface.point.n;
+    memory.curvature = Curvature{};
+    memory.walled = false;
+    if (field.trilinear_grid()) memory.cell = to_cell_point(*field.trilinear_grid(), surface.point.p);
+  }
+
   field::ScalarFieldPtr field_;
   double level_;
   SideSpec rules_;

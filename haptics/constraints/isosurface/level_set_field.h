@@ -27,7 +27,7 @@ inline bool is_sane(const LevelPoint& at) noexcept { return are_valid_bools(at.v
 class LevelSetField {
  public:
   LevelSetField(const field::ScalarField& field, double level, field::Cursor& cursor, LinkState& state)
-      : field_(field), grid_(field.grid()), level_(level), cursor_(cursor), state_(state) {
+      : field_(field), grid_(field.cells()), level_(level), cursor_(cursor), state_(state) {
     if (grid_ == nullptr) return;
     linear_ = field.interpolation() != field::Interpolation::cubic;
     cell_work_ = linear_ ? kCellWork : kCubicWork;
@@ -64,9 +64,9 @@ class LevelSetField {
   /// Returns the longest edge of a voxel, world units; 0 for formulas.
   double voxel_edge() const noexcept { return grid_ ? field_.max_voxel_edge() : 0; }
   const field::ScalarField& field() const noexcept { return field_; }
-  const field::ScalarGrid* grid() const noexcept { return grid_; }
-  /// Returns the grid if its cells are trilinear, so that the surface is exact within each of them (cell_walk.h); else null.
-  const field::ScalarGrid* trilinear_grid() const noexcept { return linear_ ? grid_ : nullptr; }
+  const field::CellField* grid() const noexcept { return grid_; }
+  /// Returns the field if its cells are trilinear, so that the surface is exact within each of them (cell_walk.h); else null.
+  const field::CellField* trilinear_grid() const noexcept { return linear_ ? grid_ : nullptr; }
 
   /// Returns the same samples as trilinear cells, whose surface lies near the cubic's: for a walk.
   LevelSetField with_trilinear_cells() const noexcept {
@@ -90,7 +90,7 @@ class LevelSetField {
   Vec3 nearest(const Vec3& index) const noexcept;
   Vec3 wall_component(const Vec3& v) const noexcept;
   const field::ScalarField& field_;
-  const field::ScalarGrid* grid_;  ///< the grid of field_, or null
+  const field::CellField* grid_;  ///< the field as cells, or null
   bool linear_ = false;
   int cell_work_ = 0, reserved_work_ = 0;
   unsigned held_axes_ = 0;

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "engine/base/hash.h"
+#include "engine/field/bricks/paged_grid.h"
 #include "haptics/servo/log/format.h"
 
 namespace catena::haptics::log {
@@ -111,6 +113,7 @@ LogProgram to_log_program(const HapticProgram& program, std::optional<std::strin
     const widget::Spec& spec = program.widgets[i];
     out.widgets.push_back({program.widget_names[i], spec.revision, spec.pose, spec.value});
   }
+  for (const auto& grid : program.paged_grids) out.paged_grids.push_back(grid->version());
   return out;
 }
 
@@ -251,6 +254,35 @@ std::optional<LogGap> parse_gap(std::string_view bytes) {
   gap.ticks = in.get<std::uint64_t>();
   if (!in.at_end() || gap.ticks == 0) return std::nullopt;
   return gap;
+}
+
+std::string to_bytes(const LogBricks& bricks) {
+  ByteWriter out;
+  out.put(bricks.first_tick);
+  for (const std::vector<LogBrick>* list : {&bricks.left, &bricks.added}) {
+    out.put(static_cast<std::uint32_t>(list->size()));
+    for (const LogBrick& brick : *list) {
+      out.put(brick.grid);
+      out.put(brick.number);
+    }
+  }
+  return std::move(out.bytes());
+}
+
+std::optional<LogBricks> parse_bricks(std::string_view bytes) {
+  ByteReader in(bytes);
+  LogBricks out;
+  out.first_tick = in.get<std::uint64_t>();
+  for (std::vector<LogBrick>* list : {&out.left, &out.added}) {
+    const auto count = in.get<std::uint32_t>();
+    for (std::uint32_t i = 0; i < count && in.is_ok(); ++i) {
+      const auto grid = in.get<std::uint32_t>();
+      list->push_back({grid, in.get<std::uint64_t>()});
+    }
+    if (!std::ranges::is_sorted(*list)) return std::nullopt;
+  }
+  if (!in.at_end()) return std::nullopt;
+  return out;
 }
 
 std::string to_bytes(const LogEnd& end) {

@@ -58,6 +58,8 @@ struct CATENA_EXPORT LogProgram {
   };
   std::vector<std::string> modes;  ///< names of the modes
   std::vector<Widget> widgets;     ///< widgets in the order of the program
+  /// Versions of the paged grids, for the writer; not in the log.
+  std::vector<std::uint64_t> paged_grids;
 
   /// Returns the names of the links, in the order of the ticks' columns.
   std::vector<std::string> link_names() const;
@@ -90,6 +92,18 @@ struct LogState {
   std::optional<ChainState> chain;  ///< state; none: it was recorded by a build of Catena with another state layout
 };
 
+/// Brick of a paged grid in memory.
+struct LogBrick {
+  std::uint32_t grid = 0;    ///< index in HapticProgram::paged_grids
+  std::uint64_t number = 0;  ///< BrickId::number
+  auto operator<=>(const LogBrick&) const = default;
+};
+/// Change of the bricks in memory. The lists are sorted.
+struct LogBricks {
+  std::uint64_t first_tick = 0;       ///< first tick that samples them
+  std::vector<LogBrick> left, added;  ///< bricks that are no longer, or now, in memory
+};
+
 /// Returns what the log stores of a program. `scene_text`: scene text of the program; none: the header's.
 CATENA_EXPORT LogProgram to_log_program(const HapticProgram& program, std::optional<std::string> scene_text);
 
@@ -103,6 +117,10 @@ CATENA_EXPORT std::string to_bytes(const ChainState& state);
 CATENA_EXPORT std::string to_bytes(const LogGap& gap);
 /// Returns the payload of the end block.
 CATENA_EXPORT std::string to_bytes(const LogEnd& end);
+/// Returns the payload of a block of bricks.
+CATENA_EXPORT std::string to_bytes(const LogBricks& bricks);
+/// Parses the payload of a block of bricks; returns nothing if the bytes are invalid.
+CATENA_EXPORT std::optional<LogBricks> parse_bricks(std::string_view bytes);
 /// Parses the payload of a header block; returns nothing if the bytes are invalid.
 CATENA_EXPORT std::optional<LogHeader> parse_header(std::string_view bytes);
 /// Parses the payload of a program block; returns nothing if the bytes are invalid.

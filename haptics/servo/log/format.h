@@ -118,6 +118,11 @@ class ByteReader {
 //            vec3 in meters of the stage space, orientation as 4 f64 w x y z}. Versions of Catena without this block report such a log as
 //            damaged and read its ticks.
 //
+// 8 BRICKS   bricks of the program's paged grids that are in memory from `first tick` on, as a change of the list of the block before it
+//            (at first empty): u64 first tick, u32 n and n bricks that leave, u32 n and n that arrive; brick = u32 index of the grid in the
+//            program, u64 number of the brick (engine/field/bricks/paged_grid.h). Lists are sorted. Versions of Catena without paged grids
+//            report such a log as damaged.
+//
 // A file truncated at any byte still contains every complete block. A block whose hashes do not match is damaged: if the hash of its first
 // 32 bytes matches, its length is valid; else the next block is found by its magic number.
 
@@ -128,7 +133,7 @@ inline constexpr std::uint32_t kByteOrderMark = 0x01020304;  ///< written in the
 inline constexpr std::uint64_t kPreambleBytes = 16;          ///< size of the preamble
 
 /// Type of a block.
-enum class BlockType : std::uint32_t { header = 1, program = 2, ticks = 3, gap = 4, end = 5, state = 6, poses = 7 };
+enum class BlockType : std::uint32_t { header = 1, program = 2, ticks = 3, gap = 4, end = 5, state = 6, poses = 7, bricks = 8 };
 
 /// Header of a block, the 40 bytes before each payload.
 struct BlockHeader {

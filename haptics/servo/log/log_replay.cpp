@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "haptics/servo/log/log_replay.h"
 
+#include <map>
 #include <utility>
 
 #include "engine/base/clock.h"
-#include "haptics/chain/tick.h"
+#include "engine/field/bricks/paged_grid.h"
+#include "haptics/chain/offline_ticks.h"
 #include "haptics/chain/validate_state.h"
 
 namespace catena::haptics::log {
@@ -40,6 +42,30 @@ Outcome check_at(std::uint64_t tick, const HapticProgram& program, const ChainSt
   return Done{};
 }
 
+/// Reads the bricks that were in memory in the recording; those of `before` are not read again.
+Result<std::shared_ptr<const field::BrickSnapshot>> read_recorded(const std::vector<LogBrick>& recorded, const HapticProgram& program,
+                                                                  const field::BrickSnapshot* before, std::uint64_t number) {
+  std::map<field::BrickId, std::shared_ptr<const field::Brick>> known;
+  if (before != nullptr)
+    for (const field::StoredBrick& brick : before->bricks()) known.emplace(brick.id, brick.values);
+  std::vector<field::StoredBrick> bricks;
+  for (const LogBrick& brick : recorded) {
+    if (brick.grid >= program.paged_grids.size())
+      return Error{"the log was recorded with less memory for data; replaying it needs the same --memory"};
+    const field::PagedGrid& grid = *program.paged_grids[brick.grid];
+    if (brick.number >= grid.brick_count()) return Error{"the log names a brick that the grid does not have; the data have changed"};
+    const field::BrickId id{grid.version(), brick.number};
+    const auto found = known.find(id);
+    if (found != known.end()) {
+      bricks.push_back({id, found->second});
+      continue;
+    }
+    CATENA_TRY(std::shared_ptr<const field::Brick> values, grid.read(grid.brick_at(brick.number)));
+    bricks.push_back({id, std::move(values)});
+  }
+  return std::make_shared<const field::BrickSnapshot>(number, bricks);
+}
+
 }  // namespace
 
 Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
@@ -48,6 +74,9 @@ Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
   bool begun = false;
   HapticState out;
   std::shared_ptr<const HapticProgram> program;
+  std::shared_ptr<const field::BrickSnapshot> bricks, previous_bricks;
+  std::uint64_t snapshots = 1;
+  OfflineTicks ticks;
   std::vector<std::string> names, widgets;
   RecordWords words{};
   ReplayMeter meter;
@@ -83,9 +112,17 @@ Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
         if (!std::exchange(begun, true) && log.state().chain) {
           *state = *log.state().chain;
           CATENA_CHECK(check_at(log.tick().output.tick, *program, *state));
+          scratch->bricks = bricks.get();  // the recording began with the bricks of the tick before it
         }
+        ProbeSample input = log.tick().input;
+        input.bricks = bricks.get();
         const std::int64_t start = now_ns();
-        tick(*program, log.tick().input, *state, *scratch, out);
+        // grids may be in memory as a whole in the recording, but not here
+        if (bricks)
+          tick(*program, input, *state, *scratch, out);
+        else
+          ticks.run(*program, input, *state, *scratch, out);
+        previous_bricks.reset();
         meter.add(static_cast<double>(now_ns() - start), out);
         pack_tick(log.tick().input, out, words.data());
         std::string difference = first_difference(log.record_words(), words, names, widgets);
@@ -97,11 +134,19 @@ Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
         if (hooks.on_tick) hooks.on_tick(log.program(), out);
         break;
       }
+      case LogEvent::bricks: {
+        CATENA_ASSERT(program != nullptr);
+        if (!previous_bricks) previous_bricks = bricks;  // that of the last tick stays alive for the next one
+        CATENA_TRY(bricks, read_recorded(log.bricks(), *program, bricks.get(), snapshots++));
+        break;
+      }
       case LogEvent::poses:
       case LogEvent::done:
         break;
     }
   }
+  if (result.differing > 0 && bricks)
+    result.difference += "; the data were larger than the memory, so that a replay needs the same --memory";
   result.stats = meter.stats();
   return result;
 }

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 
 #include "haptics/servo/log/format.h"
 
@@ -91,6 +93,8 @@ std::optional<LogEvent> LogReader::read_block() {
       return read_end();
     case BlockType::poses:
       return read_poses();
+    case BlockType::bricks:
+      return read_bricks();
     case BlockType::header:
       break;
   }
@@ -201,6 +205,19 @@ std::optional<LogEvent> LogReader::read_poses() {
   }
   poses_ = std::move(*poses);
   return LogEvent::poses;
+}
+
+std::optional<LogEvent> LogReader::read_bricks() {
+  const auto change = parse_bricks(blocks_.payload());
+  if (!change || !has_program_ || change->first_tick <= last_tick_) {
+    mark_damaged();
+    return std::nullopt;
+  }
+  std::vector<LogBrick> rest, now;
+  std::ranges::set_difference(bricks_, change->left, std::back_inserter(rest));
+  std::ranges::set_union(rest, change->added, std::back_inserter(now));
+  bricks_ = std::move(now);
+  return LogEvent::bricks;
 }
 
 std::optional<LogEvent> LogReader::read_end() {

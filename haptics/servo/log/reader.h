@@ -20,6 +20,7 @@ enum class LogEvent {
   tick,     ///< a tick
   gap,      ///< ticks are missing
   poses,    ///< poses of some frames of a headset
+  bricks,   ///< other bricks of paged grids are in memory from the next tick on
   done      ///< end of the log
 };
 
@@ -48,6 +49,8 @@ class CATENA_EXPORT LogReader {
   const LogState& state() const { return state_; }
   /// Returns the poses; after LogEvent::poses.
   const std::vector<LogPoses>& poses() const { return poses_; }
+  /// Returns the bricks in memory, sorted.
+  const std::vector<LogBrick>& bricks() const { return bricks_; }
 
   /// Returns the number of the last tick so far, missing ones included.
   std::uint64_t last_tick() const { return last_tick_; }
@@ -67,6 +70,7 @@ class CATENA_EXPORT LogReader {
   std::optional<LogEvent> read_state();
   std::optional<LogEvent> read_gap();
   std::optional<LogEvent> read_poses();
+  std::optional<LogEvent> read_bricks();
   std::optional<LogEvent> read_end();
   LogEvent report_gap_before(std::uint64_t next);
   bool mark_damaged();
@@ -79,6 +83,7 @@ class CATENA_EXPORT LogReader {
   LogGap gap_;
   LogState state_;
   std::vector<LogPoses> poses_;
+  std::vector<LogBrick> bricks_;
   std::optional<LogEnd> end_;
   bool has_program_ = false, damaged_ = false, finished_ = false, reprocess_block_ = false;
   std::uint64_t next_sequence_ = 1, last_tick_ = 0;

@@ -9,8 +9,9 @@
 
 namespace catena::haptics::log {
 
-// If an assertion fails, the input or output of a tick has changed: add words for it in record.h and raise kVersion.
-static_assert(sizeof(ProbeSample) == 80 && sizeof(LinkReport) == 168 && sizeof(WidgetReport) == 96 && sizeof(HapticState) == 3024);
+// If an assertion fails, the input or output of a tick has changed: add words for it in record.h and raise kVersion. The snapshot of bricks
+// is in blocks of its own (format.h).
+static_assert(sizeof(ProbeSample) == 88 && sizeof(LinkReport) == 168 && sizeof(WidgetReport) == 96 && sizeof(HapticState) == 3032);
 
 namespace {
 
@@ -86,7 +87,7 @@ bool unpack_link(const std::uint64_t* words, LinkReport& link) noexcept {
   link.released = byte_of(packed, 6) == 1;
   link.sample_status = static_cast<SampleStatus>(byte_of(packed, 7));
   link.curve = kUnknownCurve;
-  return byte_of(packed, 4) <= static_cast<std::uint8_t>(LinkStatus::bad_probe) && byte_of(packed, 5) <= 1 && byte_of(packed, 6) <= 1 &&
+  return byte_of(packed, 4) <= static_cast<std::uint8_t>(LinkStatus::coarse) && byte_of(packed, 5) <= 1 && byte_of(packed, 6) <= 1 &&
          byte_of(packed, 7) <= static_cast<std::uint8_t>(SampleStatus::parallel);
 }
 

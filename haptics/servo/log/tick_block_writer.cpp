@@ -2,6 +2,7 @@
 #include "haptics/servo/log/tick_block_writer.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "engine/base/result.h"
 #include "haptics/servo/log/format.h"
@@ -12,8 +13,8 @@ namespace {
 constexpr std::size_t kFullBlock = std::size_t{64} << 10;
 }
 
-TickBlockWriter::TickBlockWriter(BlockFile file, ProgramLookup programs_of)
-    : file_(std::move(file)), find_programs_(std::move(programs_of)) {}
+TickBlockWriter::TickBlockWriter(BlockFile file, ProgramLookup programs_of, BrickLookup bricks_of)
+    : file_(std::move(file)), find_programs_(std::move(programs_of)), find_bricks_(std::move(bricks_of)) {}
 
 void TickBlockWriter::add_gap(std::uint64_t next) {
   flush();
@@ -22,16 +23,30 @@ void TickBlockWriter::add_gap(std::uint64_t next) {
   file_.write(BlockType::gap, to_bytes(LogGap{last_ + 1, missing, LogGap::Cause::overrun}));
 }
 
+void TickBlockWriter::write_bricks(const Tick& tick) {
+  flush();
+  snapshot_ = tick.snapshot;
+  std::vector<LogBrick> now = find_bricks_(tick.epoch, tick.snapshot);
+  LogBricks change{tick.number, {}, {}};
+  std::ranges::set_difference(bricks_, now, std::back_inserter(change.left));
+  std::ranges::set_difference(now, bricks_, std::back_inserter(change.added));
+  bricks_ = std::move(now);
+  file_.write(BlockType::bricks, to_bytes(change));
+}
+
 void TickBlockWriter::begin(const Tick& tick) {
-  if (!has_program_ || tick.epoch != epoch_) {
+  const bool has_new_program = !has_program_ || tick.epoch != epoch_;
+  if (has_new_program) {
     flush();
     for (LogProgram& program : find_programs_(tick.epoch)) {
       program.first_tick = tick.number;
       file_.write(BlockType::program, to_bytes(program));
+      has_paged_grids_ = !program.paged_grids.empty();
     }
     epoch_ = tick.epoch;
     has_program_ = true;
   }
+  if (tick.snapshot != snapshot_ || (has_new_program && has_paged_grids_)) write_bricks(tick);
   if (count_ == 0) {
     first_ = tick;
     previous_words_.fill(0);

@@ -64,13 +64,16 @@ class TickBlockWriter {
  public:
   /// Returns what is known of the program of this epoch; before the first tick, preceded by the first program if that is another one.
   using ProgramLookup = std::function<std::vector<LogProgram>(std::uint64_t epoch)>;
-  /// Creates a writer to the file; `programs_of` is called when the epoch changes.
-  TickBlockWriter(BlockFile file, ProgramLookup programs_of);
+  /// Returns the bricks in memory, sorted, of a snapshot for the program of this epoch.
+  using BrickLookup = std::function<std::vector<LogBrick>(std::uint64_t epoch, std::uint64_t snapshot)>;
+  /// Creates a writer to the file; the functions are called when the epoch, or it or the snapshot, changes.
+  TickBlockWriter(BlockFile file, ProgramLookup programs_of, BrickLookup bricks_of);
 
   /// Identification of a tick.
   struct Tick {
     std::uint64_t number = 0, epoch = 0;  ///< number of the tick; epoch of its program
     RecordLayout layout;                  ///< layout of its record
+    std::uint64_t snapshot = 0;           ///< snapshot of bricks that it samples; 0: none
   };
   /// Adds a tick. `words`: its record, from pack_tick(). Tick numbers increase; a jump is written as a gap.
   void add(const Tick& tick, std::span<const std::uint64_t> words);
@@ -91,14 +94,18 @@ class TickBlockWriter {
  private:
   void add_gap(std::uint64_t next);
   void begin(const Tick& tick);
+  void write_bricks(const Tick& tick);
 
   BlockFile file_;
   ProgramLookup find_programs_;
+  BrickLookup find_bricks_;
+  std::vector<LogBrick> bricks_;  ///< bricks in memory, as written last
+  std::uint64_t snapshot_ = 0;
   Tick first_;  ///< first tick of the block that is being filled
   std::uint32_t count_ = 0;
   std::string records_;
   RecordWords previous_words_{};
-  bool has_program_ = false;
+  bool has_program_ = false, has_paged_grids_ = false;
   std::uint64_t epoch_ = 0, last_ = 0;
   std::uint64_t ticks_ = 0, lost_ = 0, last_written_ = 0;
   LogTick unpacked_;

@@ -18,13 +18,14 @@
 #include "engine/base/console.h"
 #include "engine/base/output_file.h"
 #include "engine/base/threads.h"
+#include "engine/field/bricks/brick_snapshot.h"
 #include "haptics/servo/log/tick_block_writer.h"
 
 namespace catena::haptics::log {
 
 namespace {
 
-// Message of the ring: tick, epoch, number of links, then the record.
+// Message of the ring: tick, epoch, numbers of links (8 bits), widgets (8 bits) and snapshot of bricks, then the record.
 constexpr std::size_t kMessageHead = 3;
 using Message = std::array<std::uint64_t, kMessageHead + kMaxRecordWords>;
 
@@ -32,7 +33,12 @@ using Message = std::array<std::uint64_t, kMessageHead + kMaxRecordWords>;
 
 struct LogWriter::Impl {
   Impl(BlockFile file, const std::string& name, const LogOptions& chosen)
-      : path(name), options(chosen), ring(chosen.ring_bytes), blocks(std::move(file), [this](std::uint64_t e) { return programs_of(e); }) {}
+      : path(name),
+        options(chosen),
+        ring(chosen.ring_bytes),
+        blocks(
+            std::move(file), [this](std::uint64_t e) { return programs_of(e); },
+            [this](std::uint64_t e, std::uint64_t snapshot) { return bricks_of(e, snapshot); }) {}
 
   std::string path;
   LogOptions options;
@@ -51,6 +57,8 @@ struct LogWriter::Impl {
   std::optional<std::uint64_t> first_epoch;  ///< set until the first tick
   bool has_first = false, stop = false;
   std::vector<LogPoses> poses;
+  std::map<std::uint64_t, std::vector<field::BrickId>> snapshots;      ///< bricks of the snapshots that ticks may still use, by number
+  std::map<std::uint64_t, std::vector<std::uint64_t>> grids_of_epoch;  ///< versions of the paged grids of each program
 
   // writer's thread
   TickBlockWriter blocks;
@@ -59,6 +67,7 @@ struct LogWriter::Impl {
   std::thread thread;
 
   std::vector<LogProgram> programs_of(std::uint64_t epoch);
+  std::vector<LogBrick> bricks_of(std::uint64_t epoch, std::uint64_t snapshot);
   void drain();
   void publish();
   void loop();
@@ -81,12 +90,27 @@ std::vector<LogProgram> LogWriter::Impl::programs_of(std::uint64_t epoch) {
   return found;
 }
 
+std::vector<LogBrick> LogWriter::Impl::bricks_of(std::uint64_t epoch, std::uint64_t snapshot) {
+  const std::lock_guard lock(mutex);
+  std::vector<LogBrick> bricks;
+  const auto found = snapshots.find(snapshot);
+  const auto grids = grids_of_epoch.find(epoch);
+  if (found == snapshots.end() || grids == grids_of_epoch.end()) return bricks;
+  for (const field::BrickId& id : found->second)
+    if (const auto grid = std::ranges::find(grids->second, id.grid); grid != grids->second.end())
+      bricks.push_back({static_cast<std::uint32_t>(grid - grids->second.begin()), id.number});
+  std::ranges::sort(bricks);
+  snapshots.erase(snapshots.begin(), found);  // older snapshots are no longer needed
+  return bricks;
+}
+
 void LogWriter::Impl::drain() {
   Message taken;
   while (ring.available() >= kMessageHead) {
     ring.pop({taken.data(), kMessageHead});
     if (std::exchange(has_start, false)) blocks.begin_after(start);
-    const TickBlockWriter::Tick tick{taken[0], taken[1], {static_cast<int>(taken[2] & 0xff), static_cast<int>(taken[2] >> 8)}};
+    const TickBlockWriter::Tick tick{
+        taken[0], taken[1], {static_cast<int>(taken[2] & 0xff), static_cast<int>(taken[2] >> 8 & 0xff)}, taken[2] >> 16};
     const std::span<std::uint64_t> words(taken.data() + kMessageHead, static_cast<std::size_t>(record_word_count(tick.layout)));
     ring.pop(words);
     if (!blocks.file().failed()) blocks.add(tick, words);
@@ -160,6 +184,7 @@ void LogWriter::add_program(const HapticProgram& program, std::optional<std::str
   LogProgram facts = to_log_program(program, std::move(scene_text));
   const std::lock_guard lock(impl_->mutex);
   if (!std::exchange(impl_->has_first, true)) impl_->first_epoch = program.epoch;
+  if (!facts.paged_grids.empty()) impl_->grids_of_epoch[program.epoch] = facts.paged_grids;
   impl_->programs.insert_or_assign(program.epoch, std::move(facts));
 }
 
@@ -184,11 +209,19 @@ void LogWriter::put(const ProbeSample& input, const HapticState& output) noexcep
   Impl& p = *impl_;
   p.message[0] = output.tick;
   p.message[1] = output.program_epoch;
-  p.message[2] = static_cast<std::uint64_t>(output.link_count) | static_cast<std::uint64_t>(output.widget_count) << 8;
+  p.message[2] =
+      static_cast<std::uint64_t>(output.link_count) | static_cast<std::uint64_t>(output.widget_count) << 8 | output.brick_snapshot << 16;
   const int count = pack_tick(input, output, p.message.data() + kMessageHead);
   if (!p.ring.try_push({p.message.data(), kMessageHead + static_cast<std::size_t>(count)}))
     p.ring_lost.store(p.ring_lost.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   p.newest_tick.store(output.tick, std::memory_order_release);
+}
+
+void LogWriter::add_bricks(const field::BrickSnapshot& bricks) {
+  std::vector<field::BrickId> ids;
+  for (const field::StoredBrick& brick : bricks.bricks()) ids.push_back(brick.id);
+  const std::lock_guard lock(impl_->mutex);
+  impl_->snapshots.insert_or_assign(bricks.number(), std::move(ids));
 }
 
 LogStatus LogWriter::status() const {

@@ -56,6 +56,9 @@ class LogWriter final : public TickSink {
   void begin(const ChainState& state) noexcept override;
   void put(const ProbeSample& input, const HapticState& output) noexcept override;
 
+  // planning thread of the pager of bricks
+  void add_bricks(const field::BrickSnapshot& bricks) override;
+
   /// Returns the status. Frame thread, at any time.
   LogStatus status() const;
   /// Writes the rest and the end block, and closes the file. Frame thread, after the servo has stopped or uses another sink.

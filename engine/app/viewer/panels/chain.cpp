@@ -46,6 +46,8 @@ StatusWords words_of(LinkStatus status) {
       return {"out of reach", "no surface or line was found near the probe"};
     case LinkStatus::bad_probe:
       return {"bad probe", "the position of the probe is not finite"};
+    case LinkStatus::coarse:
+      return {"holds, coarse", "the constraint holds on a coarser level of the data, until the full resolution is read"};
   }
   return {"", ""};
 }

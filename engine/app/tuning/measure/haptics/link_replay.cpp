@@ -11,9 +11,10 @@ void run_ticks(const haptics::HapticProgram& program, std::span<const haptics::P
                const std::function<void(const HapticState&)>& on_tick) {
   auto state = std::make_unique<haptics::ChainState>();
   auto scratch = std::make_unique<haptics::ChainScratch>();
+  haptics::OfflineTicks ticks;
   HapticState out;
   for (const haptics::ProbeSample& probe : path) {
-    haptics::tick(program, probe, *state, *scratch, out);
+    ticks.run(program, probe, *state, *scratch, out);
     if (on_tick) on_tick(out);
   }
 }

@@ -7,7 +7,7 @@
 #include "engine/app/tuning/measure/timing.h"
 #include "engine/app/tuning/measure/workload.h"
 #include "engine/scene/scene.h"
-#include "haptics/chain/tick.h"
+#include "haptics/chain/offline_ticks.h"
 
 namespace catena::app::tuning {
 
