@@ -15,8 +15,8 @@ struct WatchedPosition {
 
 /// Distances of a plan.
 struct PlanLimits {
-  double near_voxels = 8;      ///< margin of bricks that the next ticks may sample
-  double look_ahead_s = 0.4;   ///< time for which positions are extrapolated
+  double near_voxels = 0;      ///< margin of bricks that the next ticks may sample
+  double look_ahead_s = 0;     ///< time for which positions are extrapolated
   std::size_t max_bricks = 0;  ///< length of the plan
 };
 

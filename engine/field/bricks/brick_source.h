@@ -6,6 +6,7 @@
 ///   values    of the stored number type, in native byte order, x fastest
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <utility>
@@ -44,6 +45,18 @@ inline Index3 brick_counts(const BrickLevel& level) {
 inline Index3 brick_size(const BrickLevel& level, const Index3& brick) {
   const auto edge = [](int voxels, int at) { return voxels - at * kBrickEdge < kBrickEdge ? voxels - at * kBrickEdge : kBrickEdge; };
   return {edge(level.size.x, brick.x), edge(level.size.y, brick.y), edge(level.size.z, brick.z)};
+}
+
+/// Returns the number of a brick among `counts` bricks along each axis, x fastest.
+inline std::uint64_t brick_number(const Index3& counts, const Index3& brick) {
+  const auto wide = [](std::int32_t n) { return static_cast<std::uint64_t>(n); };
+  return (wide(brick.z) * wide(counts.y) + wide(brick.y)) * wide(counts.x) + wide(brick.x);
+}
+
+/// Returns the brick with a number.
+inline Index3 brick_at(const Index3& counts, std::uint64_t number) {
+  const auto nx = static_cast<std::uint64_t>(counts.x), ny = static_cast<std::uint64_t>(counts.y);
+  return {static_cast<std::int32_t>(number % nx), static_cast<std::int32_t>(number / nx % ny), static_cast<std::int32_t>(number / nx / ny)};
 }
 
 /// Source of bricks; immutable, apart from what is known of their ranges. Any thread.

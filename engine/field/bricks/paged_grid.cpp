@@ -45,19 +45,13 @@ AnyField with_interpolation(AnyField field, Interpolation linear_or_nearest) {
   return field;
 }
 
-BrickId PagedGrid::brick_id(const Index3& brick) const noexcept {
-  const auto wide = [](std::int32_t n) { return static_cast<std::uint64_t>(n); };
-  return {version(), (wide(brick.z) * wide(counts_.y) + wide(brick.y)) * wide(counts_.x) + wide(brick.x)};
-}
+BrickId PagedGrid::brick_id(const Index3& brick) const noexcept { return {version(), brick_number(counts_, brick)}; }
 
 std::uint64_t PagedGrid::brick_count() const noexcept {
   return static_cast<std::uint64_t>(counts_.x) * static_cast<std::uint64_t>(counts_.y) * static_cast<std::uint64_t>(counts_.z);
 }
 
-Index3 PagedGrid::brick_at(std::uint64_t number) const noexcept {
-  const auto nx = static_cast<std::uint64_t>(counts_.x), ny = static_cast<std::uint64_t>(counts_.y);
-  return {static_cast<std::int32_t>(number % nx), static_cast<std::int32_t>(number / nx % ny), static_cast<std::int32_t>(number / nx / ny)};
-}
+Index3 PagedGrid::brick_at(std::uint64_t number) const noexcept { return field::brick_at(counts_, number); }
 
 Index3 PagedGrid::brick_of(const Vec3& index) const noexcept {
   const Index3 last = range_.last_voxel();

@@ -30,7 +30,6 @@ class StoreBricks final : public BrickSource {
     std::unordered_map<std::uint64_t, BrickRange> known;
     std::vector<std::uint8_t> present;  ///< Empty: not listed.
   };
-  static std::uint64_t number_of(const BrickLevel& level, const Index3& brick);
 
   std::shared_ptr<Store> store_;
   int grid_, step_;

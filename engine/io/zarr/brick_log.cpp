@@ -65,10 +65,7 @@ Result<BrickLog> BrickLog::open(const std::string& path, const std::vector<Brick
 }
 
 std::size_t BrickLog::number_of(int level, const Index3& brick) const {
-  const Index3& n = counts_[static_cast<std::size_t>(level)];
-  return (static_cast<std::size_t>(brick.z) * static_cast<std::size_t>(n.y) + static_cast<std::size_t>(brick.y)) *
-             static_cast<std::size_t>(n.x) +
-         static_cast<std::size_t>(brick.x);
+  return static_cast<std::size_t>(brick_number(counts_[static_cast<std::size_t>(level)], brick));
 }
 
 bool BrickLog::has(int level, const Index3& brick) const {

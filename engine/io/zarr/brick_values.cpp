@@ -8,23 +8,10 @@
 #include <limits>
 #include <type_traits>
 
+#include "engine/field/bricks/with_number_type.h"
+
 namespace catena::field {
 namespace {
-
-/// Calls `body` with a value of the C++ type of a number type.
-template <class Body>
-void with_brick_type(const NumberType& type, const Body& body) {
-  if (type.name == "float32") return body(float{});
-  if (type.name == "float64") return body(double{});
-  if (type.name == "uint8") return body(std::uint8_t{});
-  if (type.name == "int8") return body(std::int8_t{});
-  if (type.name == "uint16") return body(std::uint16_t{});
-  if (type.name == "int16") return body(std::int16_t{});
-  if (type.name == "uint32") return body(std::uint32_t{});
-  if (type.name == "int32") return body(std::int32_t{});
-  if (type.name == "uint64") return body(std::uint64_t{});
-  return body(std::int64_t{});
-}
 
 /// Type in which eight numbers of T are added without overflow.
 template <class T>
@@ -82,7 +69,7 @@ void halve_row(const std::array<const T*, 4>& rows, int row_count, int size, T* 
 }  // namespace
 
 void fill_brick(const NumberType& type, double value, std::span<std::byte> values) {
-  with_brick_type(type, [&](auto number) {
+  with_number_type(type, [&](auto number) {
     number = static_cast<decltype(number)>(value);
     for (std::size_t at = 0; at < values.size(); at += sizeof number) std::memcpy(&values[at], &number, sizeof number);
   });
@@ -92,34 +79,10 @@ bool is_same_brick(std::span<const std::byte> a, std::span<const std::byte> b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
-BrickRange find_range(const NumberType& type, std::span<const std::byte> brick, const Index3& size) {
-  BrickRange range{true, true, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  with_brick_type(type, [&](auto zero) {
-    using T = decltype(zero);
-    const T* const values = reinterpret_cast<const T*>(brick.data());
-    T min = std::numeric_limits<T>::max(), max = std::numeric_limits<T>::lowest();
-    bool found = std::is_integral_v<T>;
-    for (int z = 0; z < size.z; ++z)
-      for (int y = 0; y < size.y; ++y) {
-        const T* const row = values + (static_cast<std::ptrdiff_t>(z) * kBrickEdge + y) * kBrickEdge;
-        for (int x = 0; x < size.x; ++x) {
-          if constexpr (!std::is_integral_v<T>) {
-            if (!std::isfinite(row[x])) continue;
-            found = true;
-          }
-          min = std::min(min, row[x]);
-          max = std::max(max, row[x]);
-        }
-      }
-    if (found) range.min = static_cast<double>(min), range.max = static_cast<double>(max);
-  });
-  return range;
-}
-
 void halve_brick(const NumberType& type, std::span<const std::byte> brick, const Index3& size, bool is_label_map,
                  std::span<std::byte> out) {
   constexpr int kHalf = kBrickEdge / 2;
-  with_brick_type(type, [&](auto zero) {
+  with_number_type(type, [&](auto zero) {
     using T = decltype(zero);
     const T* const values = reinterpret_cast<const T*>(brick.data());
     T* const halved = reinterpret_cast<T*>(out.data());

@@ -16,8 +16,6 @@ inline constexpr std::size_t kBrickVoxels = std::size_t{kBrickEdge} * kBrickEdge
 void fill_brick(const NumberType& type, double value, std::span<std::byte> values);
 /// Returns whether two bricks have the same bytes.
 bool is_same_brick(std::span<const std::byte> a, std::span<const std::byte> b);
-/// Returns the range of the finite values of the first `size` voxels.
-BrickRange find_range(const NumberType& type, std::span<const std::byte> brick, const Index3& size);
 
 /// Computes the first `size` voxels at half the resolution. `out`: (kBrickEdge / 2)^3 voxels; those behind the computed ones are unchanged.
 ///   value = the mean of the finite ones of 2 x 2 x 2 voxels, of those that exist at odd sizes; NaN where none is finite

@@ -64,9 +64,10 @@ Outcome PyramidWriter::write() {
         for (int x = 0; x < n.x; x += at_once.x) groups.push_back({x, y, z});
     CATENA_CHECK(for_each(groups.size(), [&](std::size_t i, Scratch& scratch) { return write_group(groups[i], scratch); }));
   }
-  parts_.resize(static_cast<std::size_t>(count_of(brick_counts(folder_.levels()[static_cast<std::size_t>(split_)]))));
+  const Index3 counts = brick_counts(folder_.levels()[static_cast<std::size_t>(split_)]);
+  parts_.resize(static_cast<std::size_t>(count_of(counts)));
   CATENA_CHECK(for_each(parts_.size(), [&](std::size_t i, Scratch& scratch) -> Outcome {
-    CATENA_TRY(const BrickState state, complete(split_, brick_at(split_, i), scratch));
+    CATENA_TRY(const BrickState state, complete(split_, brick_at(counts, i), scratch));
     parts_[i] = {state, state == BrickState::empty ? std::vector<std::byte>() : scratch.halved[static_cast<std::size_t>(split_)]};
     return Done{};
   }));
@@ -187,10 +188,10 @@ Result<bool> PyramidWriter::combine(int level, const Index3& brick, Scratch& scr
   const Index3 end = smaller_of({first.x + 2, first.y + 2, first.z + 2}, brick_counts(finer));
   CATENA_CHECK(for_indices(first, end, [&](const Index3& child) -> Outcome {
     if (has_failed_) return Error{"another thread has failed"};
-    const bool is_part = level - 1 == split_ && !parts_.empty() && parts_[number_of(split_, child)].state != BrickState::missing;
+    const bool is_part = level - 1 == split_ && !parts_.empty() && parts_[number_in_split(child)].state != BrickState::missing;
     BrickState state = BrickState::empty;
     if (is_part) {
-      state = parts_[number_of(split_, child)].state;
+      state = parts_[number_in_split(child)].state;
     } else {
       CATENA_TRY(state, complete(level - 1, child, scratch));
     }
@@ -198,7 +199,7 @@ Result<bool> PyramidWriter::combine(int level, const Index3& brick, Scratch& scr
     has_data = true;
     const Index3 size = brick_size(finer, child);
     const Index3 to{(child.x - first.x) * kHalfBrick.x, (child.y - first.y) * kHalfBrick.y, (child.z - first.z) * kHalfBrick.z};
-    copy_box(source_.type.bytes, is_part ? parts_[number_of(split_, child)].halved : scratch.halved[fine], kHalfBrick, {0, 0, 0}, values,
+    copy_box(source_.type.bytes, is_part ? parts_[number_in_split(child)].halved : scratch.halved[fine], kHalfBrick, {0, 0, 0}, values,
              kFullBrick, to, {(size.x + 1) / 2, (size.y + 1) / 2, (size.z + 1) / 2});
     return Done{};
   }));
@@ -217,17 +218,8 @@ Outcome PyramidWriter::read_source(const Index3& brick, Scratch& scratch) {
   return Done{};
 }
 
-std::size_t PyramidWriter::number_of(int level, const Index3& brick) const {
-  const Index3 n = brick_counts(folder_.levels()[static_cast<std::size_t>(level)]);
-  return (static_cast<std::size_t>(brick.z) * static_cast<std::size_t>(n.y) + static_cast<std::size_t>(brick.y)) *
-             static_cast<std::size_t>(n.x) +
-         static_cast<std::size_t>(brick.x);
-}
-
-Index3 PyramidWriter::brick_at(int level, std::size_t number) const {
-  const Index3 n = brick_counts(folder_.levels()[static_cast<std::size_t>(level)]);
-  const auto at = static_cast<std::int64_t>(number);
-  return {static_cast<int>(at % n.x), static_cast<int>(at / n.x % n.y), static_cast<int>(at / n.x / n.y)};
+std::size_t PyramidWriter::number_in_split(const Index3& brick) const {
+  return static_cast<std::size_t>(brick_number(brick_counts(folder_.levels()[static_cast<std::size_t>(split_)]), brick));
 }
 
 void PyramidWriter::report(double work) {

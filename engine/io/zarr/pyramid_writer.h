@@ -39,8 +39,7 @@ class PyramidWriter {
   Result<bool> combine(int level, const Index3& brick, Scratch& scratch);
   Outcome read_source(const Index3& brick, Scratch& scratch);
   bool needs_reading(const Index3& brick) const;
-  std::size_t number_of(int level, const Index3& brick) const;
-  Index3 brick_at(int level, std::size_t number) const;
+  std::size_t number_in_split(const Index3& brick) const;
   void report(double work);
 
   ZarrFolder& folder_;

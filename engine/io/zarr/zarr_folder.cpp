@@ -16,6 +16,7 @@
 #include "engine/base/output_file.h"
 #include "engine/base/system_failure.h"
 #include "engine/base/text.h"
+#include "engine/field/bricks/brick_range.h"
 #include "engine/io/zarr/brick_values.h"
 #include "engine/io/zarr/write_zarr.h"
 #include "engine/io/zarr/zarr_metadata.h"
@@ -153,7 +154,7 @@ Outcome ZarrFolder::write_chunk(int level, const Index3& brick, std::span<const 
 Result<BrickState> ZarrFolder::write(int level, const Index3& brick, std::span<const std::byte> values) {
   const BrickState state = is_same_brick(values, fill_) ? BrickState::empty : BrickState::stored;
   BrickRange range;
-  if (level == 0) range = find_range(type_, values, brick_size(levels_.front(), brick));
+  if (level == 0) range = find_range(type_, values, brick_size(levels_.front(), brick), {kBrickEdge, kBrickEdge, kBrickEdge});
   if (state == BrickState::stored) CATENA_CHECK(write_chunk(level, brick, values));
   CATENA_CHECK(log_.record(level, brick, state, range));
   return state;

@@ -26,7 +26,7 @@ void TickBlockWriter::add_gap(std::uint64_t next) {
 void TickBlockWriter::write_bricks(const Tick& tick) {
   flush();
   snapshot_ = tick.snapshot;
-  std::vector<LogBrick> now = find_bricks_(tick.epoch, tick.snapshot);
+  std::vector<LogBrick> now = find_bricks_(paged_grids_, tick.snapshot);
   LogBricks change{tick.number, {}, {}};
   std::ranges::set_difference(bricks_, now, std::back_inserter(change.left));
   std::ranges::set_difference(now, bricks_, std::back_inserter(change.added));
@@ -41,12 +41,12 @@ void TickBlockWriter::begin(const Tick& tick) {
     for (LogProgram& program : find_programs_(tick.epoch)) {
       program.first_tick = tick.number;
       file_.write(BlockType::program, to_bytes(program));
-      has_paged_grids_ = !program.paged_grids.empty();
+      paged_grids_ = std::move(program.paged_grids);
     }
     epoch_ = tick.epoch;
     has_program_ = true;
   }
-  if (tick.snapshot != snapshot_ || (has_new_program && has_paged_grids_)) write_bricks(tick);
+  if (tick.snapshot != snapshot_ || (has_new_program && !paged_grids_.empty())) write_bricks(tick);
   if (count_ == 0) {
     first_ = tick;
     previous_words_.fill(0);

@@ -64,8 +64,8 @@ class TickBlockWriter {
  public:
   /// Returns what is known of the program of this epoch; before the first tick, preceded by the first program if that is another one.
   using ProgramLookup = std::function<std::vector<LogProgram>(std::uint64_t epoch)>;
-  /// Returns the bricks in memory, sorted, of a snapshot for the program of this epoch.
-  using BrickLookup = std::function<std::vector<LogBrick>(std::uint64_t epoch, std::uint64_t snapshot)>;
+  /// Returns the bricks in memory, sorted, of a snapshot for a program with these paged grids (LogProgram::paged_grids).
+  using BrickLookup = std::function<std::vector<LogBrick>(const std::vector<std::uint64_t>& paged_grids, std::uint64_t snapshot)>;
   /// Creates a writer to the file; the functions are called when the epoch, or it or the snapshot, changes.
   TickBlockWriter(BlockFile file, ProgramLookup programs_of, BrickLookup bricks_of);
 
@@ -105,7 +105,8 @@ class TickBlockWriter {
   std::uint32_t count_ = 0;
   std::string records_;
   RecordWords previous_words_{};
-  bool has_program_ = false, has_paged_grids_ = false;
+  bool has_program_ = false;
+  std::vector<std::uint64_t> paged_grids_;  ///< of the program
   std::uint64_t epoch_ = 0, last_ = 0;
   std::uint64_t ticks_ = 0, lost_ = 0, last_written_ = 0;
   LogTick unpacked_;

@@ -38,7 +38,7 @@ struct LogWriter::Impl {
         ring(chosen.ring_bytes),
         blocks(
             std::move(file), [this](std::uint64_t e) { return programs_of(e); },
-            [this](std::uint64_t e, std::uint64_t snapshot) { return bricks_of(e, snapshot); }) {}
+            [this](const std::vector<std::uint64_t>& grids, std::uint64_t snapshot) { return bricks_of(grids, snapshot); }) {}
 
   std::string path;
   LogOptions options;
@@ -57,8 +57,7 @@ struct LogWriter::Impl {
   std::optional<std::uint64_t> first_epoch;  ///< set until the first tick
   bool has_first = false, stop = false;
   std::vector<LogPoses> poses;
-  std::map<std::uint64_t, std::vector<field::BrickId>> snapshots;      ///< bricks of the snapshots that ticks may still use, by number
-  std::map<std::uint64_t, std::vector<std::uint64_t>> grids_of_epoch;  ///< versions of the paged grids of each program
+  std::map<std::uint64_t, std::vector<field::BrickId>> snapshots;  ///< bricks of the snapshots that ticks may still use, by number
 
   // writer's thread
   TickBlockWriter blocks;
@@ -67,7 +66,7 @@ struct LogWriter::Impl {
   std::thread thread;
 
   std::vector<LogProgram> programs_of(std::uint64_t epoch);
-  std::vector<LogBrick> bricks_of(std::uint64_t epoch, std::uint64_t snapshot);
+  std::vector<LogBrick> bricks_of(const std::vector<std::uint64_t>& grids, std::uint64_t snapshot);
   void drain();
   void publish();
   void loop();
@@ -90,15 +89,14 @@ std::vector<LogProgram> LogWriter::Impl::programs_of(std::uint64_t epoch) {
   return found;
 }
 
-std::vector<LogBrick> LogWriter::Impl::bricks_of(std::uint64_t epoch, std::uint64_t snapshot) {
+std::vector<LogBrick> LogWriter::Impl::bricks_of(const std::vector<std::uint64_t>& grids, std::uint64_t snapshot) {
   const std::lock_guard lock(mutex);
   std::vector<LogBrick> bricks;
   const auto found = snapshots.find(snapshot);
-  const auto grids = grids_of_epoch.find(epoch);
-  if (found == snapshots.end() || grids == grids_of_epoch.end()) return bricks;
+  if (found == snapshots.end()) return bricks;
   for (const field::BrickId& id : found->second)
-    if (const auto grid = std::ranges::find(grids->second, id.grid); grid != grids->second.end())
-      bricks.push_back({static_cast<std::uint32_t>(grid - grids->second.begin()), id.number});
+    if (const auto grid = std::ranges::find(grids, id.grid); grid != grids.end())
+      bricks.push_back({static_cast<std::uint32_t>(grid - grids.begin()), id.number});
   std::ranges::sort(bricks);
   snapshots.erase(snapshots.begin(), found);  // older snapshots are no longer needed
   return bricks;
@@ -184,7 +182,6 @@ void LogWriter::add_program(const HapticProgram& program, std::optional<std::str
   LogProgram facts = to_log_program(program, std::move(scene_text));
   const std::lock_guard lock(impl_->mutex);
   if (!std::exchange(impl_->has_first, true)) impl_->first_epoch = program.epoch;
-  if (!facts.paged_grids.empty()) impl_->grids_of_epoch[program.epoch] = facts.paged_grids;
   impl_->programs.insert_or_assign(program.epoch, std::move(facts));
 }
 
