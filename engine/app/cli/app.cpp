@@ -11,6 +11,7 @@
 #include <new>
 #include <system_error>
 
+#include "engine/app/cli/io_conflicts.h"
 #include "engine/app/cli/options.h"
 #include "engine/app/cli/plugins.h"
 #include "engine/app/cli/process_limits.h"
@@ -21,6 +22,7 @@
 #include "engine/base/system_failure.h"
 #include "engine/base/text.h"
 #include "engine/base/threads.h"
+#include "engine/io/levels/level_cache.h"
 #include "engine/scene/streamlines.h"
 #include "engine/schema/renames.h"
 
@@ -177,6 +179,8 @@ int run(int argc, char** argv) {
   retain_freed_memory();
   protect_inputs(true);
   field::set_read_progress(print_reading_progress);
+  const std::string cache = user_folder("XDG_CACHE_HOME", ".cache");
+  field::set_level_cache(cache.empty() ? cache : cache + "/levels", print_level_progress);
   scene::set_trace_progress(print_tracing_progress);
   reserve_standard_descriptors();
   return flush_output(guarded(argc, argv));

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -183,6 +184,17 @@ void print_tracing_progress(const std::string& field, std::size_t seeds, std::si
   if (of == 0) return shown.reset();
   if (!shown) shown.emplace("streamlines of " + field, static_cast<double>(of));
   shown->update(static_cast<double>(seeds));
+}
+
+void print_level_progress(const std::string& path, double part) {
+  static std::mutex mutex;
+  static std::map<std::string, ProgressLine> shown;
+  const std::scoped_lock lock(mutex);
+  if (part < 0) {
+    shown.erase(path);
+    return;
+  }
+  shown.try_emplace(path, "coarser levels of " + path, 1).first->second.update(part);
 }
 
 }  // namespace catena::app

@@ -83,6 +83,9 @@ void print_reading_progress(const std::string& path, double seconds, bool ended)
 /// Progress callback for scene::set_trace_progress: `seeds` of `of` seeds are traced; `of` = 0: the work is over.
 void print_tracing_progress(const std::string& field, std::size_t seeds, std::size_t of);
 
+/// Progress callback for field::set_level_cache: the part of the work that is done for a store; negative: the work is over.
+void print_level_progress(const std::string& path, double part);
+
 /// Progress of long work, on stderr: a line rewritten in place on a terminal, after the first second; elsewhere at most ten lines, after
 /// the first ten seconds.
 class ProgressLine {

@@ -105,7 +105,7 @@ Outcome LevelReader::read_slab(int z) {
     for (std::size_t i = next++; i < tiles.size(); i = next++) {
       const StoreBox& tile = tiles[i];
       values.resize(static_cast<std::size_t>(tile.voxels()) * type_.bytes);
-      if (const Outcome got = part_.store->read(part_.grid, part_.level, part_.step, tile, values); !got) {
+      if (const Outcome got = part_.stored->read(part_.level, tile, values); !got) {
         const std::scoped_lock lock(mutex);
         if (result) result = got;
         next = tiles.size();

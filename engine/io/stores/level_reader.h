@@ -6,18 +6,18 @@
 #include <vector>
 
 #include "engine/field/number_type.h"
-#include "engine/io/stores/store.h"
+#include "engine/io/stores/stored_levels.h"
 
 namespace catena::field {
 
 /// Part of a store that is loaded into one grid.
 struct LevelPart {
-  std::shared_ptr<Store> store;
-  int grid = 0, level = 0, step = 0;
+  std::shared_ptr<const StoredLevels> stored;
+  int level = 0;
   StoreBox box;
 
-  const StoreGrid& description() const { return store->description().grids[static_cast<std::size_t>(grid)]; }
-  const StoreLevel& at() const { return description().levels[static_cast<std::size_t>(level)]; }
+  const StoreGrid& description() const { return stored->description(); }
+  const StoreLevel& at() const { return stored->at(level); }
   /// Returns the size of the loaded grid: an axis of one voxel gets two.
   Index3 grid_size() const;
 };

@@ -11,6 +11,8 @@
 #include "engine/field/bricks/paged_grid.h"
 #include "engine/field/grid/dense.h"
 #include "engine/io/formats.h"
+#include "engine/io/levels/level_cache.h"
+#include "engine/io/stores/describe_store.h"
 #include "engine/io/stores/level_reader.h"
 #include "engine/io/stores/store.h"
 #include "engine/io/stores/store_bricks.h"
@@ -56,19 +58,46 @@ std::size_t level_for(const StoreGrid& grid, int requested) {
   return level;
 }
 
-/// Finds the finest level, from `level` on, whose part fits into memory.
-Result<LevelPart> find_part(const LoadRequest& request, LevelPart part) {
-  const StoreGrid& grid = part.description();
-  for (;; ++part.level) {
-    CATENA_TRY(part.box, needed_box(request.path, grid, part.at(), request.crop));
+/// The finest level that fits into memory, or why none does.
+struct FittingPart {
+  LevelPart part;
+  Outcome fits = Done{};
+};
+
+/// Finds the finest level, from the requested one on, whose part fits into memory.
+Result<FittingPart> find_part(const LoadRequest& request, const std::shared_ptr<const StoredLevels>& stored) {
+  FittingPart found{{stored, static_cast<int>(level_for(stored->description(), request.level)), StoreBox{}}};
+  for (LevelPart& part = found.part;; ++part.level) {
+    CATENA_TRY(part.box, needed_box(request.path, stored->description(), part.at(), request.crop));
     const std::string what = one_line(fmt::format("{}: {}", request.path, size_text(part.grid_size()) + " voxels"));
     const MemoryReservation slab(LevelReader(part).slab_bytes());
-    const Outcome fits = check_dense_memory(what, part.grid_size(), 1, false);
-    if (fits) return part;
-    if (part.level + 1 == static_cast<int>(grid.levels.size()))
-      return Error{fits.error().message + "; the store has no coarser level, \"crop\" in a scene loads a part",
-                   fits.error().system_failure};
+    found.fits = check_dense_memory(what, part.grid_size(), 1, false);
+    if (found.fits || part.level + 1 == stored->count()) return found;
   }
+}
+
+/// Finds a level that fits into memory; makes coarser levels in the cache if none does.
+Result<LevelPart> find_or_make_part(const LoadRequest& request, const std::shared_ptr<Store>& store, int grid, int step) {
+  const auto open = [&](std::shared_ptr<const CachedLevels> cached) {
+    return std::make_shared<const StoredLevels>(store, grid, step, std::move(cached));
+  };
+  CATENA_TRY(FittingPart found, find_part(request, open(find_cached_levels(*store, grid, step))));
+  if (found.fits) return found.part;
+  Error error = found.fits.error();
+  error.message += "; the store has no coarser level, \"crop\" in a scene loads a part";
+  const StoredLevels& stored = *found.part.stored;
+  const Index3& size = found.part.at().size;
+  if (stored.count() > static_cast<int>(store->description().grids[static_cast<std::size_t>(grid)].levels.size())) return error;
+  if (std::max({size.x, size.y, size.z}) <= kBrickEdge) return error;
+  auto made = make_cached_levels(store, grid, step);
+  if (!made) {
+    error.message += "; coarser levels could not be made in the cache: " + made.error().message;
+    error.system_failure = error.system_failure || made.error().system_failure;
+    return error;
+  }
+  CATENA_TRY(found, find_part(request, open(std::move(*made))));
+  if (found.fits) return found.part;
+  return error;
 }
 
 /// Adds the finest level of a part to the field, which was loaded from a coarser one. A level of one voxel along an axis is left out.
@@ -79,21 +108,16 @@ Outcome add_paged_grid(const LevelPart& part, const LoadRequest& request, AnyFie
   const Mapping& mapping = grid.levels.front().mapping;
   const Mapping of_part =
       Mapping::from_linear(mapping.world_from_index_linear, mapping.world_from_index(Vec3(box.lo.x, box.lo.y, box.lo.z)));
-  field.paged = std::make_shared<const PagedGrid>(std::make_shared<const StoreBricks>(part.store, part.grid, part.step),
-                                                  PagedGrid::Part{box.lo, box.size, of_part},
-                                                  std::static_pointer_cast<const ScalarGrid>(field.scalar));
+  field.paged =
+      std::make_shared<const PagedGrid>(std::make_shared<const StoreBricks>(part.stored), PagedGrid::Part{box.lo, box.size, of_part},
+                                        std::static_pointer_cast<const ScalarGrid>(field.scalar));
   return Done{};
 }
 
-Result<AnyField> load_stored(const LoadRequest& request) {
-  CATENA_TRY(const std::shared_ptr<Store> store, find_store(request.path));
-  CATENA_TRY(const int chosen, find_grid(*store, request.grid));
-  const StoreDescription& all = store->description();
-  const StoreGrid& grid = all.grids[static_cast<std::size_t>(chosen)];
-  if (request.mask_required) return Error{request.path + ": a store of chunks has no mask"};
-  CATENA_TRY(const int step, find_step(*store, chosen, request.step));
+/// Loads a part of a store into a field.
+Result<AnyField> load_part(const LoadRequest& request, const StoreDescription& all, const LevelPart& part) {
+  const StoreGrid& grid = part.description();
   const int finest = static_cast<int>(level_for(grid, request.level));
-  CATENA_TRY(const LevelPart part, find_part(request, {store, chosen, finest, step, StoreBox{}}));
   const auto reader = std::make_shared<LevelReader>(part);
   const MemoryReservation slab(reader->slab_bytes());
   DenseFile file{grid.name, grid.type, one_line(fmt::format("{}: the grid {} ", request.path, in_quotes(grid.name))), {}, 1, {}};
@@ -123,81 +147,18 @@ Result<AnyField> load_stored(const LoadRequest& request) {
   return downsample_to_level(request.path, std::move(field), remaining);
 }
 
-/// Reads the range of the coarsest level, if that is small.
-Outcome describe_range(Store& store, int index, int step, GridInfo& info) {
-  constexpr double kMaxVoxels = 1 << 21;
-  const StoreGrid& grid = store.description().grids[static_cast<std::size_t>(index)];
-  LevelPart part{std::shared_ptr<Store>(std::shared_ptr<Store>(), &store), index, static_cast<int>(grid.levels.size()) - 1,
-                 std::min(step, grid.steps - 1), StoreBox{}};
-  part.box = {{0, 0, 0}, part.at().size};
-  if (part.box.voxels() > kMaxVoxels) return Done{};
-  const Index3 n = part.grid_size();
-  std::vector<float> values(static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z));
-  CATENA_CHECK(LevelReader(part).read(0, n.z, values));
-  info.range_level = part.level;
-  info.display_range = display_range(values);
-  info.stats.min = info.display_range.data_min;
-  info.stats.max = info.display_range.data_max;
-  for (const float v : values) info.stats.nan_count += !std::isfinite(v);
-  return Done{};
-}
-
-Result<std::vector<GridInfo>> describe_stored(const std::string& path, int step) {
-  CATENA_TRY(const std::shared_ptr<Store> store, find_store(path));
-  std::vector<GridInfo> infos;
-  constexpr std::size_t kMostRanges = 64;  // ranges of further grids are not read
-  for (const StoreGrid& grid : store->description().grids) {
-    GridInfo info;
-    info.name = grid.name;
-    info.type = grid.type;
-    info.size = grid.levels.front().size;
-    info.mapping = grid.levels.front().mapping;
-    info.is_usable = true;
-    info.range_level = -1;
-    for (const StoreLevel& level : grid.levels) info.levels.push_back({level.size, level.chunk});
-    info.stats.active_voxels =
-        static_cast<std::uint64_t>(info.size.x) * static_cast<std::uint64_t>(info.size.y) * static_cast<std::uint64_t>(info.size.z);
-    info.bytes = info.stats.active_voxels * sizeof(float);
-    info.color = grid.color;
-    if (grid.has_window) info.window = {grid.window[0], grid.window[1]};
-    if (infos.size() < kMostRanges) CATENA_CHECK(describe_range(*store, static_cast<int>(infos.size()), step, info));
-    infos.push_back(std::move(info));
+Result<AnyField> load_stored(const LoadRequest& request) {
+  CATENA_TRY(const std::shared_ptr<Store> store, find_store(request.path));
+  CATENA_TRY(const int grid, find_grid(*store, request.grid));
+  if (request.mask_required) return Error{request.path + ": a store of chunks has no mask"};
+  CATENA_TRY(const int step, find_step(*store, grid, request.step));
+  constexpr int kTries = 2;  // damaged levels in the cache are made again
+  for (int attempt = 1;; ++attempt) {
+    CATENA_TRY(const LevelPart part, find_or_make_part(request, store, grid, step));
+    Result<AnyField> field = load_part(request, store->description(), part);
+    const CachedLevels* cached = part.stored->cached();
+    if (field || cached == nullptr || !cached->is_damaged() || attempt == kTries) return field;
   }
-  return infos;
-}
-
-Units stored_units(const std::string& path, const std::string& name) {
-  const auto store = find_store(path);
-  if (!store) return {};
-  const auto grid = find_grid(**store, name);
-  if (!grid) return {};
-  const StoreGrid& found = (*store)->description().grids[static_cast<std::size_t>(*grid)];
-  Units units;
-  if (is_unit_name(found.length_unit)) units.length = found.length_unit;
-  if (is_unit_name(found.value_unit)) units.value = found.value_unit;
-  units.is_label_map = found.is_label_map;
-  return units;
-}
-
-std::vector<double> stored_times(const std::string& path) {
-  const auto store = find_store(path);
-  return store ? (*store)->description().times : std::vector<double>();
-}
-
-std::vector<std::string> stored_notes(const std::string& path) {
-  const auto store = find_store(path);
-  return store ? (*store)->description().notes : std::vector<std::string>();
-}
-
-std::vector<FileId> stored_files(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::vector<FileId> files;
-  if (const auto store = find_store(path)) files = (*store)->description().opened_files;
-  constexpr std::size_t kMaxFiles = 1'000'000;
-  std::error_code code;
-  for (fs::recursive_directory_iterator at(path, code), end; !code && at != end && files.size() < kMaxFiles; at.increment(code))
-    if (const auto id = find_file_id(at->path().string())) files.push_back(*id);
-  return files;
 }
 
 constexpr VolumeReader kStoredVolume{.load = load_stored,

@@ -15,20 +15,22 @@ std::vector<BrickLevel> levels_of(const StoreGrid& grid) {
 }  // namespace
 
 StoreBricks::StoreBricks(std::shared_ptr<Store> store, int grid, int step)
-    : BrickSource(*find_number_type(store->description().grids[static_cast<std::size_t>(grid)].type),
-                  levels_of(store->description().grids[static_cast<std::size_t>(grid)])),
-      store_(std::move(store)),
-      grid_(grid),
-      step_(step),
-      fill_value_(store_->description().grids[static_cast<std::size_t>(grid)].fill_value) {
+    : StoreBricks(std::make_shared<const StoredLevels>(std::move(store), grid, step, nullptr)) {}
+
+StoreBricks::StoreBricks(std::shared_ptr<const StoredLevels> stored)
+    : BrickSource(*find_number_type(stored->description().type), levels_of(stored->description())), stored_(std::move(stored)) {
   for (std::size_t level = 0; level < levels().size(); ++level) ranges_.push_back(std::make_unique<Ranges>());
 }
 
 BrickRange StoreBricks::range(int level, const Index3& brick) const noexcept {
+  if (const BrickRange indexed = stored_->range(level, brick); indexed.is_known) return indexed;
   Ranges& ranges = *ranges_[static_cast<std::size_t>(level)];
   const std::uint64_t number = brick_number(brick_counts(levels()[static_cast<std::size_t>(level)]), brick);
   const std::scoped_lock lock(ranges.mutex);
-  if (!ranges.present.empty() && ranges.present[number] == 0) return {true, false, fill_value_, fill_value_};
+  if (!ranges.present.empty() && ranges.present[number] == 0) {
+    const double fill = stored_->description().fill_value;
+    return {true, false, fill, fill};
+  }
   const auto found = ranges.known.find(number);
   return found == ranges.known.end() ? BrickRange{} : found->second;
 }
@@ -36,7 +38,7 @@ BrickRange StoreBricks::range(int level, const Index3& brick) const noexcept {
 Outcome StoreBricks::read(int level, const Index3& brick, std::span<std::byte> values) const {
   const BrickLevel& at = levels()[static_cast<std::size_t>(level)];
   const StoreBox box{{brick.x * kBrickEdge, brick.y * kBrickEdge, brick.z * kBrickEdge}, brick_size(at, brick)};
-  CATENA_CHECK(store_->read(grid_, level, step_, box, values));
+  CATENA_CHECK(stored_->read(level, box, values));
   if (this->range(level, brick).is_known) return Done{};
   const BrickRange range = find_range(type(), values, box.size, box.size);
   Ranges& ranges = *ranges_[static_cast<std::size_t>(level)];
@@ -46,7 +48,8 @@ Outcome StoreBricks::read(int level, const Index3& brick, std::span<std::byte> v
 }
 
 Outcome StoreBricks::find_empty_bricks(int level) const {
-  CATENA_TRY(std::vector<std::uint8_t> present, store_->list(grid_, level, step_));
+  if (stored_->is_indexed(level)) return Done{};
+  CATENA_TRY(std::vector<std::uint8_t> present, stored_->list(level));
   Ranges& ranges = *ranges_[static_cast<std::size_t>(level)];
   const std::scoped_lock lock(ranges.mutex);
   ranges.present = std::move(present);

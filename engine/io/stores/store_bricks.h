@@ -8,20 +8,23 @@
 #include <vector>
 
 #include "engine/field/bricks/brick_source.h"
-#include "engine/io/stores/store.h"
+#include "engine/io/stores/stored_levels.h"
 
 namespace catena::field {
 
-/// Ranges become known when bricks are read, and by find_empty_bricks().
+/// Ranges are known from the index, if the levels have one, and else become known when bricks are read, and by find_empty_bricks().
 class StoreBricks final : public BrickSource {
  public:
   /// Makes the source of a grid, by its index in the description, at a time step. Both exist.
   StoreBricks(std::shared_ptr<Store> store, int grid, int step);
+  /// Makes the source of all levels of a grid.
+  explicit StoreBricks(std::shared_ptr<const StoredLevels> stored);
 
   BrickRange range(int level, const Index3& brick) const noexcept override;
   Outcome read(int level, const Index3& brick, std::span<std::byte> values) const override;
 
-  /// Finds the bricks of a level for which nothing is stored, by listing the store. Blocks, for a second per million stored chunks.
+  /// Finds the bricks of a level for which nothing is stored, by listing the store unless there is an index. Blocks, for a second per
+  /// million stored chunks.
   Outcome find_empty_bricks(int level) const;
 
  private:
@@ -31,9 +34,7 @@ class StoreBricks final : public BrickSource {
     std::vector<std::uint8_t> present;  ///< Empty: not listed.
   };
 
-  std::shared_ptr<Store> store_;
-  int grid_, step_;
-  double fill_value_;
+  std::shared_ptr<const StoredLevels> stored_;
   std::vector<std::unique_ptr<Ranges>> ranges_;  ///< One per level.
 };
 

@@ -21,6 +21,7 @@
 #include "engine/base/system_failure.h"
 #include "engine/base/text.h"
 #include "engine/io/client.h"
+#include "engine/io/volume/volume_reader.h"
 
 namespace catena::field {
 namespace {

@@ -28,7 +28,7 @@ constexpr double kMaxRequestBytes = 8 << 20;
 /// Reads a box in pieces of at most kMaxRequestBytes, cut between chunks where possible.
 struct PieceReader {
   std::shared_ptr<Store> store;
-  int grid = 0, step = 0;
+  int grid = 0, level = 0, step = 0;
   Axes chunk{1, 1, 1};
   std::size_t voxel_bytes = 1;
 
@@ -54,9 +54,9 @@ struct PieceReader {
       CATENA_CHECK(read(lo, lower_size, box_lo, box_size, box));
       return read(upper_lo, upper_size, box_lo, box_size, box);
     }
-    if (lo == box_lo && size == box_size) return store->read(grid, 0, step, piece, box);
+    if (lo == box_lo && size == box_size) return store->read(grid, level, step, piece, box);
     std::vector<std::byte> values(static_cast<std::size_t>(bytes));
-    CATENA_CHECK(store->read(grid, 0, step, piece, values));
+    CATENA_CHECK(store->read(grid, level, step, piece, values));
     const std::size_t row = static_cast<std::size_t>(size[0]) * voxel_bytes;
     const std::byte* from = values.data();
     for (int z = 0; z < size[2]; ++z)
@@ -119,25 +119,32 @@ Index3 bricks_that_share_chunks(const Index3& size, const Index3& chunk, std::si
   }
 }
 
-Result<VoxelSource> open_stored_voxels(const LoadRequest& request) {
-  CATENA_TRY(const std::shared_ptr<Store> store, find_store(request.path));
-  CATENA_TRY(const int chosen, find_grid(*store, request.grid));
-  CATENA_TRY(const int step, find_step(*store, chosen, request.step));
-  const StoreDescription& all = store->description();
-  const StoreGrid& grid = all.grids[static_cast<std::size_t>(chosen)];
-  const StoreLevel& level = grid.levels.front();
-  VoxelSource source{grid.name, *find_number_type(grid.type), level.size, level.mapping, read_units(request.path, grid.name)};
+std::string path_of_store(const Store& store) {
+  std::string path = store.path();
+  while (path.size() > 1 && path.ends_with('/')) path.pop_back();
+  return path;
+}
+
+std::string identify_stored_grid(const Store& store, int grid, int step) {
+  const StoreDescription& all = store.description();
+  return identify_file(path_of_store(store)) +
+         fmt::format("grid {}, step {}, newest file {}, {} files\n", all.grids[static_cast<std::size_t>(grid)].name, step,
+                     all.newest_mtime_ns, all.opened_files.size()) +
+         state_of_files(store.path());
+}
+
+VoxelSource voxels_of_level(const std::shared_ptr<Store>& store, int chosen, int at, int step) {
+  const StoreGrid& grid = store->description().grids[static_cast<std::size_t>(chosen)];
+  const StoreLevel& level = grid.levels[static_cast<std::size_t>(at)];
+  VoxelSource source{grid.name, *find_number_type(grid.type), level.size, level.mapping, read_units(store->path(), grid.name)};
   if (grid.has_window) source.window = {grid.window[0], grid.window[1]};
   source.color = grid.color;
-  source.identity =
-      identify_file(request.path) +
-      fmt::format("grid {}, step {}, newest file {}, {} files\n", grid.name, step, all.newest_mtime_ns, all.opened_files.size()) +
-      state_of_files(request.path);
+  source.identity = identify_stored_grid(*store, chosen, step);
   // a share of the memory for each of two threads, of what is read at once
   constexpr double kMaxGroupBytes = 256e6, kShare = 0.25;
   const double max_bytes = std::min(kMaxGroupBytes, kShare * static_cast<double>(available_memory()));
   source.bricks_at_once = bricks_that_share_chunks(level.size, level.chunk, source.type.bytes, max_bytes);
-  const PieceReader reader{store, chosen, step, {level.chunk.x, level.chunk.y, level.chunk.z}, source.type.bytes};
+  const PieceReader reader{store, chosen, at, step, {level.chunk.x, level.chunk.y, level.chunk.z}, source.type.bytes};
   source.read = [reader](const Index3& lo, const Index3& size, std::span<std::byte> values) {
     const Axes from{lo.x, lo.y, lo.z}, count{size.x, size.y, size.z};
     return reader.read(from, count, from, count, values);
@@ -147,8 +154,15 @@ Result<VoxelSource> open_stored_voxels(const LoadRequest& request) {
   if (std::isinf(grid.fill_value) || std::fabs(grid.fill_value) > kExact) return source;
   source.fill_value = grid.fill_value;
   const auto bricks = std::make_shared<const StoreBricks>(store, chosen, step);
-  if (bricks->find_empty_bricks(0)) source.is_empty = [bricks](const Index3& brick) { return !bricks->range(0, brick).has_data; };
+  if (bricks->find_empty_bricks(at)) source.is_empty = [bricks, at](const Index3& brick) { return !bricks->range(at, brick).has_data; };
   return source;
+}
+
+Result<VoxelSource> open_stored_voxels(const LoadRequest& request) {
+  CATENA_TRY(const std::shared_ptr<Store> store, find_store(request.path));
+  CATENA_TRY(const int grid, find_grid(*store, request.grid));
+  CATENA_TRY(const int step, find_step(*store, grid, request.step));
+  return voxels_of_level(store, grid, 0, step);
 }
 
 }  // namespace catena::field

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Operations on the values of one brick, kBrickEdge^3 voxels of a number type, x fastest, padded behind its voxels. Private to this
-/// folder. Any thread.
+/// Operations on the values of one brick, kBrickEdge^3 voxels of a number type, x fastest, padded behind its voxels. Any thread.
 #pragma once
 #include <cstddef>
 #include <span>

@@ -6,18 +6,25 @@
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
 #include "engine/io/formats.h"
+#include "engine/io/levels/level_cache.h"
 #include "engine/io/zarr/pyramid_writer.h"
 #include "engine/io/zarr/zarr_folder.h"
 #include "engine/io/zarr/zarr_metadata.h"
 
 namespace catena::field {
 
-Outcome write_zarr(const std::string& path, VoxelSource source, const WriteProgress& progress) {
+static Outcome keep_index(const ZarrFolder& folder, const VoxelSource& source, const UseIndex& use_index) {
+  CATENA_TRY(BrickIndex index, folder.read_index(source));
+  return use_index(std::move(index));
+}
+
+Outcome write_zarr(const std::string& path, VoxelSource source, const WriteProgress& progress, const UseIndex& use_index) {
   auto aligned = align_to_world(std::move(source));
   if (!aligned) return Error{one_line(path) + ": " + aligned.error().message};
   CATENA_TRY(const std::unique_ptr<ZarrFolder> folder, ZarrFolder::open(path, *aligned, halved_levels(aligned->size, aligned->mapping)));
   const bool can_continue = !aligned->identity.empty();
   Outcome done = PyramidWriter(*folder, *aligned, progress).write();
+  if (done && use_index) done = keep_index(*folder, *aligned, use_index);
   if (done) done = folder->commit(*aligned);
   if (done) return done;
   if (!can_continue) folder->remove();
@@ -36,7 +43,12 @@ Result<std::string> convert_to_zarr(const LoadRequest& request, const std::strin
   if (!name.empty()) source.name = name;
   if (notes != nullptr) *notes = source.notes;
   const std::string chosen_name = source.name;
-  CATENA_CHECK(write_zarr(path, std::move(source), progress));
+  BrickIndex all;
+  CATENA_CHECK(write_zarr(path, std::move(source), progress, [&](BrickIndex index) -> Outcome {
+    all = std::move(index);
+    return Done{};
+  }));
+  cache_index(path, all);
   return chosen_name;
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "engine/base/result.h"
+#include "engine/field/bricks/brick_index.h"
 #include "engine/io/volume/load_field.h"
 #include "engine/io/volume/voxel_source.h"
 
@@ -19,12 +20,15 @@ namespace catena::field {
 /// Called with the part of the work that is done, 0 to 1, from any thread, one call at a time.
 using WriteProgress = std::function<void(double part)>;
 
+/// Called with the index of all bricks before a complete store is renamed. An Error ends the writing.
+using UseIndex = std::function<Outcome(BrickIndex index)>;
+
 /// Checks that nothing exists at the path of a new store, and that its folder exists. The Error is a complete message.
 Outcome check_new_store(const std::string& path);
 
 /// Writes a volume. The Error is a complete message: something exists at `path`, an unfinished store of another source, axes that OME-Zarr
 /// cannot express, a failed read, or a failed write (a system failure). The unfinished store stays if the source has an identity.
-Outcome write_zarr(const std::string& path, VoxelSource source, const WriteProgress& progress = {});
+Outcome write_zarr(const std::string& path, VoxelSource source, const WriteProgress& progress = {}, const UseIndex& use_index = {});
 
 /// Writes the grid of a file, as convert_file() does.
 Result<std::string> convert_to_zarr(const LoadRequest& request, const std::string& path, const std::string& name,

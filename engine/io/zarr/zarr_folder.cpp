@@ -38,7 +38,7 @@ Outcome write_store_text(const std::string& path, const std::string& text) {
   return Done{};
 }
 
-constexpr std::string_view kIdentityStart = "catena OME-Zarr 1\n";
+constexpr std::string_view kIdentityStart = "catena OME-Zarr 2\n";
 
 std::string read_identity(const std::string& folder) {
   std::ifstream in(folder + "/identity", std::ios::binary);
@@ -153,10 +153,10 @@ Outcome ZarrFolder::write_chunk(int level, const Index3& brick, std::span<const 
 
 Result<BrickState> ZarrFolder::write(int level, const Index3& brick, std::span<const std::byte> values) {
   const BrickState state = is_same_brick(values, fill_) ? BrickState::empty : BrickState::stored;
-  BrickRange range;
-  if (level == 0) range = find_range(type_, values, brick_size(levels_.front(), brick), {kBrickEdge, kBrickEdge, kBrickEdge});
+  const Index3 size = brick_size(levels_[static_cast<std::size_t>(level)], brick), edge{kBrickEdge, kBrickEdge, kBrickEdge};
+  const BrickRange range = find_range(type_, values, size, edge);
   if (state == BrickState::stored) CATENA_CHECK(write_chunk(level, brick, values));
-  CATENA_CHECK(log_.record(level, brick, state, range));
+  CATENA_CHECK(log_.record(level, brick, state, range, brick_checksum(type_.bytes, values, size, edge)));
   return state;
 }
 
@@ -171,12 +171,19 @@ Outcome ZarrFolder::read(int level, const Index3& brick, std::span<std::byte> va
     return Error{one_line(chunk) + ": this chunk of the unfinished store is missing; the folder " + one_line(part_) + " can be removed"};
   const Index3 size = brick_size(levels_[static_cast<std::size_t>(level)], brick), edge{kBrickEdge, kBrickEdge, kBrickEdge};
   const StoreBox box{{brick.x * kBrickEdge, brick.y * kBrickEdge, brick.z * kBrickEdge}, size};
-  if (size == edge) return reader_->read(0, level, 0, box, values);
-  std::vector<std::byte> inner(static_cast<std::size_t>(box.voxels()) * type_.bytes);
-  CATENA_CHECK(reader_->read(0, level, 0, box, inner));
-  copy_box(type_.bytes, inner, size, {0, 0, 0}, values, edge, {0, 0, 0}, size);
-  return Done{};
+  if (size == edge) {
+    CATENA_CHECK(reader_->read(0, level, 0, box, values));
+  } else {
+    std::vector<std::byte> inner(static_cast<std::size_t>(box.voxels()) * type_.bytes);
+    CATENA_CHECK(reader_->read(0, level, 0, box, inner));
+    copy_box(type_.bytes, inner, size, {0, 0, 0}, values, edge, {0, 0, 0}, size);
+  }
+  if (brick_checksum(type_.bytes, values, size, edge) == log_.checksum(level, brick)) return Done{};
+  return Error{one_line(chunk_path(level, brick)) + ": this chunk of the unfinished store is damaged; the folder " + one_line(part_) +
+               " can be removed"};
 }
+
+Result<BrickIndex> ZarrFolder::read_index(const VoxelSource& source) const { return log_.read_index(stored_fill_value(source)); }
 
 Outcome ZarrFolder::commit(const VoxelSource& source) {
   reader_.reset();

@@ -34,6 +34,8 @@ class ZarrFolder {
   Outcome read(int level, const Index3& brick, std::span<std::byte> values);
   /// Returns a brick of the fill value.
   std::span<const std::byte> fill_brick() const { return fill_; }
+  /// Returns the index of the bricks.
+  Result<BrickIndex> read_index(const VoxelSource& source) const;
   /// Writes the metadata with the range of the values, waits for the disk, and renames the store to its path.
   Outcome commit(const VoxelSource& source);
   /// Removes the unfinished store.

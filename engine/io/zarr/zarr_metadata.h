@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Levels and metadata of an OME-Zarr 0.4 image. Private to this folder. Any thread.
+/// Levels and metadata of an OME-Zarr 0.4 image. Any thread.
 #pragma once
 #include <string>
 #include <vector>

@@ -22,7 +22,7 @@ using Words = std::vector<std::string>;
 
 /// Starts the program, and kills it when the log of the store has `records`; returns whether it was killed.
 bool run_and_kill(const Words& words, const std::string& log, std::uintmax_t records) {
-  constexpr std::uintmax_t kRecordBytes = 40;
+  constexpr std::uintmax_t kRecordBytes = 48;
   std::vector<char*> arguments{const_cast<char*>(test::program_path().c_str())};
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
