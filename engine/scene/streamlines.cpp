@@ -35,10 +35,18 @@ struct MadeLines {
   Bounds bounds;  ///< of all knots
 };
 
-/// Returns the curves through the seeds; curves that are not yet in scene.traced_curves are traced on all cores.
-Result<Curves> exact_lines(Scene& scene, const Seeds& seeds, const LineRequest& request, const json::Node& where) {
-  const std::vector<Vec3>& points = seeds.points;
-  const auto node_of = [&](std::size_t i) -> const json::Node& { return i < where.items.size() ? where.items[i] : where; };
+/// Reports the seed of a line, the k-th one that is traced.
+void report_line_seed(const LineRequest& request, std::size_t k) {
+  if (request.line_seeds != nullptr) request.line_seeds->push_back(request.seed_index(k));
+}
+
+/// Returns the curves through the points; curves that are not yet in scene.traced_curves are traced on all cores.
+Result<Curves> exact_lines(Scene& scene, const Seeds& seeds, const std::vector<Vec3>& points, const LineRequest& request,
+                           const json::Node& where) {
+  const auto node_of = [&](std::size_t k) -> const json::Node& {
+    const std::size_t i = request.seed_index(k);
+    return i < where.items.size() ? where.items[i] : where;
+  };
   const auto key = [&](const Vec3& p) {
     return Scene::CurveKey{
         request.flow.field->version(), request.flow.is_line_field, request.flow.min_speed, request.length, {p.x, p.y, p.z}};
@@ -61,8 +69,11 @@ Result<Curves> exact_lines(Scene& scene, const Seeds& seeds, const LineRequest& 
   }
   Curves curves;
   curves.reserve(points.size());
-  for (const Vec3& p : points)
-    if (const auto it = scene.traced_curves.find(key(p)); it != scene.traced_curves.end()) curves.push_back(it->second);
+  for (std::size_t k = 0; k < points.size(); ++k)
+    if (const auto it = scene.traced_curves.find(key(points[k])); it != scene.traced_curves.end()) {
+      curves.push_back(it->second);
+      report_line_seed(request, k);
+    }
   return curves;
 }
 
@@ -204,13 +215,16 @@ Result<Curves> lines_in_blocks(const Seeds& seeds, std::span<const Vec3> positio
     for (std::size_t i = 0; i < traced.size(); ++i) {
       if (traced[i]) {
         curves.push_back(*std::move(traced[i]));
+        report_line_seed(request, begin + i);
         knots += curves.back()->knots().size();
         ++lines;
         continue;
       }
-      if (!seeds.pattern && !seeds.widget)
-        return with_cause(json::error_at(begin + i < where.items.size() ? where.items[begin + i] : where, traced[i].error().message),
+      if (!seeds.pattern && !seeds.widget) {
+        const std::size_t item = request.seed_index(begin + i);
+        return with_cause(json::error_at(item < where.items.size() ? where.items[item] : where, traced[i].error().message),
                           traced[i].error());
+      }
       if (first_error.empty()) first_error = traced[i].error().message;
     }
     if (knots > max_knots) return json::error_at(node, too_many_knots_message(positions.size(), begin + some.size(), max_knots));
@@ -223,7 +237,7 @@ Result<Curves> lines_in_blocks(const Seeds& seeds, std::span<const Vec3> positio
     }
     if (request.progress) request.progress(begin + some.size(), positions.size());
   }
-  if (lines == 0 && !seeds.widget)
+  if (lines == 0 && !seeds.widget && request.seed_stride == 1)
     return json::error_at(node,
                           "none of the " + std::to_string(positions.size()) + " seeds starts a line; the first error: " + first_error);
   return curves;
@@ -242,10 +256,15 @@ Result<Curves> trace_lines(Scene& scene, const Seeds& seeds, const LineRequest& 
     bounded.emplace(*original.flow.field, formula_box(request));
     request.flow.field = &*bounded;
   }
+  if (request.first_seed > 0 || request.seed_stride > 1) {
+    std::vector<Vec3> some;
+    for (std::size_t i = request.first_seed; i < positions.size(); i += request.seed_stride) some.push_back(positions[i]);
+    positions = std::move(some);
+  }
   const bool is_batch = seeds.pattern || (seeds.widget && scene.entities.get<Widget>(seeds.widget).spec.kind == widget::Kind::rake);
   const double tolerance = request.tolerance > 0 ? request.tolerance : is_batch ? kPatternTolerance : 0;
   if (!is_batch && tolerance <= kExact) {
-    CATENA_TRY(Curves curves, exact_lines(scene, seeds, original, where));
+    CATENA_TRY(Curves curves, exact_lines(scene, seeds, positions, original, where));
     if (bounded) end_at_box(curves, request.flow);
     return all_at_once(std::move(curves), original);
   }

@@ -42,6 +42,11 @@ struct LineRequest {
   std::optional<std::array<double, 2>> box{};        ///< Formula: cube in which it is sampled for images, [min, max], world
   std::function<Outcome(const LineBlock&)> visit{};  ///< Receives the lines block by block as they are traced
   std::size_t max_cached_knots = knot_limit();       ///< With `visit`: a set of more knots is not returned
+  std::size_t first_seed = 0, seed_stride = 1;       ///< Only every `seed_stride`-th seed is traced, from `first_seed` on
+  std::vector<std::size_t>* line_seeds = nullptr;    ///< Receives the index of each line's seed; null: not reported
+
+  /// Index among all seeds of the k-th seed that is traced.
+  std::size_t seed_index(std::size_t k) const { return first_seed + k * seed_stride; }
 };
 
 /// Returns the error message for lines of `seeds` seeds that have more than `max_knots` knots together after `done` seeds.

@@ -137,6 +137,7 @@ void add_commands(CLI::App& program, CommandAction& chosen, int& exit_code, std:
   add_trace(program, chosen);
   add_info(program, chosen);
   add_measure(program, chosen);
+  add_merge(program, chosen);
   add_generate(program, chosen);
   add_import(program, chosen);
   add_tradeoff(program, chosen);

@@ -27,6 +27,7 @@ void add_export(CLI::App& program, CommandAction& chosen);
 void add_trace(CLI::App& program, CommandAction& chosen);
 void add_info(CLI::App& program, CommandAction& chosen);
 void add_measure(CLI::App& program, CommandAction& chosen);
+void add_merge(CLI::App& program, CommandAction& chosen);
 void add_generate(CLI::App& program, CommandAction& chosen);
 void add_import(CLI::App& program, CommandAction& chosen);
 void add_tradeoff(CLI::App& program, CommandAction& chosen);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// catena render SCENE|FILE -o FILE.{png,exr,mp4,webm,gif} [--size WxH] [--quality Q] [--frames N --orbit DEG] ..
+/// catena render SCENE|FILE -o FILE.{png,exr,mp4,webm,gif} [--size WxH] [--quality Q] [--frames N --orbit DEG] [--shard I/N] ..
 /// Defines the options; engine/app/render does the work.
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "engine/app/batch/shard.h"
 #include "engine/app/cli/command.h"
 #include "engine/app/cli/options.h"
 #include "engine/app/render/render_options.h"
@@ -93,6 +94,7 @@ void add_render(CLI::App& program, CommandAction& chosen) {
   command->add_option("--steps", options->steps, "time steps, one frame each")
       ->type_name("FIRST:LAST[:STRIDE]")
       ->check(accepted("from 0 on"));
+  add_shard_option(*command, options->shard, "images");
   command->add_option("--probe", options->probe, "probe path; the image shows the cursor in the state of the last row")
       ->type_name("PROBE.csv");
   command->add_flag("--play", options->play_probe, "moves the probe along --probe over the frames");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// catena trace SCENE|FILE --field NAME --seeds CSV|PATTERN -o LINES.{csv,vtp} [--tolerance T]
+/// catena trace SCENE|FILE --field NAME --seeds CSV|PATTERN -o LINES.{csv,vtp} [--tolerance T] [--shard I/N]
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +11,8 @@
 #include <optional>
 #include <span>
 
+#include "engine/app/batch/line_parts.h"
+#include "engine/app/batch/run_key.h"
 #include "engine/app/cli/command.h"
 #include "engine/app/cli/io_conflicts.h"
 #include "engine/app/cli/options.h"
@@ -30,6 +32,7 @@ namespace {
 
 struct TraceOptions {
   std::string source, field, seeds, output, kind = "vector", stats;
+  std::optional<std::string> shard;
   int repeat = 1, time_step = -1;
   double length = 0, min_speed = 0, tolerance = 0, step = 0;
 };
@@ -94,6 +97,11 @@ Result<field::VectorFieldPtr> vector_field(scene::Scene& scene, const TraceOptio
 
 using Curves = std::vector<flow::CurvePtr>;
 
+/// The seeds to trace: every `stride`-th of a command, from `first` on.
+struct SeedShare {
+  std::size_t first = 0, stride = 1;
+};
+
 /// Wall time and CPU time of each repetition of the tracing, without reading and writing files.
 struct Timing {
   std::vector<double> wall_ms, cpu_ms;
@@ -109,8 +117,14 @@ struct Timing {
 };
 
 /// Traces the seeds of a CSV table on all cores.
-Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, Timing& timing) {
-  CATENA_TRY(const std::vector<Vec3> seeds, read_seeds(options.seeds));
+Result<SeededLines> trace_table(const TraceOptions& options, const flow::Flow& flow, const SeedShare& share, Timing& timing) {
+  CATENA_TRY(const std::vector<Vec3> all_seeds, read_seeds(options.seeds));
+  SeededLines lines;
+  std::vector<Vec3> seeds;
+  for (std::size_t i = share.first; i < all_seeds.size(); i += share.stride) {
+    seeds.push_back(all_seeds[i]);
+    lines.seeds.push_back(i);
+  }
   flow::TraceOptions exact;
   exact.length = options.length;
   exact.max_step = options.step * flow.field->max_voxel_edge();
@@ -133,7 +147,7 @@ Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, 
       for (std::size_t i = 0; i < traced.size(); ++i) {
         if (!traced[i])
           // + 2: 1-based, after the header
-          return Error{fmt::format("{}:{}: {}", options.seeds, first + i + 2, traced[i].error().message)};
+          return Error{fmt::format("{}:{}: {}", options.seeds, lines.seeds[first + i] + 2, traced[i].error().message)};
         curves.push_back(*traced[i]);
         knots += curves.back()->knots().size();
       }
@@ -144,7 +158,8 @@ Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, 
     return curves;
   };
   for (int n = 1; n < options.repeat; ++n) CATENA_CHECK(timing.measure(trace_all));
-  return timing.measure(trace_all);
+  CATENA_TRY(lines.curves, timing.measure(trace_all));
+  return lines;
 }
 
 bool is_pattern(const std::string& seeds) { return seeds.starts_with("{") || seeds.ends_with(".json"); }
@@ -154,11 +169,16 @@ Result<json::Node> pattern_of(const std::string& seeds) {
   return seeds.starts_with("{") ? json::parse(seeds, "--seeds") : json::read(seeds);
 }
 
-Result<Curves> trace_pattern(const TraceOptions& options, const json::Node& node, const flow::Flow& flow, scene::Scene& scene) {
+Result<SeededLines> trace_pattern(const TraceOptions& options, const json::Node& node, const flow::Flow& flow, const SeedShare& share,
+                                  scene::Scene& scene) {
   // other grids of the data file are added when a pattern refers to them by name
   if (const json::Node* surface = node.find("isosurface"); surface != nullptr && !is_scene_file(options.source))
     if (const json::Node* name = surface->find("field"); name != nullptr && name->kind == json::Kind::string) add_grid(scene, name->string);
   CATENA_TRY(const scene::Seeds seeds, scene::read_seeds(scene, node));
+  const bool is_evenly_spaced = seeds.pattern && seeds.pattern->kind == scene::SeedPattern::Kind::evenly_spaced;
+  if (options.shard && is_evenly_spaced)
+    return Error{"--shard: evenly spaced lines depend on each other; a table of seeds or another pattern was expected"};
+  SeededLines lines;
   std::optional<ProgressLine> shown;
   const auto progress = [&](std::size_t done, std::size_t of) {
     if (!shown) shown.emplace("trace", static_cast<double>(of));
@@ -167,22 +187,45 @@ Result<Curves> trace_pattern(const TraceOptions& options, const json::Node& node
   scene::LineRequest request{flow, options.length, options.tolerance, options.step, scene::knot_limit(), progress};
   // the scene's box limits only evenly spaced lines, which would otherwise fill the whole space; other lines are traced to their end
   const scene::Entity field = scene::find_field(scene, options.field);
-  if (field && seeds.pattern && seeds.pattern->kind == scene::SeedPattern::Kind::evenly_spaced)
-    request.box = scene.entities.get<scene::FieldSource>(field).box;
-  return scene::trace_lines(scene, seeds, request, node);
+  if (field && is_evenly_spaced) request.box = scene.entities.get<scene::FieldSource>(field).box;
+  request.first_seed = share.first;
+  request.seed_stride = share.stride;
+  request.line_seeds = &lines.seeds;
+  CATENA_TRY(lines.curves, scene::trace_lines(scene, seeds, request, node));
+  return lines;
 }
 
-Outcome trace_lines(const TraceOptions& options) {
+/// Key of a run with these inputs.
+std::string run_key_of(const TraceOptions& options, const IoConflictChecker& files) {
+  RunKey key("trace");
+  key.add(options.field).add(options.kind).add(options.seeds.starts_with("{") ? options.seeds : "");
+  for (const double number : {options.length, options.min_speed, options.tolerance, options.step, double(options.time_step)})
+    key.add(number);
+  return key.add_files(files.inputs()).text();
+}
+
+/// Names of the outputs: of a shard, its own ones.
+TraceOptions with_output_names(TraceOptions options, const std::optional<Shard>& shard) {
+  if (shard && !options.stats.empty()) options.stats = part_path(options.stats, *shard);
+  return options;
+}
+
+Outcome trace_lines(const TraceOptions& given) {
+  CATENA_TRY(const std::optional<Shard> shard, parse_shard(given.shard));
+  const TraceOptions options = with_output_names(given, shard);
   for (const auto& [name, value] :
        {std::pair{"--length", options.length}, {"--min-speed", options.min_speed}, {"--tolerance", options.tolerance}})
     if (!std::isfinite(value)) return Error{fmt::format("{}: expected a finite number", name)};
   const io::Format* format = io::find_writer(options.output.starts_with("/dev/") ? "stream.csv" : options.output, io::DataKind::curves);
   if (format == nullptr)
     return Error{options.output + ": expected an output that ends in " + io::writable_extensions(io::DataKind::curves)};
+  if (shard && (!options.output.ends_with(".csv") || options.output.starts_with("/dev/")))
+    return Error{options.output + ": with --shard, a file that ends in .csv was expected, which catena merge makes of the parts"};
   CATENA_TRY(scene::Scene scene, scene_of(options));
   IoConflictChecker files(scene);
   if (!options.seeds.starts_with("{")) files.add_input(options.seeds);
   files.add_output("-o", options.output);
+  if (shard) files.add_output("-o", part_path(options.output, *shard));
   files.add_output("--stats", options.stats);
   CATENA_CHECK(files.check());
   json::Node pattern;
@@ -192,9 +235,12 @@ Outcome trace_lines(const TraceOptions& options) {
   CATENA_TRY(const field::VectorFieldPtr field, vector_field(scene, options));
 
   const flow::Flow flow{field.get(), options.kind == "line", options.min_speed};
+  const SeedShare share = shard ? SeedShare{shard->first_item(), shard->count} : SeedShare{};
   Timing timing;
-  CATENA_TRY(const Curves curves, is_pattern(options.seeds) ? timing.measure([&] { return trace_pattern(options, pattern, flow, scene); })
-                                                            : trace_table(options, flow, timing));
+  CATENA_TRY(const SeededLines lines, is_pattern(options.seeds)
+                                          ? timing.measure([&] { return trace_pattern(options, pattern, flow, share, scene); })
+                                          : trace_table(options, flow, share, timing));
+  const Curves& curves = lines.curves;
   std::map<std::string, int> ends;
   std::size_t knots = 0;
   for (const flow::CurvePtr& curve : curves) {
@@ -203,8 +249,19 @@ Outcome trace_lines(const TraceOptions& options) {
     ++ends[flow::to_string(curve->last_end().termination)];
   }
 
-  CATENA_TRY(OutputFile out, OutputFile::open(options.output));
-  format->write_curves(out, curves, *field);
+  std::optional<PartWriter> part;
+  std::optional<OutputFile> whole;
+  if (shard) {
+    CATENA_TRY(PartWriter opened, PartWriter::open(options.output, *shard, "trace", run_key_of(options, files)));
+    part.emplace(std::move(opened));
+    write_line_part(*part, lines);
+    part->end();
+  } else {
+    CATENA_TRY(OutputFile opened, OutputFile::open(options.output));
+    whole.emplace(std::move(opened));
+    format->write_curves(*whole, curves, *field);
+  }
+  OutputFile& out = shard ? part->file() : *whole;
   const double first_cpu_ms = timing.cpu_ms.front();
   if (options.stats.empty()) {
     CATENA_CHECK(out.commit());
@@ -215,6 +272,10 @@ Outcome trace_lines(const TraceOptions& options) {
                     "\"first_trace_cpu_ms\": {:.3f}\n}}\n",
                     curves.size(), knots, quantile(timing.wall_ms, 0.5), quantile(timing.cpu_ms, 0.5), first_cpu_ms));
     CATENA_CHECK(commit_all({&out, &stats}));
+  }
+  if (shard && curves.empty()) {
+    fmt::print("shard {}: none of its seeds starts a line: the part is empty\n", shard->text());
+    return Done{};
   }
   fmt::print("{} line{}, {} knots; ends:", curves.size(), curves.size() == 1 ? "" : "s", knots);
   for (const auto& [word, count] : ends) fmt::print(" {} {}", word, count);
@@ -263,6 +324,7 @@ void add_trace(CLI::App& program, CommandAction& chosen) {
   command->add_option("--min-speed", options->min_speed, "speed at or below which a streamline ends (default: 0)")
       ->type_name("SPEED")
       ->check(number_at_least(0));
+  add_shard_option(*command, options->shard, "seeds");
   command->callback([&chosen, options] { chosen = [options] { return trace_lines(*options); }; });
 }
 

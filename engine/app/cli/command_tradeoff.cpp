@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// catena tradeoff SCENE|FILE -o DIR [--effort quick|default|thorough] [--compare OTHER.json]: error against cost for the settings of a
-/// scene.
-/// catena tradeoff --figure 2|3|stiffness|energy -o DIR: figures of the paper.
+/// catena tradeoff SCENE|FILE -o DIR [--effort quick|default|thorough] [--compare OTHER.json] [--shard I/N]: error against cost for the
+/// settings of a scene. catena tradeoff --figure 2|3|stiffness|energy -o DIR: figures of the paper.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "engine/app/batch/shard.h"
 #include "engine/app/cli/command.h"
 #include "engine/app/cli/options.h"
 #include "engine/app/tuning/figures/figures.h"
@@ -24,6 +24,7 @@ struct TradeoffOptions : MeasureOptions {
 Outcome run_tradeoff(const TradeoffOptions& options) {
   if (!options.source.empty() && !options.figure.empty()) return Error{"--figure was given with a SOURCE; a figure has its own scenes"};
   if (!options.source.empty()) return measure_tradeoffs(options);
+  if (options.shard) return Error{"--shard: a figure is made by one process; a scene or a data file was expected"};
   if (options.figure.empty())
     return Error{
         "tradeoff: a scene or a data file was expected, or --figure 2 (drift of the methods from a streamline), --figure 3 (chain and "
@@ -78,6 +79,7 @@ void add_tradeoff(CLI::App& program, CommandAction& chosen) {
   command->add_option("--grid", options->grid, "field of a data file to measure (default: the first scalar field, or else the first field)")
       ->type_name("GRID");
   command->add_option("--field", options->fields, "replaces a field of the scene")->type_name("NAME=FILE[:GRID]")->allow_extra_args(false);
+  add_shard_option(*command, options->shard, "measurements");
   command->callback([&chosen, options] { chosen = [options] { return run_tradeoff(*options); }; });
 }
 

@@ -92,6 +92,7 @@ constexpr OptionType kOptionTypes[] = {
     {"LINES", "file", "", ".vtp, .csv", "out/*.vtp"},
     {"OLD", "file", "", ".json, .catlog", "old.json"},
     {"OUT", "file", "", "", "out/*.csv"},
+    {"OUTPUT", "file or folder", "", ".csv", "out/lines.csv"},
     {"PROBE.csv", "file", "s, world units", ".csv", "assets/probes/first.csv"},
     {"SCENE", "file", "", ".json", "assets/scenes/first.json"},
     {"SEEDS", "file or JSON", "world units", ".csv, .json", "seeds.csv"},

@@ -21,8 +21,10 @@ Result<render::FramePacket> Frames::packet(int frame) {
   scene_.animation_phase = options_.animation_phase + static_cast<double>(frame) / motion_.frames();
   probe_.seek(scene_, options_.play_probe && motion_.frames() > 1 ? static_cast<double>(frame) / (motion_.frames() - 1) : 1);
   CATENA_TRY(render::FramePacket packet, render::make_frame(scene_, size_.width, size_.height));
-  if (!steps_.empty() && frame + 1 < motion_.frames())
-    field::prefetch(scene::prefetch_requests(scene_, steps_[static_cast<std::size_t>(frame + 1) % steps_.size()]));
+  // the first frame is extracted by every shard, for the view and the settings
+  const auto first = static_cast<int>(shard.first_item()), next = frame < first ? first : frame + static_cast<int>(shard.count);
+  if (!steps_.empty() && next < motion_.frames())
+    field::prefetch(scene::prefetch_requests(scene_, steps_[static_cast<std::size_t>(next) % steps_.size()]));
   // the camera is fixed while the probe moves or time steps change
   if (!base_view_ || (!options_.play_probe && steps_.empty())) base_view_ = packet.view, base_bounds_ = render::packet_bounds(packet);
   const render::View view = motion_.view_at(*base_view_, base_bounds_, static_cast<double>(size_.width) / size_.height, frame);
@@ -76,6 +78,10 @@ Result<double> Frames::draw(int frame, Outputs* outputs) {
   CATENA_CHECK(stopped);
   if (interrupted || interrupt_->is_requested()) throw MachineFailure{"interrupted: no incomplete file was kept"};
   if (!ms) throw MachineFailure{ms.error().message};
+  if (const auto coarser = renderer->stats().downsampled_grids; needs_full_resolution && !coarser.empty())
+    return Error{"--shard: the resolution of time steps would differ between shards; " + coarser.front().message() +
+                     "; more GPU memory or smaller data was expected",
+                 true};
   if (outputs != nullptr) CATENA_CHECK(outputs->end_frame());
   return extract_ms + ms->wall_ms;
 }

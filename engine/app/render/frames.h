@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/app/batch/shard.h"
 #include "engine/app/cli/command.h"
 #include "engine/app/cli/options.h"
 #include "engine/app/haptics/probe_playback.h"
@@ -40,7 +41,9 @@ class Frames {
 
   std::unique_ptr<render::Renderer> renderer;
   render::RenderSettings settings;
-  bool smooth_edges = true;  ///< Contours are antialiased in frames that are drawn in one piece.
+  Shard shard;                         ///< The frames that are drawn; the time step of the next one is loaded in advance.
+  bool needs_full_resolution = false;  ///< A grid that is downsampled to fit into the GPU memory is an error.
+  bool smooth_edges = true;            ///< Contours are antialiased in frames that are drawn in one piece.
   render::TilePlan plan;
   render::BandChannels channels;     ///< What the outputs need of each band.
   ProgressLine* progress = nullptr;  ///< Updated after each tile; null: not reported.

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "engine/app/cli/command.h"
 #include "engine/app/render/frame_stats.h"
 #include "engine/app/render/frames.h"
+#include "engine/app/render/option_checks.h"
 #include "engine/app/tuning/choose/tune.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
@@ -28,43 +30,6 @@ T machine(Result<T> result) {
   return std::move(*result);
 }
 
-/// Size of the finished image. Stereo views in one image are rendered without tiles.
-Result<ImageSize> picture_size(const RenderOptions& o, const scene::Stereo& stereo, const ImageSize& size) {
-  if (!o.layout.empty()) {
-    if (render::stereo_view_count(stereo) > 1) return Error{"--layout ortho: orthogonal views are not shown in stereo"};
-    if (!o.depth.empty() || !o.ids.empty() || o.antialias > 1 || o.tile > 0)
-      return Error{"--layout ortho: excludes --depth, --ids, --antialias and --tile, which are for a single view"};
-    return ImageSize{2 * size.width, 2 * size.height};
-  }
-  if (render::stereo_view_count(stereo) < 2) return size;
-  const std::string mode = "with " + std::to_string(render::stereo_view_count(stereo)) + " views in one image";
-  if (!o.depth.empty() || !o.ids.empty())
-    return Error{(o.depth.empty() ? "--ids: " : "--depth: ") + mode +
-                 " this image would show one view only; --stereo left or right was expected"};
-  if (o.antialias > 1 || o.tile > 0)
-    return Error{(o.tile > 0 ? "--tile: " : "--antialias: ") + mode +
-                 " the image is rendered in one piece; --stereo left or right was expected"};
-  CATENA_CHECK(check_packed_size(stereo, size));
-  const auto packed = render::packed_size(render::stereo_packing(stereo), render::stereo_view_count(stereo), size.width, size.height);
-  return ImageSize{static_cast<std::uint32_t>(packed.width), static_cast<std::uint32_t>(packed.height)};
-}
-
-/// Checks that every step of --steps has a frame and an output to store it.
-Outcome check_frames(const RenderOptions& o, const std::vector<int>& steps) {
-  const int count = static_cast<int>(steps.size());
-  if (count < 2) return Done{};
-  if (o.frames < count) return Error{fmt::format("--frames {}: fewer than the {} steps of --steps {}", o.frames, count, o.steps)};
-  if (!takes_all_frames(o) && !o.output.starts_with("/dev/"))
-    return Error{fmt::format("{}: one image for {} steps; %03d in the name, or a video, was expected", o.output, count)};
-  return Done{};
-}
-
-/// Rejects steps beyond the last one of the longest field. Steps inside data files are known only after the fields are loaded.
-Outcome check_steps(const scene::Scene& scene, const RenderOptions& o, const std::vector<int>& steps) {
-  const std::string option = steps.empty() ? fmt::format("--step {}", o.step) : "--steps " + o.steps;
-  return check_step(steps.empty() ? o.step : steps.back(), scene::step_count(scene) - 1, option, o.source);
-}
-
 /// One run of `catena render`, in four steps that are called in order.
 class RenderRun {
  public:
@@ -72,6 +37,10 @@ class RenderRun {
 
   /// Checks the options, opens the scene, and decides what is asked for: size, frames, quality, outputs.
   Outcome resolve();
+  /// Whether no frame belongs to the shard.
+  bool is_empty() const { return frame_list_.empty(); }
+  /// Prints that no frame belongs to the shard.
+  void report_empty() const { say(empty_shard_message(shard_, static_cast<std::size_t>(motion_->frames()), "images")); }
   /// Tunes the links, extracts the first frame, and creates the renderer.
   Outcome prepare();
   /// Chooses the settings, renders all frames and passes them to the outputs.
@@ -88,7 +57,13 @@ class RenderRun {
   /// Whether every frame is drawn, rather than the first one.
   bool draws_sequence() const { return motion_->frames() > 1 && (takes_all_frames(o_) || o_.stats.empty()); }
 
+  /// Chooses the settings of a frame that is about to be drawn, if it has other ones than the frame before.
+  void choose_frame_settings(int frame);
+
   RenderOptions o_;
+  Shard shard_;
+  std::vector<int> frame_list_;  ///< The frames to draw, of this shard
+  bool has_settings_ = false, has_sequence_settings_ = false;
   std::vector<int> steps_;  ///< Time steps by frame; empty: the step is fixed.
   ImageSize size_{}, output_size_{};
   ProbePath path_;
@@ -111,6 +86,12 @@ void RenderRun::say(const std::string& line) const {
 }
 
 Outcome RenderRun::resolve() {
+  CATENA_TRY(const std::optional<Shard> shard, parse_shard(o_.shard));
+  if (shard) {
+    shard_ = *shard;
+    CATENA_CHECK(check_shard_outputs(o_));
+    if (!o_.stats.empty()) o_.stats = part_path(o_.stats, shard_);
+  }
   CATENA_TRY(steps_, parse_steps(o_.steps));
   if (!steps_.empty() && o_.step >= 0) return Error{"--step: excludes --steps"};
   if (!steps_.empty() && o_.frames == 0) o_.frames = static_cast<int>(steps_.size());
@@ -136,6 +117,7 @@ Outcome RenderRun::resolve() {
   CATENA_TRY(output_size_, picture_size(o_, scene_->stereo, size_));
   quality_name_ = !o_.quality.empty() ? o_.quality : scene_->quality.empty() ? "balanced" : scene_->quality;
   CATENA_TRY(quality_, parse_quality(quality_name_));
+  if (shard) CATENA_CHECK(check_shard_settings(o_, *scene_, quality_name_, quality_));
   IoConflictChecker files(*scene_);
   files.add_input(o_.probe);
   files.add_input(o_.camera);
@@ -144,6 +126,7 @@ Outcome RenderRun::resolve() {
   CATENA_CHECK(check_outputs(o_, format_, motion_->frames(), files));
   if (o_.targets.is_given() && o_.probe.empty())
     return Error{"--max-proxy-error and --max-tick-us: there is no probe path; --probe PATH.csv was expected"};
+  for (const std::size_t frame : shard_.items(static_cast<std::size_t>(motion_->frames()))) frame_list_.push_back(static_cast<int>(frame));
   stats_.load_ms = ms_since(load_start);
   return Done{};
 }
@@ -161,6 +144,8 @@ Outcome RenderRun::prepare() {
   }
   probe_.emplace(program, std::move(path_));
   frames_.emplace(*scene_, o_, *motion_, *probe_, size_, steps_);
+  frames_->shard = shard_;
+  frames_->needs_full_resolution = o_.shard && !steps_.empty();
   CATENA_TRY(first_, frames_->packet(0));
   CATENA_CHECK(check_steps(*scene_, o_, steps_));
   if (is_scene_file(o_.source)) print_scene_notes(*scene_);
@@ -169,6 +154,10 @@ Outcome RenderRun::prepare() {
     return Error{o_.ids + ": the scene has " + std::to_string(first_.objects.size()) +
                  " objects; at most 65535 were expected, which 16 bits can number"};
   if (quality_name_ == "balanced" && render::uses_raycast(first_)) quality_.goal = {render::QualityGoal::Kind::error, kBalancedError};
+  if (o_.shard && o_.gpu_memory_mb > 0 && quality_.goal)
+    return Error{
+        "--shard: with --gpu-memory, the search for settings depends on the images before; --quality draft, reference or step=VOXELS was "
+        "expected"};
   stats_.load_ms += ms_since(load_start);
   stats_.cpu_bytes = loaded_data_bytes(*scene_);
   stats_.objects = first_.objects;
@@ -209,9 +198,21 @@ bool RenderRun::choose_settings(bool single_image) {
   return choice.is_empty;
 }
 
-Outcome RenderRun::draw() {
-  if (quality_.goal && choose_settings(true))
+void RenderRun::choose_frame_settings(int frame) {
+  if (!quality_.goal) return;
+  // the first image has settings of its own; those of the others suit a sequence, if they are found by the error of rays
+  const bool by_error = quality_.goal->kind == render::QualityGoal::Kind::error;
+  const bool for_sequence = frame > 0 && by_error && render::uses_raycast(first_);
+  if (for_sequence ? has_sequence_settings_ : has_settings_) return;
+  const bool is_empty = choose_settings(!for_sequence);
+  if (is_empty && !has_settings_)
     print_message("note: the image shows nothing of the scene: the scene is transparent there, or is outside the view");
+  has_settings_ = true;
+  has_sequence_settings_ = has_sequence_settings_ || for_sequence;
+}
+
+Outcome RenderRun::draw() {
+  choose_frame_settings(frame_list_.front());
   if (quality_name_ == "reference") {
     stats_.estimated_rmse = machine(render::half_step_difference(*frames_->renderer, frames_->sample_of(first_).packet, frames_->settings));
     if (*stats_.estimated_rmse > kConverged)
@@ -225,10 +226,10 @@ Outcome RenderRun::draw() {
   stats_.device = frames_->renderer->stats().device;
 
   outputs_.emplace(o_, format_);
-  const double parts = frames_->plan.count() * (draws_sequence() ? double(motion_->frames()) : 1.0);
+  const double parts = frames_->plan.count() * (draws_sequence() ? double(frame_list_.size()) : 1.0);
   ProgressLine progress("render", parts);
   frames_->progress = parts > 1 ? &progress : nullptr;
-  CATENA_TRY(const double first_ms, frames_->draw(0, &*outputs_));
+  CATENA_TRY(const double first_ms, frames_->draw(frame_list_.front(), &*outputs_));
   stats_.first_frame_ms = frames_->first_ms;
   stats_.downsampled_grids = frames_->renderer->stats().downsampled_grids;
   for (const render::GridDownsampling& coarser : stats_.downsampled_grids) print_line(coarser.message());
@@ -236,11 +237,9 @@ Outcome RenderRun::draw() {
   say(fmt::format("{}: {}x{}, {}{}, on {}", o_.output, output_size_.width, output_size_.height, describe_contents(first_),
                   stats_.tiles > 1 ? fmt::format(", {} tiles", stats_.tiles) : "", stats_.device));
   stats_.frame_ms.push_back(first_ms);
-  // the first image is rendered before the search for settings of the sequence
-  const bool by_error = quality_.goal && quality_.goal->kind == render::QualityGoal::Kind::error;
-  if (motion_->frames() > 1 && by_error && render::uses_raycast(first_)) choose_settings(false);
-  for (int k = 1; k < motion_->frames(); ++k) {
-    CATENA_TRY(const double ms, frames_->draw(k, takes_all_frames(o_) ? &*outputs_ : nullptr));
+  for (const int frame : std::span(frame_list_).subspan(1)) {
+    choose_frame_settings(frame);
+    CATENA_TRY(const double ms, frames_->draw(frame, takes_all_frames(o_) ? &*outputs_ : nullptr));
     stats_.frame_ms.push_back(ms);
   }
   frames_->progress = nullptr;
@@ -273,6 +272,10 @@ Outcome RenderRun::report() {
 Outcome render_images(const RenderOptions& options) {
   RenderRun run(options);
   CATENA_CHECK(run.resolve());
+  if (run.is_empty()) {
+    run.report_empty();
+    return Done{};
+  }
   CATENA_CHECK(run.prepare());
   CATENA_CHECK(run.draw());
   return run.report();

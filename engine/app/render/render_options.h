@@ -29,9 +29,10 @@ struct RenderOptions {
   // Frames.
   int frames = 0;  ///< Number of frames; 0: not given
   double fps = 25, animation_phase = 0;
-  int step = -1;            ///< Time step; -1: the scene's
-  std::string steps;        ///< Time steps FIRST:LAST or FIRST:LAST:STRIDE, one frame each
-  bool play_probe = false;  ///< The probe moves along the probe path over the frames
+  std::optional<std::string> shard;  ///< I/N: only every N-th frame, from the I-th on; not given: all frames
+  int step = -1;                     ///< Time step; -1: the scene's
+  std::string steps;                 ///< Time steps FIRST:LAST or FIRST:LAST:STRIDE, one frame each
+  bool play_probe = false;           ///< The probe moves along the probe path over the frames
   // Camera.
   std::string camera, view, head_path;
   bool fit = false;

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "engine/app/study/study_commands.h"
+#include "engine/app/study/study_shards.h"
 #include "engine/base/console.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
@@ -70,6 +71,9 @@ Outcome merge(const MergeOptions& options) {
                                  folder, number, found->second.first)};
     }
   }
+  std::map<int, std::size_t> trial_counts;
+  for (const auto& [number, from] : subjects) trial_counts[number] = from.second.size();
+  CATENA_CHECK(check_study_shards(options.folders, *study, trial_counts));
   CATENA_TRY(const study::DataFolder data,
              study::DataFolder::open(options.output, *study, simulated ? study::ParticipantKind::model : study::ParticipantKind::people));
   std::size_t trials = 0;
@@ -79,6 +83,7 @@ Outcome merge(const MergeOptions& options) {
       return Error{fmt::format("{}: has different trials of subject {}; an empty folder was expected", options.output, number)};
     if (there.empty()) CATENA_CHECK(data.write_subject(number, from.second));
     CATENA_CHECK(bring_answers(from.first, options.output, number));
+    CATENA_CHECK(copy_recordings(from.first, options.output, from.second));
     trials += from.second.size();
   }
   CATENA_CHECK(data.write_table());

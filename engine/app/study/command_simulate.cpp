@@ -9,10 +9,12 @@
 #include <memory>
 #include <mutex>
 
+#include "engine/app/batch/shard.h"
 #include "engine/app/cli/io_conflicts.h"
 #include "engine/app/cli/options.h"
 #include "engine/app/cli/plugins.h"
 #include "engine/app/study/study_commands.h"
+#include "engine/app/study/study_shards.h"
 #include "engine/app/study/subject_folder.h"
 #include "engine/base/clock.h"
 #include "engine/base/json_edit.h"
@@ -50,21 +52,6 @@ Result<study::Study> study_with_model(const SimulateOptions& options) {
                json::set_value(text, options.study, "/operator/" + json::escape_pointer_token(one.substr(0, equals)), to_text(*value)));
   }
   return study::parse_study(text, options.study);
-}
-
-/// Share of the subjects: every N-th subject, starting from the I-th.
-struct Shard {
-  int index = 1, count = 1;
-};
-
-Result<Shard> read_shard(const std::optional<std::string>& given) {
-  if (!given) return Shard{};
-  const std::string& text = *given;
-  const std::size_t slash = text.find('/');
-  const auto index = parse_integer(text.substr(0, slash)), count = parse_integer(slash == std::string::npos ? "" : text.substr(slash + 1));
-  if (!index || !count || text.find(' ') != std::string::npos || *index < 1 || *index > *count || *count > study::kMaxSubject)
-    return Error{"--shard " + in_quotes(text) + ": I/N was expected, such as 1/4, 2/4, 3/4 or 4/4"};
-  return Shard{static_cast<int>(*index), static_cast<int>(*count)};
 }
 
 /// Writes the recordings of one subject, one trial after the other.
@@ -151,15 +138,17 @@ Outcome simulate_subject(const study::Study& study, const study::DataFolder& dat
 
 Outcome simulate(const SimulateOptions& options) {
   CATENA_TRY(const study::Study study, study_with_model(options));
-  CATENA_TRY(const Shard shard, read_shard(options.shard));
+  CATENA_TRY(const std::optional<Shard> given, parse_shard(options.shard));
+  const Shard shard = given.value_or(Shard{});
   CATENA_CHECK(study::TrialSimulator(study).check());
   CATENA_TRY(const study::DataFolder data, study::DataFolder::open(options.output, study, study::ParticipantKind::model));
   if (options.record) CATENA_CHECK(study::make_folder(study::recordings_folder(data.path())));
   const int subjects = options.subjects > 0 ? options.subjects : study.subjects;
+  if (given) CATENA_CHECK(write_shard_file(data.path(), shard, subjects));
   std::vector<Session> sessions;
   std::size_t todo = 0, all = 0;
-  for (int subject = shard.index; subject <= subjects; subject += shard.count) {
-    CATENA_TRY(Session session, session_in(study, data, subject));
+  for (const std::size_t item : shard.items(static_cast<std::size_t>(subjects))) {
+    CATENA_TRY(Session session, session_in(study, data, static_cast<int>(item) + 1));
     all += session.trials.size();
     todo += session.trials.size() - session.done;
     sessions.push_back(std::move(session));
@@ -182,6 +171,10 @@ Outcome simulate(const SimulateOptions& options) {
   });
   if (fault) return fault->second;
   CATENA_CHECK(data.write_table());
+  if (sessions.empty()) {
+    fmt::print("{}\n", empty_shard_message(shard, static_cast<std::size_t>(subjects), "subjects"));
+    return Done{};
+  }
   fmt::print("{}: {} simulated subject{}, {} trials, {} of them computed in this run in {:.1f} s\n", sanitize_for_terminal(options.output),
              sessions.size(), sessions.size() == 1 ? "" : "s", all, todo, 1e-3 * ms_since(began));
   return Done{};
@@ -199,11 +192,7 @@ void add_study_simulate(CLI::App& study, CommandAction& chosen) {
   command->add_option("-o,--output", options->output, "data folder; trials of this study in the folder are kept and not repeated")
       ->type_name("FOLDER")
       ->required();
-  command
-      ->add_option("--shard", options->shard,
-                   "every N-th subject beginning with the I-th, for the jobs of a cluster; study merge joins the results (default: all)")
-      ->type_name("I/N")
-      ->check(accepted("1 <= I <= N"));
+  add_shard_option(*command, options->shard, "subjects");
   command->add_option("--model", options->model, "replacement for a number in the study's \"operator\"")
       ->type_name("NAME=NUMBER")
       ->allow_extra_args(false);

@@ -17,19 +17,25 @@ constexpr const char* kTypeWord = std::is_same_v<T, double> ? "Float64" : "Int64
 
 }  // namespace
 
-void write_polylines_csv(OutputFile& out, const std::vector<flow::CurvePtr>& curves, const field::VectorField&) {
-  out.write("line,s,x,y,z,tx,ty,tz\n");
-  std::string row;
-  for (std::size_t line = 0; line < curves.size(); ++line)
-    for (const flow::Knot& knot : curves[line]->knots()) {
-      row = std::to_string(line);
-      for (const double x : {knot.s, knot.p.x, knot.p.y, knot.p.z, knot.t.x, knot.t.y, knot.t.z}) {
-        row += ',';
-        append_number(row, x);
-      }
-      row += '\n';
-      out.write(row);
+void append_polyline_rows(std::string& text, std::size_t line, const flow::Curve& curve) {
+  for (const flow::Knot& knot : curve.knots()) {
+    text += std::to_string(line);
+    for (const double x : {knot.s, knot.p.x, knot.p.y, knot.p.z, knot.t.x, knot.t.y, knot.t.z}) {
+      text += ',';
+      append_number(text, x);
     }
+    text += '\n';
+  }
+}
+
+void write_polylines_csv(OutputFile& out, const std::vector<flow::CurvePtr>& curves, const field::VectorField&) {
+  out.write(kPolylineTableHeader);
+  std::string rows;
+  for (std::size_t line = 0; line < curves.size(); ++line) {
+    rows.clear();
+    append_polyline_rows(rows, line, *curves[line]);
+    out.write(rows);
+  }
 }
 
 void write_polylines_vtp(OutputFile& out, const std::vector<flow::CurvePtr>& curves, const field::VectorField& field) {

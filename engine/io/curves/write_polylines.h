@@ -4,6 +4,8 @@
 ///   .vtp   VTK's XML PolyData, raw appended doubles: one polyline per line. Points carry s, tangent, velocity and line; cells carry line,
 ///          length, first_end and last_end (0 BOUNDARY, 1 CRITICAL, 2 LENGTH, 3 LAP, 4 INCOHERENT)
 #pragma once
+#include <cstddef>
+#include <string>
 #include <vector>
 
 #include "engine/base/output_file.h"
@@ -11,6 +13,11 @@
 #include "engine/geometry/flow/curve.h"
 
 namespace catena::curves {
+
+/// First row of the table, with its line break.
+inline constexpr const char* kPolylineTableHeader = "line,s,x,y,z,tx,ty,tz\n";
+/// Appends the rows of one line to the text of a table. `line`: number of the line, its first column.
+void append_polyline_rows(std::string& text, std::size_t line, const flow::Curve& curve);
 
 /// Writes lines traced in `field`, world units.
 void write_polylines_csv(OutputFile& out, const std::vector<flow::CurvePtr>& curves, const field::VectorField& field);

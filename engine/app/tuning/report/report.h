@@ -4,6 +4,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct Report {
 std::string to_json(const Report& report);
 /// Reads a report. An Error, "FILE:LINE: problem; what was expected", if the file cannot be read or is not a valid report.
 Result<Report> read_report(const std::string& path);
+/// As above, of a text; `file`: name for messages.
+Result<Report> parse_report(std::string_view text, const std::string& file);
 /// Returns whether the file is JSON and identifies itself as a report; false if it cannot be read.
 bool is_report(const std::string& path);
 

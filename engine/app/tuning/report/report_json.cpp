@@ -158,8 +158,9 @@ bool is_report(const std::string& path) {
   return root && root->find(kMark) != nullptr;
 }
 
-Result<Report> read_report(const std::string& path) {
-  CATENA_TRY(const json::Node root, json::read(path));
+namespace {
+
+Result<Report> to_report(const json::Node& root) {
   if (root.find(kMark) == nullptr) return json::error_at(root, "is not a report; a tradeoff.json of `catena tradeoff` was expected");
   CATENA_CHECK(json::get_integer(root, kMark, kFormat, kFormat, kFormat));
   Report report;
@@ -178,6 +179,18 @@ Result<Report> read_report(const std::string& path) {
     report.curves.push_back(std::move(curve));
   }
   return report;
+}
+
+}  // namespace
+
+Result<Report> read_report(const std::string& path) {
+  CATENA_TRY(const json::Node root, json::read(path));
+  return to_report(root);
+}
+
+Result<Report> parse_report(std::string_view text, const std::string& file) {
+  CATENA_TRY(const json::Node root, json::parse(text, file));
+  return to_report(root);
 }
 
 const Curve* find_curve(const Report* report, const std::string& id) {
