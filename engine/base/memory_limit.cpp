@@ -101,7 +101,7 @@ MemoryReservation::~MemoryReservation() { reserved_bytes -= bytes_; }
 void retain_freed_memory() {
 #if defined(__GLIBC__)
   ::mallopt(M_TRIM_THRESHOLD, 64 << 20);
-  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);  // setting one threshold turns off the allocator's dynamic choice of the other
+  ::mallopt(M_MMAP_THRESHOLD, 2 << 20);  // setting one threshold turns off the allocator's dynamic choice of the other
 #endif
 }
 

@@ -37,7 +37,9 @@ Drawn draw(const render::FramePacket& packet) {
   if (renderer && renderer->device().is_lost()) renderer.reset();
   if (!renderer) renderer = machine(render::Renderer::create({}));
   unwrap(render::check_ray_items(packet));
-  machine(renderer->draw(packet));
+  render::RenderSettings settings;
+  settings.waits_for_pages = true;
+  machine(renderer->draw(packet, settings));
   return {machine(renderer->read_back()), machine(renderer->read_depth()), machine(renderer->read_ids())};
 }
 

@@ -267,19 +267,20 @@ void prepare_auto_camera(scene::Scene& scene) {
       if (!any.scalar || any.scalar->grid() == nullptr) continue;  // extract_frame reports the error
       const field::ScalarGrid& grid = *any.scalar->grid();
       if (!scene.cache.has<VisiblePoints<T>>(e)) scene.cache.emplace<VisiblePoints<T>>(e);
-      fill(thing, grid, scene.cache.get<VisiblePoints<T>>(e));
+      fill(thing, any, grid, scene.cache.get<VisiblePoints<T>>(e));
     }
   };
   analyze(static_cast<const scene::Isosurface*>(nullptr),
-          [](const scene::Isosurface& surface, const field::ScalarGrid& grid, auto& cached) {
+          [](const scene::Isosurface& surface, const field::AnyField&, const field::ScalarGrid& grid, auto& cached) {
             if (cached.version == grid.version() && cached.level == surface.level) return;
             cached = {grid.version(), surface.level, {}, find_visible_points(grid, surface.level)};
           });
-  analyze(static_cast<const scene::Volume*>(nullptr), [](const scene::Volume& volume, const field::ScalarGrid& grid, auto& cached) {
-    const TransferTable transfer = make_transfer_table(volume.transfer, grid);
-    if (cached.version == grid.version() && cached.extinctions == transfer.extinctions) return;
-    cached = {grid.version(), 0, transfer.extinctions, find_visible_points(grid, transfer)};
-  });
+  analyze(static_cast<const scene::Volume*>(nullptr),
+          [](const scene::Volume& volume, const field::AnyField& any, const field::ScalarGrid& grid, auto& cached) {
+            const TransferTable transfer = make_transfer_table(volume.transfer, any);
+            if (cached.version == grid.version() && cached.extinctions == transfer.extinctions) return;
+            cached = {grid.version(), 0, transfer.extinctions, find_visible_points(grid, transfer)};
+          });
 }
 
 /// Adds the points of tubes, at most about 200000 in even steps, because the view is fitted often.

@@ -43,5 +43,7 @@ CATENA_EXPORT Bounds packet_bounds(const FramePacket& packet);
 /// Converts a transfer function to colors and extinctions; values that the file leaves out have been filled in by the scene.
 ///   opacity a over the length u (0: the smallest voxel edge) at a point:  sigma = -ln(1 - a) / u;  between points sigma is linear
 CATENA_EXPORT TransferTable make_transfer_table(const scene::TransferFunction& transfer, const field::ScalarField& field);
+/// Returns the table for a field that is not null: of the finest level of data that are larger than memory.
+CATENA_EXPORT TransferTable make_transfer_table(const scene::TransferFunction& transfer, const field::AnyField& field);
 
 }  // namespace catena::render

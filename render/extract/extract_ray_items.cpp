@@ -54,12 +54,13 @@ Outcome extract_volumes(const scene::Scene& scene, FramePacket& packet) {
     const scene::Volume& volume = scene.entities.get<scene::Volume>(e);
     if (is_hidden(scene.entities, e)) continue;
     CATENA_TRY(auto grid, drawn_grid(scene, volume.field, volume.where, "a volume"));
-    TransferTable transfer = make_transfer_table(volume.transfer, *grid);
+    const field::AnyField& any = scene::rendered_field(scene, volume.field);
+    TransferTable transfer = make_transfer_table(volume.transfer, any);
     transfer.is_categorical = scene::find_label_map(scene, volume.field) != nullptr;
     CATENA_TRY(auto color_by, color_source(scene, volume.color_by, volume.field));
     const std::uint32_t id = packet.add_object("volume", entity_name(scene, volume.field), volume.where.label);
-    packet.volumes.push_back(
-        {std::move(grid), std::move(transfer), volume.shaded, id, volume.clipped, projection_of(volume.projection), std::move(color_by)});
+    packet.volumes.push_back({std::move(grid), std::move(transfer), volume.shaded, id, volume.clipped, projection_of(volume.projection),
+                              std::move(color_by), any.paged});
   }
   return Done{};
 }

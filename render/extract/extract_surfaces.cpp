@@ -8,6 +8,7 @@
 #include "engine/base/symlog_scale.h"
 #include "engine/base/system_failure.h"
 #include "engine/base/text.h"
+#include "engine/field/bricks/paged_grid.h"
 #include "engine/field/derived/magnitude.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/labels.h"
@@ -18,6 +19,10 @@
 #include "render/extract/threshold.h"
 
 namespace catena::render {
+
+TransferTable make_transfer_table(const scene::TransferFunction& transfer, const field::AnyField& field) {
+  return field.paged ? make_transfer_table(transfer, *field.paged) : make_transfer_table(transfer, *field.scalar);
+}
 
 TransferTable make_transfer_table(const scene::TransferFunction& transfer, const field::ScalarField& field) {
   CATENA_ASSERT(!transfer.colors.empty() && !(transfer.extinctions.empty() && transfer.opacities.empty()));
@@ -220,6 +225,7 @@ Outcome extract_slices(const scene::Scene& scene, FramePacket& packet) {
                                              "\"; a plane that cuts it was expected");
     SliceItem item;
     item.grid = grid;
+    item.paged = scene::rendered_field(scene, slice.color_by.field).paged;
     item.point = slice.point;
     item.normal = slice.normal;
     const DisplayRange& range = display_range(*grid);

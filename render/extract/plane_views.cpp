@@ -98,6 +98,7 @@ SliceItem make_plane_slice(const scene::Scene& scene, scene::Entity field, bool 
   const field::AnyField& any = scene::rendered_field(scene, field);
   SliceItem item;
   item.grid = {any.scalar, any.scalar->grid()};
+  item.paged = any.paged;
   const bool labels = scene::find_label_map(scene, field) != nullptr;
   const DisplayRange& range = field::display_range(*item.grid);
   const scene::Slice* own = slice_of(scene, field);

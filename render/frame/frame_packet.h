@@ -19,8 +19,9 @@
 #include "render/frame/packing.h"
 
 namespace catena::field {
+class PagedGrid;
 class ScalarGrid;
-}
+}  // namespace catena::field
 
 namespace catena::render {
 
@@ -119,6 +120,8 @@ struct VolumeItem {
   bool is_clipped = true;                         ///< cut by the clip planes
   Projection projection = Projection::composite;  ///< projection of the values along a ray
   std::optional<ColorSource> color_by{};          ///< color by another field; composite only
+  /// Finest level of the data of which `grid` is a coarser one, drawn by the fast raycast; null: `grid` is all.
+  std::shared_ptr<const field::PagedGrid> paged{};
   bool operator==(const VolumeItem&) const = default;
 };
 
@@ -175,6 +178,8 @@ struct SliceItem {
   int stack_order = 0;                            ///< number of earlier slices in the same plane; this slice is drawn over them
   std::optional<double> hidden_label{};           ///< label that is transparent: values within 0.5 of it are not drawn
   Threshold threshold{};                          ///< values that are drawn
+  /// Finest level of the data of which `grid` is a coarser one; null: `grid` is all.
+  std::shared_ptr<const field::PagedGrid> paged{};
   bool operator==(const SliceItem&) const = default;
 };
 

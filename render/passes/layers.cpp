@@ -40,6 +40,7 @@ class LayersPass final : public Pass {
   }
   PassUse use(const Frame& frame) const override { return {frame.has(target::opaque_depth) ? target::opaque_depth : 0, 0, true}; }
   Outcome prepare(Frame& frame) override;
+  bool has_new_data() const override { return slabs_.has_arrived(); }
   Bounds bounds() const override;
   Outcome record(vk::Commands& commands, Frame& frame) override;
 
@@ -58,6 +59,7 @@ class LayersPass final : public Pass {
 
   SliceDrawer slice_drawer_;
   std::vector<TranslucentMesh> meshes_;
+  SlabCache slabs_;
   std::vector<Slice> slices_;
   std::vector<SliceItem> slice_items_;
   std::uint64_t version_ = 0;  ///< number of changes found by prepare()
@@ -108,7 +110,7 @@ Outcome LayersPass::prepare_images(Frame& frame) {
 
 Outcome LayersPass::prepare(Frame& frame) {
   CATENA_CHECK(prepare_meshes(frame));
-  CATENA_CHECK(prepare_slices(frame, slices_, render::is_translucent));
+  CATENA_CHECK(prepare_slices(frame, slabs_, slices_, render::is_translucent));
   std::vector<SliceItem> items;
   std::ranges::copy_if(frame.packet.slices, std::back_inserter(items), [](const SliceItem& item) { return is_translucent(item); });
   version_ += items != slice_items_;

@@ -10,6 +10,7 @@
 
 #include "render/frame/frame_packet.h"
 #include "render/raycast/camera_rays.h"
+#include "render/raycast/paged_volume.h"
 #include "render/raycast/render_settings.h"
 #include "render/residency/residency_manager.h"
 #include "render/vk/commands.h"
@@ -136,6 +137,8 @@ class RaySampler {
   virtual vk::Image* dirty_tiles() = 0;
   /// Returns FastVolumeRaycast::marked_blocks of the fast raycast's last image.
   virtual std::array<vk::Image*, 2> marked_blocks() = 0;
+  /// Returns the pages of the volume that was prepared last; null: it is not paged.
+  virtual PagedVolume* pages() = 0;
 
  protected:
   ~RaySampler() = default;
@@ -151,6 +154,8 @@ class Pass {
   virtual Outcome prepare(Frame& frame) = 0;
   /// Returns the world bounds of the items found by prepare().
   virtual Bounds bounds() const { return {}; }
+  /// Returns whether data that the pass reads in the background have arrived since prepare().
+  virtual bool has_new_data() const { return false; }
   /// Records the rendering commands.
   virtual Outcome record(vk::Commands& commands, Frame& frame) = 0;
   /// Returns the total milliseconds spent on building images from grids, excluding resident grids.

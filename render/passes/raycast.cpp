@@ -5,6 +5,7 @@
 #include <optional>
 #include <ranges>
 
+#include "engine/field/bricks/paged_grid.h"
 #include "render/passes/passes.h"
 #include "render/passes/renderer.h"
 #include "render/passes/slice.h"
@@ -32,6 +33,15 @@ RaySettings ray_settings(const Frame& frame) {
 RayScene ray_scene(const Frame& frame) {
   return {frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr, frame.layers, frame.layers_version,
           &frame.targets.placeholder};
+}
+
+/// Returns settings of the fast raycast whose rays are those of the exact raycast, as far as codes permit: every pixel, the same step.
+FastSettings exact_rays(const RenderSettings& settings) {
+  FastSettings fast;
+  fast.step_voxels = settings.step_voxels;
+  fast.termination = settings.termination;
+  fast.skip_empty = settings.skip_empty;
+  return fast;
 }
 
 /// Error: too many volumes, surfaces or layers, or a projection together with other translucent items.
@@ -78,6 +88,8 @@ class RaycastPass final : public Pass, public RaySampler {
     return fast_ ? fast_pass_->dirty_tiles() : exact_pass_->dirty_tiles();
   }
   std::array<vk::Image*, 2> marked_blocks() override { return fast_ ? fast_pass_->marked_blocks() : std::array<vk::Image*, 2>{}; }
+  bool has_new_data() const override { return fast_ && fast_pass_->pages() && fast_pass_->pages()->has_arrived(); }
+  PagedVolume* pages() override { return fast_ ? fast_pass_->pages() : nullptr; }
   bool was_out_of_memory(const FramePacket& packet) const override {
     return !refused_.reason.empty() && packet.volumes.size() == 1 && packet.volumes.front().grid->version() == refused_.version;
   }
@@ -99,16 +111,17 @@ class RaycastPass final : public Pass, public RaySampler {
   std::optional<ProjectionRaycast> projection_pass_;
   std::optional<FastVolumeRaycast> fast_pass_;
   const VolumeItem* fast_ = nullptr;  ///< the frame's volume, if the fast raycast draws it
+  FastSettings fast_settings_;        ///< of the last frame that wanted the fast raycast
   Refused refused_;
   bool wanted_fast_ = false;
   bool any_ = false, projected_ = false;
-  std::vector<const field::ScalarGrid*> grids_;
+  std::vector<const field::Field*> grids_;
 };
 
 Result<std::unique_ptr<Pass>> RaycastPass::create(vk::Device&) { return std::unique_ptr<Pass>(new RaycastPass); }
 
 bool RaycastPass::ends_at_half(const Frame& frame) const {
-  return fast_ && frame.settings.fast->ends_at_half_resolution() && !frame.settings.float_image && !frame.has(target::opaque_depth);
+  return fast_ && fast_settings_.ends_at_half_resolution() && !frame.settings.float_image && !frame.has(target::opaque_depth);
 }
 
 PassUse RaycastPass::use(const Frame& frame) const {
@@ -120,7 +133,7 @@ PassUse RaycastPass::use(const Frame& frame) const {
 /// Returns false if the memory does not suffice; refused_ then holds the reason.
 bool RaycastPass::prepare_fast(Frame& frame) {
   const VolumeItem& item = frame.packet.volumes.front();
-  const FastSettings& settings = *frame.settings.fast;
+  const FastSettings& settings = fast_settings_;
   const bool gradients = item.is_shaded && settings.smooth_gradients;
   const std::uint64_t version = item.grid->version();
   if (!refused_.reason.empty() && refused_.version == version && refused_.permitted_bytes == settings.max_bytes &&
@@ -135,11 +148,11 @@ bool RaycastPass::prepare_fast(Frame& frame) {
     else
       prepared = created.error();
   }
-  if (prepared && !can_pack_dense(frame.device, *item.grid)) {
+  if (prepared && (item.paged || !can_pack_dense(frame.device, *item.grid))) {
     exact_pass_.reset();
     frame.residency.drop_unused(*item.grid);
   }
-  if (prepared) prepared = fast_pass_->prepare(item, settings, frame.residency.available_bytes());
+  if (prepared) prepared = fast_pass_->prepare(item, settings, frame.residency.available_bytes(), !frame.settings.waits_for_pages);
   if (prepared) return true;
   fast_pass_.reset();
   refused_.reason = fmt::format("the grid \"{}\" is drawn by exact rays, slower: {}", item.grid->name(), prepared.error().message);
@@ -149,10 +162,15 @@ bool RaycastPass::prepare_fast(Frame& frame) {
 Outcome RaycastPass::prepare(Frame& frame) {
   const FramePacket& packet = frame.packet;
   grids_.clear();
-  wanted_fast_ = frame.settings.fast && frame.layers.empty() && supports_fast_raycast(frame.device, packet);
+  const bool is_paged = packet.volumes.size() == 1 && packet.volumes.front().paged;
+  wanted_fast_ = (frame.settings.fast || is_paged) && frame.layers.empty() && supports_fast_raycast(frame.device, packet);
+  fast_settings_ = frame.settings.fast ? *frame.settings.fast : exact_rays(frame.settings);
   fast_ = wanted_fast_ && prepare_fast(frame) ? &packet.volumes.front() : nullptr;
   if (fast_) {
-    grids_.push_back(fast_->grid.get());
+    if (fast_->paged)
+      grids_.push_back(fast_->paged.get());
+    else
+      grids_.push_back(fast_->grid.get());
     return Done{};
   }
   if (fast_pass_ && fast_pass_->is_bricked()) fast_pass_.reset();
@@ -193,7 +211,7 @@ Outcome RaycastPass::prepare(Frame& frame) {
 
 Bounds RaycastPass::bounds() const {
   Bounds all;
-  for (const field::ScalarGrid* grid : grids_) all.extend(grid->world_bounds());
+  for (const field::Field* grid : grids_) all.extend(grid->world_bounds());
   return all;
 }
 
@@ -209,7 +227,7 @@ Outcome RaycastPass::record(vk::Commands& commands, Frame& frame) {
   if (fast_) {
     if (exact_pass_) exact_pass_->invalidate_target();
     const bool half = ends_at_half(frame);
-    CATENA_CHECK(fast_pass_->record(commands, frame.rays, *frame.settings.fast, area, targets.output.info().extent,
+    CATENA_CHECK(fast_pass_->record(commands, frame.rays, fast_settings_, area, targets.output.info().extent,
                                     half ? nullptr : &targets.volume, opaque, targets.placeholder, frame.settings.reuse_rays));
     if (half) {
       frame.half_resolution_volume = &fast_pass_->half_resolution();
@@ -237,7 +255,7 @@ Outcome RaycastPass::record_exact(vk::Commands& commands, Frame& frame, const Ca
 Outcome RaycastPass::record_ray_samples(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) {
   const vk::Image* opaque = frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr;
   if (fast_)
-    return fast_pass_->record_ray_samples(commands, frame.rays, *frame.settings.fast, spacing, target, opaque, frame.targets.placeholder);
+    return fast_pass_->record_ray_samples(commands, frame.rays, fast_settings_, spacing, target, opaque, frame.targets.placeholder);
   for (const Layer& layer : frame.layers)
     for (vk::Image* image : {layer.color, layer.depth}) commands.transition(*image, vk::kFragmentRead);
   CameraRays rays = frame.rays;
@@ -254,7 +272,7 @@ Outcome RaycastPass::record_half_opacity_depth(vk::Commands& commands, Frame& fr
   constexpr double kHalf = 0.5;  // termination opacity: samples behind half opacity do not change the depth
   const vk::Image* opaque = frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr;
   if (fast_) {
-    FastSettings settings = *frame.settings.fast;
+    FastSettings settings = fast_settings_;
     settings.termination = kHalf;
     return fast_pass_->record_half_opacity_depth(commands, frame.rays, settings, spacing, target, opaque, frame.targets.placeholder);
   }

@@ -233,10 +233,33 @@ Outcome Renderer::Impl::draw_planes(const FramePacket& packet, const RenderSetti
   return commands.finish();
 }
 
+/// Images of which each shows pages that the one before did not, until the last one is returned all the same.
+constexpr int kMaxPageRounds = 16;
+
 Outcome Renderer::draw(const FramePacket& packet, const RenderSettings& settings) {
   impl_->drawn_targets = 0;
   CATENA_CHECK(check(packet, settings, impl_->device->info()));
-  return impl_->within_budget(packet, [&] { return draw_once(packet, settings); });
+  return impl_->within_budget(packet, [&]() -> Outcome {
+    CATENA_CHECK(draw_once(packet, settings));
+    for (int k = 0; settings.waits_for_pages && k < kMaxPageRounds; ++k) {
+      CATENA_TRY(const bool loaded, impl_->load_pages(settings.divides_for_pages));
+      if (!loaded) break;
+      CATENA_CHECK(draw_once(packet, settings));
+    }
+    return Done{};
+  });
+}
+
+Result<bool> Renderer::Impl::load_pages(bool only_if_they_fit) {
+  bool loaded = false;
+  for (Pass* pass : active_passes()) {
+    PagedVolume* pages = pass->ray_sampler() ? pass->ray_sampler()->pages() : nullptr;
+    if (!pages) continue;
+    const std::uint64_t before = pages->loaded_count();
+    CATENA_CHECK(pages->finish(only_if_they_fit));
+    loaded = loaded || pages->loaded_count() != before;
+  }
+  return loaded;
 }
 
 Result<Image8> Renderer::sample_rays(const FramePacket& packet, const RenderSettings& settings, std::uint32_t spacing) {
@@ -351,6 +374,27 @@ void Renderer::restore_shaders() {
   impl_->drop_passes();
 }
 
+std::string PagingStats::message() const {
+  if (visible == 0) return {};
+  std::string text = fmt::format("{} of {} bricks", resident, visible);
+  if (finest_level > 0) text += fmt::format(" of level {}: the device's memory holds no more (--gpu-memory MB)", finest_level);
+  return text;
+}
+
+PagingStats Renderer::paging() const {
+  PagingStats stats;
+  for (Pass* pass : impl_->active_passes()) {
+    stats.has_arrived = stats.has_arrived || pass->has_new_data();
+    const PagedVolume* pages = pass->ray_sampler() ? pass->ray_sampler()->pages() : nullptr;
+    if (!pages) continue;
+    stats.visible = pages->state().visible;
+    stats.resident = pages->state().resident;
+    stats.finest_level = pages->state().bias;
+    stats.is_loading = pages->state().is_loading;
+  }
+  return stats;
+}
+
 RenderStats Renderer::stats() const {
   const vk::Device& device = *impl_->device;
   RenderStats stats;
@@ -364,6 +408,7 @@ RenderStats Renderer::stats() const {
   stats.resident_bytes = impl_->residency->bytes();
   stats.downsampled_grids = impl_->residency->downsampled_grids();
   stats.gpu_budget = device.info().memory_budget;
+  stats.paging = paging();
   stats.passes = impl_->rendered_passes;
   stats.residency_ms = impl_->residency->build_ms() + impl_->retired_build_ms;
   for (Pass* pass : impl_->active_passes()) {

@@ -33,6 +33,18 @@ class Image;
 class Swapchain;
 }  // namespace vk
 
+/// Bricks of a volume that is larger than the device's memory, in the last image. Counts are those of bricks that the image shows.
+struct PagingStats {
+  std::uint64_t visible = 0;   ///< bricks that the image shows when it is complete
+  std::uint64_t resident = 0;  ///< those of them that are on the device
+  /// > 0: the device's memory is too small for this image; levels finer than this one are not shown.
+  int finest_level = 0;
+  bool is_loading = false;   ///< bricks are being read
+  bool has_arrived = false;  ///< bricks have been read that the last image does not show
+  /// Returns "72 of 410 bricks"; empty: there are none.
+  CATENA_EXPORT std::string message() const;
+};
+
 /// Statistics of a renderer. Plain data. Counts are totals since its creation unless stated otherwise.
 struct RenderStats {
   std::string device, driver;                       ///< name of the device; name of its driver
@@ -43,6 +55,7 @@ struct RenderStats {
   std::vector<std::string> passes;                  ///< names of the passes of the last image, in order
   std::uint64_t resident_grids = 0;                 ///< number of resident grids
   std::vector<GridDownsampling> downsampled_grids;  ///< grids that are downsampled to fit into the memory budget
+  PagingStats paging;                               ///< bricks of a volume that does not fit into the device's memory
   std::uint64_t gpu_budget = 0;                     ///< memory budget, bytes
   std::uint64_t resident_bytes = 0;                 ///< bytes of device images of grid voxels in use
   double residency_ms = 0;                          ///< time spent on building and uploading resident grids
@@ -189,6 +202,8 @@ class CATENA_EXPORT Renderer {
 
   /// Returns the current statistics.
   RenderStats stats() const;
+  /// Returns what is loaded of a volume that does not fit into the device's memory.
+  PagingStats paging() const;
   /// Returns the first 64 messages of the validation layer.
   std::vector<std::string> validation_texts() const;
   /// Returns the device of the renderer.

@@ -30,8 +30,13 @@ bool is_opaque(const SliceItem& item) { return item.opacity >= 1; }
 
 bool is_translucent(const SliceItem& item) { return item.opacity < 1 && (item.opacity > 0 || !item.contour_levels.empty()); }
 
-Result<bool> Slice::prepare(Frame& frame, const SliceItem& item) {
-  CATENA_TRY(auto resident, frame.resident_grid(*item.grid));
+Result<bool> Slice::prepare(Frame& frame, SlabCache& slabs, const SliceItem& item) {
+  grid_ = item.grid;
+  if (item.paged) {
+    CATENA_TRY(const auto slab, slabs.get(item.paged, item.point, item.normal, frame.settings.waits_for_pages));
+    if (slab) grid_ = slab;
+  }
+  CATENA_TRY(auto resident, frame.resident_grid(*grid_));
   if (!resident->is_drawable) return false;
   if (resident_ != resident) {
     resident_ = std::move(resident);
@@ -80,7 +85,7 @@ Result<const vk::Pipeline*> SliceDrawer::pipeline(std::uint32_t flags, std::uint
 
 Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice& slice, const PeelState& peel) {
   const SliceItem& item = slice.item_;
-  const field::ScalarGrid* grid = item.grid.get();
+  const field::ScalarGrid* grid = &slice.grid();
   // a plane through the camera is seen edge-on: the intersection with a ray is dominated by rounding
   const double away = std::fabs(dot(direction(item.normal), rays.camera.position - item.point));
   if (!rays.camera.orthographic && away < rays.depth_near) return Done{};
@@ -115,18 +120,19 @@ Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice&
                                     {kLevels, vk::DescriptorKind::buffer, &slice.levels_, nullptr, nullptr}};
   add_grid_bindings(bindings, {&bound, 1}, 1, linear_);
   add_peel_bindings(bindings, peel, slice.layer_data_);
-  commands.set_scissor(covered_area({&grid, 1}, rays.camera));
+  const field::Field* const domain = grid;
+  commands.set_scissor(covered_area({&domain, 1}, rays.camera));
   commands.bind(*pipe, bindings);
   commands.draw_triangle();
   return Done{};
 }
 
-Outcome prepare_slices(Frame& frame, std::vector<Slice>& slices, bool (*chosen)(const SliceItem&)) {
+Outcome prepare_slices(Frame& frame, SlabCache& slabs, std::vector<Slice>& slices, bool (*chosen)(const SliceItem&)) {
   std::size_t count = 0;
   for (const SliceItem& item : frame.packet.slices) {
     if (!chosen(item)) continue;
     if (count == slices.size()) slices.emplace_back();
-    CATENA_TRY(const bool drawn, slices[count].prepare(frame, item));
+    CATENA_TRY(const bool drawn, slices[count].prepare(frame, slabs, item));
     if (drawn) ++count;
   }
   while (slices.size() > count) slices.pop_back();
@@ -143,7 +149,8 @@ class SlicePass final : public Pass {
     return std::unique_ptr<Pass>(new SlicePass(std::move(drawer)));
   }
   PassUse use(const Frame&) const override { return {0, target::opaque}; }
-  Outcome prepare(Frame& frame) override { return prepare_slices(frame, slices_, is_opaque); }
+  Outcome prepare(Frame& frame) override { return prepare_slices(frame, slabs_, slices_, is_opaque); }
+  bool has_new_data() const override { return slabs_.has_arrived(); }
   Bounds bounds() const override {
     Bounds all;
     for (const Slice& slice : slices_) all.extend(slice.grid().world_bounds());
@@ -160,6 +167,7 @@ class SlicePass final : public Pass {
  private:
   explicit SlicePass(SliceDrawer drawer) : drawer_(std::move(drawer)) {}
   SliceDrawer drawer_;
+  SlabCache slabs_;
   std::vector<Slice> slices_;
 };
 

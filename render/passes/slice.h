@@ -8,6 +8,7 @@
 #pragma once
 #include <map>
 
+#include "render/passes/slab_cache.h"
 #include "render/passes/triangles.h"
 #include "render/raycast/grid_bindings.h"
 
@@ -17,13 +18,15 @@ namespace catena::render {
 class Slice {
  public:
   /// Uploads what changed; returns false if the grid cannot be rendered (thinner than a cell).
-  Result<bool> prepare(Frame& frame, const SliceItem& item);
-  const field::ScalarGrid& grid() const { return *item_.grid; }
+  Result<bool> prepare(Frame& frame, SlabCache& slabs, const SliceItem& item);
+  /// Returns the grid that is drawn: that of the item, or the part of a paged grid around the plane.
+  const field::ScalarGrid& grid() const { return *grid_; }
   std::uint32_t id() const { return item_.id; }
 
  private:
   friend class SliceDrawer;
   SliceItem item_;
+  std::shared_ptr<const field::ScalarGrid> grid_;
   std::shared_ptr<const ResidentGrid> resident_;
   BrickMap map_;
   vk::Buffer colors_, levels_, frame_data_, slice_data_, layer_data_;
@@ -48,7 +51,7 @@ class SliceDrawer {
 };
 
 /// Updates `slices` to the items of the packet for which `chosen` is true.
-Outcome prepare_slices(Frame& frame, std::vector<Slice>& slices, bool (*chosen)(const SliceItem&));
+Outcome prepare_slices(Frame& frame, SlabCache& slabs, std::vector<Slice>& slices, bool (*chosen)(const SliceItem&));
 
 /// Returns whether the slice is rendered in the layers: opacity < 1, and not completely invisible.
 bool is_translucent(const SliceItem& item);

@@ -105,7 +105,8 @@ Outcome SurfaceColorPass::record(vk::Commands& commands, Frame& frame) {
                                       {2, vk::DescriptorKind::texture, nullptr, &frame.targets.opaque_depth, nullptr},
                                       {kIds, vk::DescriptorKind::texture, nullptr, &frame.targets.opaque_id, nullptr}};
     add_grid_bindings(bindings, bound, 2, linear_);
-    commands.set_scissor(covered_area({&grid, 1}, frame.rays.camera));
+    const field::Field* const domain = grid;
+    commands.set_scissor(covered_area({&domain, 1}, frame.rays.camera));
     commands.bind(*pipe, bindings);
     commands.draw_triangle();
   }

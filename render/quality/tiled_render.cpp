@@ -2,7 +2,9 @@
 #include "render/quality/tiled_render.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 
@@ -12,6 +14,8 @@
 
 namespace catena::render {
 namespace {
+
+constexpr std::uint32_t kMinPiece = 8;  // side of the smallest part of a tile, pixels
 
 /// Samples of one rendered tile.
 struct Samples {
@@ -23,11 +27,11 @@ struct Samples {
 
 std::uint8_t to_byte(float x) { return std::uint8_t(std::lround(255 * std::clamp(x, 0.0f, 1.0f))); }
 
-/// Copies a tile's pixels to their place in the band, for one sample per pixel.
-void copy_tile(const Samples& from, const TileArea& area, const BandChannels& requested, Band& to) {
+/// Copies a tile's pixels to their place in the band, for one sample per pixel. `first`: first row of the band, pixels.
+void copy_tile(const Samples& from, const TileArea& area, std::uint32_t first, const BandChannels& requested, Band& to) {
   const std::uint32_t dx = area.x - area.render_x, dy = area.y - area.render_y;
   for (std::uint32_t y = 0; y < area.height; ++y) {
-    const std::size_t source = std::size_t(y + dy) * area.render_width + dx, target = std::size_t(y) * to.width + area.x;
+    const std::size_t source = std::size_t(y + dy) * area.render_width + dx, target = std::size_t(area.y - first + y) * to.width + area.x;
     const auto copy = [&](const auto& values, auto& out, std::size_t channels) {
       std::copy_n(values.begin() + std::ptrdiff_t(channels * source), channels * area.width,
                   out.begin() + std::ptrdiff_t(channels * target));
@@ -53,11 +57,11 @@ std::array<float, 4> mean_of(const ImageF32& image, std::uint32_t x, std::uint32
 }
 
 /// Filters a tile's n x n samples per pixel into the band.
-void filter(const Samples& from, const TileArea& area, std::uint32_t n, const BandChannels& requested, Band& to) {
+void filter(const Samples& from, const TileArea& area, std::uint32_t n, std::uint32_t first, const BandChannels& requested, Band& to) {
   for (std::uint32_t y = 0; y < area.height / n; ++y)
     for (std::uint32_t x = 0; x < area.width / n; ++x) {
       const std::uint32_t sx = x * n + area.x - area.render_x, sy = y * n + area.y - area.render_y;
-      const std::size_t target = std::size_t(y) * to.width + area.x / n + x;
+      const std::size_t target = std::size_t(area.y / n - first + y) * to.width + area.x / n + x;
       if (requested.bytes || requested.floats) {
         const std::array<float, 4> mean = mean_of(from.floats, sx, sy, n);
         for (std::size_t c = 0; c < 4; ++c) {
@@ -78,6 +82,23 @@ void filter(const Samples& from, const TileArea& area, std::uint32_t n, const Ba
       if (requested.depth) to.depth[target] = nearest;
       if (requested.ids) to.ids[target] = from.ids.ids[at];
     }
+}
+
+/// Returns both halves of an area, cut across its longer side at a multiple of n samples, without margins.
+std::array<TileArea, 2> halves(const TileArea& area, std::uint32_t n) {
+  std::array<TileArea, 2> both{area, area};
+  const bool along_x = area.width >= area.height;
+  const std::uint32_t size = along_x ? area.width : area.height, first = size / n / 2 * n;
+  (along_x ? both[0].width : both[0].height) = first;
+  (along_x ? both[1].width : both[1].height) = size - first;
+  (along_x ? both[1].x : both[1].y) += first;
+  for (TileArea& half : both) {
+    half.render_x = half.x;
+    half.render_y = half.y;
+    half.render_width = half.width;
+    half.render_height = half.height;
+  }
+  return both;
 }
 
 void resize(Band& band, const BandChannels& requested) {
@@ -123,6 +144,7 @@ Result<RenderTimes> draw_packed(Renderer& renderer, const FramePacket& packet, c
   CATENA_ASSERT(!requested.depth && !requested.ids);
   RenderSettings settings = base_settings;
   settings.float_image = requested.floats;
+  settings.waits_for_pages = true;
   RenderTimes times;
   CATENA_CHECK(draw_timed(renderer, packet, settings, times));
   if (!on_band) return times;
@@ -151,23 +173,37 @@ Result<RenderTimes> render_tiled(Renderer& renderer, const FramePacket& whole, c
   const std::uint32_t n = plan.antialias;
   RenderSettings settings = base_settings;
   settings.float_image = requested.floats || (requested.bytes && n > 1);
+  settings.waits_for_pages = true;
   RenderTimes times;
   Band band;
   band.width = plan.width;
+  // Renders an area, in pieces if the pages of a volume do not fit into the device's memory. Those have no margin: every pixel is marched.
+  const std::function<Outcome(const TileArea&, RenderSettings)> draw_area = [&](const TileArea& area, RenderSettings how) -> Outcome {
+    const bool is_whole = plan.count() == 1 && n == 1 && area.width == plan.width && area.height == plan.height;
+    const std::uint32_t longer = std::max(area.width, area.height);
+    how.divides_for_pages = longer >= 2 * kMinPiece * n;
+    CATENA_CHECK(draw_timed(renderer, is_whole ? packet : make_tile_packet(packet, plan, area), how, times));
+    if (how.divides_for_pages && renderer.paging().finest_level > 0) {
+      if (how.fast) how.fast->spacing = 1;
+      for (const TileArea& half : halves(area, n)) CATENA_CHECK(draw_area(half, how));
+      return Done{};
+    }
+    if (!on_band) return Done{};
+    CATENA_TRY(const Samples samples, read(renderer, requested, how.float_image, n > 1));
+    if (n == 1) {
+      copy_tile(samples, area, band.y, requested, band);
+    } else {
+      filter(samples, area, n, band.y, requested, band);
+    }
+    return Done{};
+  };
   for (std::uint32_t row = 0; row < plan.rows(); ++row) {
     band.y = plan.area(0, row).y / n;
     band.height = plan.area(0, row).height / n;
     if (on_band) resize(band, requested);
     for (std::uint32_t column = 0; column < plan.columns(); ++column) {
-      const TileArea area = plan.area(column, row);
-      CATENA_CHECK(draw_timed(renderer, plan.count() == 1 && n == 1 ? packet : make_tile_packet(packet, plan, area), settings, times));
+      CATENA_CHECK(draw_area(plan.area(column, row), settings));
       if (!on_band) continue;
-      CATENA_TRY(const Samples samples, read(renderer, requested, settings.float_image, n > 1));
-      if (n == 1) {
-        copy_tile(samples, area, requested, band);
-      } else {
-        filter(samples, area, n, requested, band);
-      }
       CATENA_CHECK(on_band({band.width, band.y, 0, {}, {}, {}, {}}));
     }
     if (on_band) CATENA_CHECK(on_band(band));

@@ -36,8 +36,9 @@ struct RenderTimes {
   double render_ms = 0;  ///< time measured by RenderTimer
 };
 
-/// Renders the image and passes it to `on_band` band by band. An Error is the renderer's or the one returned by `on_band`, which is also
-/// called with a band of height 0 after every tile: returning an Error ends the work. Without `on_band` nothing is read back.
+/// Renders the complete image (RenderSettings::waits_for_pages) and passes it to `on_band` band by band. An Error is the renderer's or the
+/// one returned by `on_band`, which is also called with a band of height 0 after every tile: returning an Error ends the work. Without
+/// `on_band` nothing is read back.
 Result<RenderTimes> render_tiled(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings, const TilePlan& plan,
                                  const BandChannels& requested, const std::function<Outcome(const Band&)>& on_band);
 

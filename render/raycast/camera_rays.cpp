@@ -166,10 +166,10 @@ VkRect2D covered_area(std::span<const Vec3> points, const Camera& camera) {
   return {{std::int32_t(x0), std::int32_t(y0)}, {std::uint32_t(x1 - x0), std::uint32_t(y1 - y0)}};
 }
 
-VkRect2D covered_area(std::span<const field::ScalarGrid* const> grids, const Camera& camera) {
+VkRect2D covered_area(std::span<const field::Field* const> fields, const Camera& camera) {
   std::vector<Vec3> corners;
-  for (const field::ScalarGrid* grid : grids)
-    for (int i = 0; i < 8; ++i) corners.push_back(grid->corner(i));
+  for (const field::Field* field : fields)
+    for (int i = 0; i < 8; ++i) corners.push_back(field->corner(i));
   return covered_area(corners, camera);
 }
 

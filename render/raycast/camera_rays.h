@@ -47,7 +47,7 @@ struct CameraRays {
 /// the camera; empty without points.
 VkRect2D covered_area(std::span<const Vec3> points, const Camera& camera);
 
-/// Returns the pixels that the grids' domains can cover; the whole image if a corner is behind the camera.
-VkRect2D covered_area(std::span<const field::ScalarGrid* const> grids, const Camera& camera);
+/// Returns the pixels that the fields' domains can cover; the whole image if a corner is behind the camera.
+VkRect2D covered_area(std::span<const field::Field* const> fields, const Camera& camera);
 
 }  // namespace catena::render

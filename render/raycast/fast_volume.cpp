@@ -84,6 +84,9 @@ constexpr std::uint32_t kFastVolumeVertexShader[] = {
 constexpr std::uint32_t kFastVolumeFragmentShader[] = {
 #include "spirv/volume_fast.frag.inc"
 };
+constexpr std::uint32_t kPagedVolumeFragmentShader[] = {
+#include "spirv/volume_paged.frag.inc"
+};
 constexpr std::uint32_t kFastVolumeTilesShader[] = {
 #include "spirv/ray_grid_tiles.vert.inc"
 };
@@ -153,15 +156,19 @@ Outcome FastVolumeRaycast::ensure(RayGrid& level, std::uint32_t spacing, const V
 }
 
 Result<const vk::Pipeline*> FastVolumeRaycast::pipeline(const Constants& constants, bool tiles) {
-  vk::Pipeline& pipeline = pipelines_[{constants, tiles}];
+  const bool is_paged = resources_.pages() != nullptr;
+  vk::Pipeline& pipeline = pipelines_[{constants, tiles, is_paged}];
   if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = tiles ? vk::Spirv(kFastVolumeTilesShader) : vk::Spirv(kFastVolumeVertexShader);
-    info.fragment = kFastVolumeFragmentShader;
+    info.fragment = is_paged ? vk::Spirv(kPagedVolumeFragmentShader) : vk::Spirv(kFastVolumeFragmentShader);
     info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::uniform}, {2, vk::DescriptorKind::texture},
                             {3, vk::DescriptorKind::texture}, {4, vk::DescriptorKind::texture}, {5, vk::DescriptorKind::texture},
                             {6, vk::DescriptorKind::texture}, {7, vk::DescriptorKind::texture}, {8, vk::DescriptorKind::sampled},
                             {9, vk::DescriptorKind::texture}};
+    if (is_paged)
+      info.layout_bindings.insert(info.layout_bindings.end(),
+                                  {{10, vk::DescriptorKind::texture}, {11, vk::DescriptorKind::uniform}, {12, vk::DescriptorKind::buffer}});
     info.constants.assign(constants.begin(), constants.end());
     // full resolution goes to the volume target, coarser ray grids to their own images
     info.colors = {constants[4] & 2u ? kVolumeFormat : kRayGridFormat};
@@ -198,11 +205,12 @@ Outcome FastVolumeRaycast::mark(vk::Commands& commands, RayGrid& level, vk::Imag
 /// Writes the frame's data; grid 0 is relative to the origin of the packed grid.
 Result<shared::FrameData> FastVolumeRaycast::write_frame(const CameraRays& rays, const FastSettings& settings) {
   shared::FrameData frame = rays.frame_data();
-  frame.grids[0] = rays.grid_data(resources_.local_geometry(), resources_.item().grid->mapping());
+  const field::Mapping& mapping = resources_.domain().mapping();
+  frame.grids[0] = rays.grid_data(resources_.local_geometry(), mapping);
   frame.grids[0].id = resources_.item().id;
   frame.grids[0].is_clipped = resources_.item().is_clipped;
   frame.termination = float(settings.termination);
-  frame.step_world = float(settings.step_voxels * resources_.item().grid->mapping().min_voxel_edge());
+  frame.step_world = float(settings.step_voxels * mapping.min_voxel_edge());
   CATENA_CHECK(vk::write_uniform(*device_, frame_, frame));
   return frame;
 }
@@ -218,7 +226,7 @@ Outcome FastVolumeRaycast::draw(vk::Commands& commands, RayGrid& level, const Dr
   vk::ColorTarget color{draw.target, std::array<float, 4>{0, 0, 0, 0}};
   if (draw.tiles != Tiles::all) color.clear.reset();
   commands.begin_pass({&color, 1}, {});
-  const vk::Binding bindings[] = {
+  std::vector<vk::Binding> bindings{
       {0, vk::DescriptorKind::uniform, &frame_, nullptr, nullptr},
       {1, vk::DescriptorKind::uniform, &level.data, nullptr, nullptr},
       {2, vk::DescriptorKind::texture, nullptr, draw.opaque_depth ? draw.opaque_depth : draw.placeholder, nullptr},
@@ -230,6 +238,11 @@ Outcome FastVolumeRaycast::draw(vk::Commands& commands, RayGrid& level, const Dr
       {8, vk::DescriptorKind::sampled, nullptr, draw.shading == 2 ? &resources_.gradients() : &placeholder_gradients_, &linear_},
       {9, vk::DescriptorKind::texture, nullptr, draw.tiles == Tiles::dirty ? &eye_state().opaque_tiles->dirty_tiles() : &placeholder_tiles_,
        nullptr}};
+  if (const PagedVolume* pages = resources_.pages()) {
+    bindings.push_back({10, vk::DescriptorKind::texture, nullptr, &pages->sub_bricks(), nullptr});
+    bindings.push_back({11, vk::DescriptorKind::uniform, &pages->levels(), nullptr, nullptr});
+    bindings.push_back({12, vk::DescriptorKind::buffer, &pages->visits(), nullptr, nullptr});
+  }
   commands.set_scissor(draw.area);
   commands.bind(*pipe, bindings);
   if (draw.tiles == Tiles::all) {
@@ -281,12 +294,13 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
   CATENA_ASSERT(target || (settings.ends_at_half_resolution() && !opaque_depth));
   CATENA_TRY(const shared::FrameData frame, write_frame(rays, settings));
   EyeState& eye = eye_state();
-  const ReuseState now{settings,
-                       {frame, resources_.version(), 0, target, target ? target->handle() : VK_NULL_HANDLE, area, opaque_depth != nullptr}};
+  const std::uint64_t version = resources_.version() + (resources_.pages() ? resources_.pages()->version() : 0);
+  const ReuseState now{settings, {frame, version, 0, target, target ? target->handle() : VK_NULL_HANDLE, area, opaque_depth != nullptr}};
   const bool same = keep && target && eye.reuse && eye.reuse->state.matches(now.state);
   const bool reuses = reused_previous_ = same && eye.reuse->settings == settings;
   const bool first_is_marched = same && !opaque_depth && settings.spacing > 1 && eye.reuse->settings.marches_same_rays(settings);
   eye.reuse.reset();
+  if (resources_.pages()) resources_.pages()->begin_image(rays, same);
   marched_half_ = marched_full_ = false;
   commands.transition(placeholder_tiles_, vk::kShaderRead);
   if (opaque_depth) {
@@ -336,7 +350,13 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
     coarser = &image;
   }
   if (target) eye.reuse = now;
+  finish_visits(commands);
   return Done{};
+}
+
+void FastVolumeRaycast::finish_visits(vk::Commands& commands) {
+  constexpr vk::ResourceUse kVisit{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_WRITE_BIT};
+  if (resources_.pages()) commands.barrier(resources_.pages()->visits(), kVisit, vk::kHostRead);
 }
 
 Outcome FastVolumeRaycast::record_ray_samples(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings,
@@ -365,7 +385,10 @@ Outcome FastVolumeRaycast::record_samples(vk::Commands& commands, const CameraRa
   const VkExtent3D& extent = params.target->info().extent;
   params.skips_empty = settings.skip_empty;
   params.area = {{0, 0}, {extent.width, extent.height}};
-  return draw(commands, sample_grid_, params);
+  if (resources_.pages()) resources_.pages()->begin_image(rays, false);
+  CATENA_CHECK(draw(commands, sample_grid_, params));
+  finish_visits(commands);
+  return Done{};
 }
 
 }  // namespace catena::render

@@ -8,6 +8,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "render/raycast/camera_rays.h"
@@ -23,11 +24,14 @@ namespace catena::render {
 class FastVolumeRaycast {
  public:
   static Result<FastVolumeRaycast> create(vk::Device& device);
-  /// Packs the volume if it changed. `left`: device bytes that it may allocate in addition to what it holds. An Error if that does not
-  /// suffice.
-  Outcome prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left) {
-    return resources_.prepare(item, settings, left);
+  /// Packs the volume if it changed; loads pages if `loads`. `left`: device bytes that it may allocate in addition to what it holds. An
+  /// Error if that does not suffice.
+  Outcome prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left, bool loads) {
+    return resources_.prepare(item, settings, left, loads);
   }
+  /// Returns the pages; null: the volume is not paged.
+  PagedVolume* pages() { return resources_.pages(); }
+  const PagedVolume* pages() const { return resources_.pages(); }
   /// Selects the eye (of `eyes`) of the following calls: images reused from frame to frame are kept per eye.
   void select_eye(std::size_t eye, std::size_t eyes) {
     eye_states_.resize(eyes);
@@ -66,7 +70,9 @@ class FastVolumeRaycast {
   /// Returns whether enough of the volume is homogeneous that rays skip it.
   bool skips_empty_space() const;
   /// Returns the device bytes of packed codes and gradients.
-  std::uint64_t grid_bytes() const { return resources_.words().bytes() + resources_.gradients().bytes(); }
+  std::uint64_t grid_bytes() const {
+    return resources_.pages() ? resources_.pages()->bytes() : resources_.words().bytes() + resources_.gradients().bytes();
+  }
   double build_ms() const { return resources_.build_ms(); }
 
  private:
@@ -82,7 +88,7 @@ class FastVolumeRaycast {
   using Constants = std::array<std::uint32_t, 8>;
   Result<const vk::Pipeline*> pipeline(const Constants& constants, bool tiles);
   std::uint32_t shading(const FastSettings& settings) const {
-    return resources_.item().is_shaded ? (settings.smooth_gradients ? 2 : 1) : 0;
+    return resources_.item().is_shaded ? (settings.smooth_gradients && !resources_.pages() ? 2 : 1) : 0;
   }
   Result<shared::FrameData> write_frame(const CameraRays& rays, const FastSettings& settings);
   Outcome mark(vk::Commands& commands, RayGrid& level, vk::Image& coarser, bool opaque);
@@ -115,6 +121,9 @@ class FastVolumeRaycast {
   };
   EyeState& eye_state() { return eye_states_[eye_index_]; }
 
+  /// Makes the visits of a paged volume's pages visible to the host.
+  void finish_visits(vk::Commands& commands);
+
   vk::Device* device_;
   FastVolumeResources resources_;
   vk::Image placeholder_gradients_;  ///< one voxel, bound if the shading needs no gradients
@@ -123,7 +132,7 @@ class FastVolumeRaycast {
   std::vector<EyeState> eye_states_{1};
   std::size_t eye_index_ = 0;
   RayGrid sample_grid_;
-  std::map<std::pair<Constants, bool>, vk::Pipeline> pipelines_;
+  std::map<std::tuple<Constants, bool, bool>, vk::Pipeline> pipelines_;
   std::array<vk::Pipeline, 2> mark_pipelines_;         // without and with an opaque depth
   std::array<vk::Pipeline, 2> interpolate_pipelines_;  // all pixels, dirty tiles only
   vk::Buffer interpolate_data_;

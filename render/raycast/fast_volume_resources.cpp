@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "engine/base/clock.h"
+#include "engine/base/memory_limit.h"
 #include "engine/field/field_display_range.h"
 #include "render/vk/commands.h"
 
@@ -17,10 +18,17 @@ bool same_look(const VolumeItem& a, const VolumeItem& b) {
   return a.transfer.colors == b.transfer.colors && a.transfer.extinctions == b.transfer.extinctions && a.is_shaded == b.is_shaded;
 }
 
+constexpr double kValuesBeyondMeans = 0.25;  // share of the range by which values may exceed that of a coarser level
+
 ValueInterval active_values(const VolumeItem& item) {
   const double background = item.grid->background();
   const field::GridStats& stats = item.grid->stats();
   ValueInterval values{std::min(stats.min, background), std::max(stats.max, background)};
+  if (item.paged) {
+    // voxels of finer levels lie beyond the means that `grid` has of them
+    const double beyond = kValuesBeyondMeans * (stats.max - stats.min);
+    values = {values.min - beyond, values.max + beyond};
+  }
   // outliers look like the end of the display range, unless the transfer function varies among them
   const DisplayRange& shown = display_range(*item.grid);
   const auto changing = [&](double from, double to) { return active_interval(item.transfer, {from, to}, false); };
@@ -36,6 +44,8 @@ ValueInterval active_values(const VolumeItem& item) {
 }
 
 constexpr double kMaxChange = 0.03;  // maximum mean change by quantization to codes (quantization_change)
+
+constexpr std::uint64_t kMinHostPoolBytes = std::uint64_t{64} << 20;  // pool of pages in the memory of the host, at least
 
 bool shows_values(const VolumeItem& item) {
   struct Answer {
@@ -60,7 +70,10 @@ bool FastVolumeResources::can_quantize(const VolumeItem& item) {
   return resolves_transfer_function(item.transfer, active_values(item)) && shows_values(item);
 }
 
-Outcome FastVolumeResources::prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left) {
+Outcome FastVolumeResources::prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left, bool loads) {
+  if (item.paged) return prepare_pages(item, std::min(settings.max_bytes, left - left / 8), loads);
+  if (pages_) table_ = {};
+  pages_.reset();
   const std::int64_t start = now_ns();
   const bool other_grid = !table_ || version_ != item.grid->version();
   const bool other_look = other_grid || !same_look(item_, item);
@@ -122,6 +135,35 @@ Outcome FastVolumeResources::pack_bricks(bool other_range, std::uint64_t permitt
   return upload_table(table);
 }
 
+Outcome FastVolumeResources::prepare_pages(const VolumeItem& item, std::uint64_t permitted_bytes, bool loads) {
+  const bool other_grid = !pages_ || pages_->grid().version() != item.paged->version();
+  if (other_grid) {
+    const std::int64_t start = now_ns();
+    bricks_.reset();
+    pages_.reset();
+    packed_ = {};
+    map_ = {};
+    gradients_ = {};
+    // a software renderer's device memory is that of the host
+    if (device_->info().is_cpu()) permitted_bytes = std::min(permitted_bytes, std::max(available_memory() / 2, kMinHostPoolBytes));
+    CATENA_TRY(pages_, PagedVolume::create(*device_, item.paged, permitted_bytes));
+    build_ms_ += ms_since(start);
+  }
+  const bool other_look = other_grid || !same_look(item_, item);
+  item_ = item;
+  version_ = item.grid->version();
+  if (other_look) {
+    active_ = active_values(item);
+    const bool has_holes = item.paged->source().type().name.starts_with("float");
+    const CodeScale codes(range_to_encode(*item.grid, active_), has_holes);
+    const PreintegratedTable table = make_preintegrated(item.transfer, codes.lo, codes.per_code, item.is_shaded);
+    CATENA_CHECK(pages_->set_codes(codes, table.appearance));
+    CATENA_CHECK(upload_table(table));
+  }
+  if (loads) CATENA_CHECK(pages_->update());
+  return Done{};
+}
+
 Outcome FastVolumeResources::upload_table(const PreintegratedTable& table) {
   vk::ImageInfo info;
   info.format = VK_FORMAT_R32G32_UINT;
@@ -138,6 +180,14 @@ float FastVolumeResources::gradient_nodes() const { return bricks_ ? float(brick
 ResidentGrid FastVolumeResources::local_geometry() const {
   const auto wide = [](const field::Index3& i) { return Vec3(i.x, i.y, i.z); };
   ResidentGrid layout;
+  if (pages_) {
+    // positions are those of the source's finest level
+    const field::Index3& first = pages_->grid().first_voxel();
+    layout.origin = {-first.x, -first.y, -first.z};
+    layout.box_lo = wide(first);
+    layout.box_hi = wide(first) + pages_->grid().index_box().hi;
+    return layout;
+  }
   layout.origin = bricks_ ? bricks_->scan.origin : packed_.origin;
   if (bricks_) layout.box_lo = wide(bricks_->scan.box_lo);
   layout.box_hi = bricks_ ? wide(bricks_->scan.box_hi) : wide(packed_.size) - Vec3(1.0);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// Device resources of the fast raycast for one volume: its packed codes (dense or as bricks), the pre-integrated table of its transfer
-/// function, the map of bricks that rays skip, and gradients for shading. Rebuilt when the grid, the transfer function or the need for
-/// gradients changes. Frame thread only.
+/// Device resources of the fast raycast for one volume: its packed codes (dense, as bricks, or paged), the pre-integrated table of its
+/// transfer function, the map of bricks that rays skip, and gradients for shading. Rebuilt when the grid, the transfer function or the need
+/// for gradients changes. Frame thread only.
 #pragma once
 #include <optional>
 
+#include "render/raycast/paged_volume.h"
 #include "render/raycast/preintegrated.h"
 #include "render/raycast/render_settings.h"
 #include "render/residency/brick_map.h"
@@ -23,23 +24,28 @@ class FastVolumeResources {
   /// Returns whether 256 codes resolve all features of the transfer function and represent the values with a small error. Caches the last
   /// result per thread.
   static bool can_quantize(const VolumeItem& item);
-  /// Packs what changed. An Error if it takes more than `settings.permitted_bytes`, or more than `left` bytes in addition to what it holds;
-  /// the content is not usable then.
-  Outcome prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left);
+  /// Packs what changed, and loads pages of a paged volume if `loads`. An Error if it takes more than `settings.permitted_bytes`, or more
+  /// than `left` bytes in addition to what it holds; the content is not usable then.
+  Outcome prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left, bool loads);
 
   const VolumeItem& item() const { return item_; }
   /// Returns a counter of changes to the packed data or the appearance.
   std::uint64_t version() const { return appearance_version_; }
   bool is_bricked() const { return bricks_.has_value(); }
-  bool is_masked() const { return !bricks_ && packed_.codes.has_mask; }
-  /// Returns the share of bricks that rays may skip (0 to 1); 1 if packed as bricks.
-  double skippable_share() const { return bricks_ ? 1 : map_.skippable_share; }
-  /// Returns the image of packed codes: PackedAtlas::words or PackedVolume::words.
-  const vk::Image& words() const { return bricks_ ? bricks_->atlas.words : packed_.words; }
+  /// Returns the pages; null: the volume is not paged.
+  PagedVolume* pages() { return pages_ ? &*pages_ : nullptr; }
+  const PagedVolume* pages() const { return pages_ ? &*pages_ : nullptr; }
+  bool is_masked() const { return pages_ ? pages_->codes().has_mask : !bricks_ && packed_.codes.has_mask; }
+  /// Returns the share of bricks that rays may skip (0 to 1); 1 if packed as bricks or paged.
+  double skippable_share() const { return bricks_ || pages_ ? 1 : map_.skippable_share; }
+  /// Returns the field whose index space the local coordinates are relative to.
+  const field::Field& domain() const { return pages_ ? static_cast<const field::Field&>(pages_->grid()) : *item_.grid; }
+  /// Returns the image of packed codes: PagedVolume::words, PackedAtlas::words or PackedVolume::words.
+  const vk::Image& words() const { return pages_ ? pages_->words() : bricks_ ? bricks_->atlas.words : packed_.words; }
   /// Returns the pre-integrated table.
   const vk::Image& table() const { return table_; }
-  /// Returns the map of bricks that rays skip: PackedAtlas::map or HomogeneousMap::image.
-  const vk::Image& map() const { return bricks_ ? bricks_->atlas.map : map_.image; }
+  /// Returns the map of bricks that rays skip: PagedVolume::map, PackedAtlas::map or HomogeneousMap::image.
+  const vk::Image& map() const { return pages_ ? pages_->map() : bricks_ ? bricks_->atlas.map : map_.image; }
   /// Returns the gradients; empty without smooth gradients.
   const vk::Image& gradients() const { return bricks_ ? bricks_->atlas.gradients : gradients_; }
   float gradient_nodes() const;  ///< gradient samples per brick and axis; 0: one gradient per voxel of the whole volume
@@ -50,6 +56,7 @@ class FastVolumeResources {
  private:
   Outcome pack_dense(bool gradients, bool other_range);
   Outcome pack_bricks(bool other_range, std::uint64_t permitted_bytes);
+  Outcome prepare_pages(const VolumeItem& item, std::uint64_t permitted_bytes, bool loads);
   Outcome upload_table(const PreintegratedTable& table);
 
   vk::Device* device_;
@@ -66,6 +73,7 @@ class FastVolumeResources {
     PackedAtlas atlas;
   };
   std::optional<Bricks> bricks_;
+  std::optional<PagedVolume> pages_;
   vk::Image table_;
   double build_ms_ = 0;
 };

@@ -67,6 +67,11 @@ struct RenderSettings {
   /// While only opaque objects move, only the rays of the tiles they cover (fast raycast: also of nearby tiles) are re-marched, for every
   /// eye. The image is identical to the bit, but its time is not representative.
   bool reuse_rays = false;
+  /// Images of volumes and slices that are larger than memory are complete: what they show is awaited. False: they show what has been read
+  /// so far, and what is missing is read in the background (Renderer::paging()).
+  bool waits_for_pages = false;
+  /// The caller divides an image whose pages do not fit (PagingStats::finest_level): no coarser ones are read for it.
+  bool divides_for_pages = false;
   /// > 0: the rays of every n-th pixel in each direction are marched a second time, after the image, for Renderer::ray_depth().
   std::uint32_t ray_depth_spacing = 0;
 };

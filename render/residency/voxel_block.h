@@ -50,6 +50,10 @@ void widen_to_cells(ValueInterval& range, const VoxelBlock& block, const ValueIn
 /// Returns the range without the part beyond both `active` and the grid's display range: outliers are clamped instead of taking up codes.
 ValueInterval clip_outliers(ValueInterval range, const field::ScalarGrid& grid, const ValueInterval& active);
 
+/// Returns the range of values to encode for a grid whose image depends on the values in `active`: that of all cells which touch it,
+/// without outliers.
+ValueInterval range_to_encode(const field::ScalarGrid& grid, const ValueInterval& active);
+
 /// Slabs of a grid: kSlabPlanes planes at a time, processed in parallel, each with `margin_before` extra planes in front and `margin_after`
 /// behind, as far as the grid has them: the grid is never copied as a whole.
 struct SlabRange {
@@ -73,6 +77,7 @@ struct CodeScale {
   double lo = 0, per_code = 0;
   bool has_mask = false;
 
+  bool operator==(const CodeScale&) const = default;
   CodeScale() = default;
   CodeScale(const ValueInterval& range, bool is_masked);
   std::uint8_t min_code() const { return has_mask ? 1 : 0; }

@@ -100,6 +100,7 @@ DeviceFeatures::DeviceFeatures() {
 void enable_required(DeviceFeatures& features) {
   features.core.features.shaderClipDistance = VK_TRUE;
   features.core.features.independentBlend = VK_TRUE;
+  features.core.features.fragmentStoresAndAtomics = VK_TRUE;
   features.v12.timelineSemaphore = VK_TRUE;
   features.v12.scalarBlockLayout = VK_TRUE;
   features.v13.dynamicRendering = VK_TRUE;
@@ -123,6 +124,7 @@ std::string missing_requirement(VkPhysicalDevice physical, VkSurfaceKHR surface)
   vkGetPhysicalDeviceFeatures2(physical, &features.core);
   if (!features.core.features.shaderClipDistance) return "shaderClipDistance";
   if (!features.core.features.independentBlend) return "independentBlend";
+  if (!features.core.features.fragmentStoresAndAtomics) return "fragmentStoresAndAtomics";
   if (!features.v12.timelineSemaphore) return "timelineSemaphore";
   if (!features.v12.scalarBlockLayout) return "scalarBlockLayout";
   if (!features.v13.dynamicRendering) return "dynamicRendering";

@@ -10,7 +10,13 @@ layout(constant_id = 7) const uint HALF_OPACITY_DEPTH = 0;  // output: depth of 
 
 layout(binding = 4) uniform utexture2D preintegrated;  // 256 x 256
 layout(binding = 8) uniform sampler3D gradients;       // render/residency/gradient_volume.h
+#ifdef IS_PAGED
+#include "shaders/lib/paged.glsl"
+const uint IS_BRICKED = 0u;
+#else
 #include "shaders/lib/packed.glsl"
+float voxel_width(PackedSample s) { return 1.0; }
+#endif
 
 #define SMALL_BRICK_SIZE 4.0
 #define SEARCH_VOXELS 1.5  // maximum step of the search for the first visible value
@@ -43,6 +49,9 @@ struct RaySample {
 // Returns the gradient at a sample, in codes per world unit.
 vec3 normal_at(RaySample at) {
   if (SHADED != 2u) return frame.grids[0].world_gradient * at.s.gradient;
+#ifdef IS_PAGED
+  return frame.grids[0].world_gradient * at.s.gradient;
+#else
   vec3 uvw = (at.p + 0.5) / (frame.grids[0].hi + 1.0);
   if (IS_BRICKED != 0u) {
     const vec3 brick = floor(clamp(floor(at.p), frame.grids[0].lo, frame.grids[0].hi - 1.0) * 0.125);
@@ -51,6 +60,7 @@ vec3 normal_at(RaySample at) {
     if (!is_stored(at.s.brick)) return vec3(0.0);
   }
   return frame.grids[0].world_gradient * textureLod(gradients, uvw, 0.0).rgb;
+#endif
 }
 
 // Returns the mean shading over half a segment, along which the derivative goes from a to b. `across2`: squared length of the gradient's
@@ -80,20 +90,26 @@ RaySample sample_at(March m, float t) {
 // Returns the sample at the end of the segment that begins at `from`. `curved`: 0 if the segment skips homogeneous bricks, where values are
 // linear for the table.
 RaySample next_sample(March m, RaySample from, out float curved) {
-  float next = from.t + m.h;
+  const float h = m.h * voxel_width(from.s);
+  float next = from.t + h;
   curved = 1.0;
   if (SKIPS_EMPTY != 0u) {
+#ifdef IS_PAGED
+    const float leave = homogeneous_exit(from.s, from.p, m.ray.direction, m.inverse, m.is_forward_axis);
+    const float d = leave;
+#else
     const float size = IS_BRICKED != 0u ? 8.0 : SMALL_BRICK_SIZE;
     const vec3 brick = min(floor(from.p * (1.0 / size)), ceil(frame.grids[0].hi * (1.0 / size)) - 1.0);
     const float d = float(IS_BRICKED != 0u ? from.s.brick >> 24 & 127u : texelFetch(homogeneous_map, ivec3(brick), 0).r);
     const vec3 way = (mix(brick + 1.0 - d, brick + d, m.is_forward_axis) * size - from.p) * m.inverse;
     const float leave = min(min(way.x, way.y), way.z);
-    if (d > 0.0 && leave > m.h) {
+#endif
+    if (d > 0.0 && leave > h) {
       next = from.t + leave;
       curved = 0.0;
     }
   }
-  if (next > m.end - 1e-3 * m.h) next = m.end;
+  if (next > m.end - 1e-3 * h) next = m.end;
   return sample_at(m, next);
 }
 
@@ -218,6 +234,9 @@ vec4 march_packed(vec2 q, float end) {
       last = second.yzw;
     }
     transmittance = after;
+#ifdef IS_PAGED
+    seen_transmittance = transmittance;
+#endif
     s = e;
   }
   if (HALF_OPACITY_DEPTH != 0u) return vec4(NO_DEPTH, 0.0, 0.0, 0.0);

@@ -6,6 +6,7 @@
 #include "shaders/shared/language.h"
 
 #define COARSE_APRON 2
+#define MAX_PAGE_LEVELS 16
 
 CATENA_SHARED_BEGIN
 
@@ -19,6 +20,17 @@ struct RayGridData {
   float gradient_nodes;          // gradient samples per brick and axis; 0: one gradient per voxel of the whole volume
   uint grid_width, grid_height;  // size of this ray grid, texels
   uint only_marked, only_dirty;  // 1: only marked tiles, only dirty tiles are rendered
+};
+
+// Level of a paged volume (render/residency/page_table.h), voxels as seen from the finest level.
+struct PageLevelData {
+  vec3 scale, offset;  // position in the level = scale * position in the finest level + offset
+  vec3 entries;        // page table entries per page
+  vec3 last;           // last page
+  float step;          // finest voxels per voxel, along the axis with the fewest
+};
+struct PageLevels {
+  PageLevelData levels[MAX_PAGE_LEVELS];
 };
 
 // Interpolation from every 2nd pixel to the image, in invocations from ray grid point first_x, first_y on.

@@ -187,6 +187,11 @@ bool RenderRun::choose_settings(bool single_image) {
   render::QualityChoice choice;
   {
     ProgressLine progress("choosing the quality", 1);
+    // errors are measured on the bricks that the image shows
+    render::RenderSettings complete = render::draft_settings();
+    complete.waits_for_pages = true;
+    if (std::ranges::any_of(sample.packet.volumes, [](const render::VolumeItem& item) { return item.paged != nullptr; }))
+      machine(frames_->renderer->draw(sample.packet, complete));
     choice = machine(render::choose_quality(*frames_->renderer, sample.packet, goal, [&progress](double done) { progress.update(done); }));
   }
   stats_.settings_search_ms += ms_since(start);
@@ -233,6 +238,8 @@ Outcome RenderRun::draw() {
   stats_.first_frame_ms = frames_->first_ms;
   stats_.downsampled_grids = frames_->renderer->stats().downsampled_grids;
   for (const render::GridDownsampling& coarser : stats_.downsampled_grids) print_line(coarser.message());
+  if (const render::PagingStats bricks = frames_->renderer->paging(); bricks.finest_level > 0 || bricks.resident < bricks.visible)
+    print_line(bricks.message());
   print_scene_notes(*scene_);
   say(fmt::format("{}: {}x{}, {}{}, on {}", o_.output, output_size_.width, output_size_.height, describe_contents(first_),
                   stats_.tiles > 1 ? fmt::format(", {} tiles", stats_.tiles) : "", stats_.device));

@@ -104,7 +104,8 @@ Outcome ServeSession::run() {
 // ---- frames ----
 
 Outcome ServeSession::show_next_frame() {
-  const bool moved = std::exchange(has_changed_, false), probe_moved = std::exchange(probe_moved_, false);
+  const bool moved = std::exchange(has_changed_, false) || encoder_.renderer().paging().has_arrived,
+             probe_moved = std::exchange(probe_moved_, false);
   if (const auto next = frame_builder_.next_frame(moved, probe_moved, width_, height_)) {
     if (const Outcome drawn = encoder_.draw(frame_builder_, scheduler_, frame_times_, *next, width_, height_); !drawn) {
       if (drawn.error().system_failure) return drawn;

@@ -27,6 +27,12 @@ class Brick {
   Brick(const NumberType& type, const Index3& size, std::vector<std::byte> values) : type_(type), size_(size), values_(std::move(values)) {}
   /// Returns the value of a voxel, by its position in the brick, rounded to a 32-bit float as when a whole grid is loaded.
   float value(int x, int y, int z) const noexcept;
+  /// Returns the number type of the voxels.
+  const NumberType& type() const { return type_; }
+  /// Returns the number of voxels along each axis.
+  const Index3& size() const { return size_; }
+  /// Returns the voxels, x fastest.
+  std::span<const std::byte> values() const { return values_; }
   /// Returns the memory of the values, bytes.
   std::size_t bytes() const { return values_.size(); }
 

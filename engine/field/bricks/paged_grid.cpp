@@ -25,7 +25,10 @@ struct PagedGrid::Cell {
 };
 
 PagedGrid::PagedGrid(std::shared_ptr<const BrickSource> source, const Part& part, std::shared_ptr<const ScalarGrid> coarse)
-    : source_(std::move(source)), first_(part.first), counts_(brick_counts(source_->levels().front())), coarse_(std::move(coarse)) {
+    : PagedGrid(std::make_shared<RecentBricks>(std::move(source)), part, std::move(coarse)) {}
+
+PagedGrid::PagedGrid(std::shared_ptr<RecentBricks> bricks, const Part& part, std::shared_ptr<const ScalarGrid> coarse)
+    : bricks_(std::move(bricks)), first_(part.first), counts_(brick_counts(source().levels().front())), coarse_(std::move(coarse)) {
   const Index3& size = part.size;
   CATENA_ASSERT(std::min({size.x, size.y, size.z}) >= 2 && coarse_->interpolation() != Interpolation::cubic);
   const Index3 last{size.x - 1, size.y - 1, size.z - 1};
@@ -35,7 +38,8 @@ PagedGrid::PagedGrid(std::shared_ptr<const BrickSource> source, const Part& part
 
 std::shared_ptr<const PagedGrid> PagedGrid::over(std::shared_ptr<const ScalarGrid> coarse, const Mapping& mapping) const {
   const Index3 last = range_.last_voxel();
-  return std::make_shared<const PagedGrid>(source_, Part{first_, {last.x + 1, last.y + 1, last.z + 1}, mapping}, std::move(coarse));
+  const Part part{first_, {last.x + 1, last.y + 1, last.z + 1}, mapping};
+  return std::shared_ptr<const PagedGrid>(new PagedGrid(bricks_, part, std::move(coarse)));
 }
 
 AnyField with_interpolation(AnyField field, Interpolation linear_or_nearest) {
@@ -62,13 +66,7 @@ Index3 PagedGrid::brick_of(const Vec3& index) const noexcept {
   return {axis(index.x, first_.x, last.x), axis(index.y, first_.y, last.y), axis(index.z, first_.z, last.z)};
 }
 
-Result<std::shared_ptr<const Brick>> PagedGrid::read(const Index3& brick) const {
-  const Index3 size = brick_size(source_->levels().front(), brick);
-  const std::size_t voxels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z);
-  std::vector<std::byte> values(voxels * source_->type().bytes);
-  CATENA_CHECK(source_->read(0, brick, values));
-  return std::make_shared<const Brick>(source_->type(), size, std::move(values));
-}
+Result<std::shared_ptr<const Brick>> PagedGrid::read(const Index3& brick) const { return bricks_->read(0, brick); }
 
 /// Returns the value of the coarse grid at a node of this grid.
 double PagedGrid::coarse_value(const Vec3& index, Cursor& cursor) const noexcept {

@@ -10,6 +10,7 @@
 
 #include "engine/field/bricks/brick_snapshot.h"
 #include "engine/field/bricks/brick_source.h"
+#include "engine/field/bricks/recent_bricks.h"
 #include "engine/field/grid/cell_range.h"
 #include "engine/field/grid/grid.h"
 
@@ -41,7 +42,11 @@ class PagedGrid final : public CellField {
   /// Returns the same part of the source over another coarse grid, at the position of `mapping`.
   std::shared_ptr<const PagedGrid> over(std::shared_ptr<const ScalarGrid> coarse, const Mapping& mapping) const;
   /// Returns the source of the bricks.
-  const BrickSource& source() const { return *source_; }
+  const BrickSource& source() const { return bricks_->source(); }
+  /// Returns the bricks in memory, which all grids over the same source share.
+  RecentBricks& bricks() const { return *bricks_; }
+  /// Returns the voxel of the source's finest level that has the index (0, 0, 0).
+  const Index3& first_voxel() const { return first_; }
   /// Returns the brick that contains a voxel of the grid's index space, clamped to the grid.
   Index3 brick_of(const Vec3& index) const noexcept;
   /// Returns the identity of a brick of the source's finest level.
@@ -58,7 +63,9 @@ class PagedGrid final : public CellField {
   const Cell& fetch(const Index3& base, Cursor& cursor) const noexcept;
   double coarse_value(const Vec3& index, Cursor& cursor) const noexcept;
 
-  std::shared_ptr<const BrickSource> source_;
+  PagedGrid(std::shared_ptr<RecentBricks> bricks, const Part& part, std::shared_ptr<const ScalarGrid> coarse);
+
+  std::shared_ptr<RecentBricks> bricks_;
   Index3 first_, counts_;  ///< First voxel in level 0; bricks of level 0.
   CellRange range_;
   std::shared_ptr<const ScalarGrid> coarse_;

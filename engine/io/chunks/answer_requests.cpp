@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "engine/io/chunks/answer_requests.h"
+#include "engine/base/memory_limit.h"
 
 #include <fmt/format.h>
 #include <sys/mman.h>
@@ -135,6 +136,7 @@ Result<std::uint64_t> answer(Answers& answers, const StoreRequest& request, cons
 }  // namespace
 
 int answer_requests() {
+  retain_freed_memory();  // each request allocates and frees chunks
   void* start = ::mmap(nullptr, field::kStoreMemoryBytes, PROT_READ | PROT_WRITE, MAP_SHARED, field::kStoreMemoryFd, 0);
   if (start == MAP_FAILED) return 2;
   Answers answers({static_cast<std::byte*>(start), field::kStoreMemoryBytes});

@@ -134,9 +134,11 @@ Result<AnyField> load_part(const LoadRequest& request, const StoreDescription& a
   file.newest_mtime_ns = all.newest_mtime_ns;
   if (part.level != finest || part.level > 0) {
     CATENA_TRY(const StoreBox full, needed_box(request.path, grid, grid.levels.front(), request.crop));
-    file.notes.push_back(fmt::format("level {} of {}, {} of {} voxels{}", part.level, grid.levels.size(), size_text(part.box.size),
-                                     size_text(full.size),
-                                     part.level != finest ? ": the memory limit allows no finer one (--memory MB allows more)" : ""));
+    file.notes.push_back(
+        fmt::format("level {} of {}, {} of {} voxels{}", part.level, grid.levels.size(), size_text(part.box.size), size_text(full.size),
+                    part.level == finest ? ""
+                    : request.level == 0 ? ": the memory limit allows no finer one (--memory MB); volumes, slices and links read the finest"
+                                         : ": the memory limit allows no finer one (--memory MB allows more)"));
   }
   if (!(part.grid_size() == part.box.size)) file.notes.push_back("flat data get a thickness of one voxel");
   CATENA_TRY(AnyField field, load_dense(file));

@@ -23,9 +23,8 @@ class StoreBricks final : public BrickSource {
   BrickRange range(int level, const Index3& brick) const noexcept override;
   Outcome read(int level, const Index3& brick, std::span<std::byte> values) const override;
 
-  /// Finds the bricks of a level for which nothing is stored, by listing the store unless there is an index. Blocks, for a second per
-  /// million stored chunks.
-  Outcome find_empty_bricks(int level) const;
+  /// Lists the store, unless there is an index, which takes a second per million stored chunks.
+  Outcome find_empty_bricks(int level) const override;
 
  private:
   struct Ranges {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "shaders/shared/fast_volume.h"
 #include "shaders/shared/frame.h"
 #include "shaders/shared/layers.h"
 #include "shaders/shared/overlay.h"
@@ -63,6 +64,13 @@ TEST(SharedStructs, FrameAndGridData) {
   }
 }
 
+TEST(SharedStructs, PageLevels) {
+  Offsets level{MEMBER(PageLevelData, scale), MEMBER(PageLevelData, offset), MEMBER(PageLevelData, entries), MEMBER(PageLevelData, last),
+                MEMBER(PageLevelData, step)};
+  level["[]"] = sizeof(PageLevelData);
+  expect_offsets({"volume_paged.frag"}, "PageLevelData", level);
+}
+
 TEST(SharedStructs, Vignette) {
   expect_offsets({"vignette.frag"}, "VignetteData",
                  {MEMBER(VignetteData, first), MEMBER(VignetteData, step), MEMBER(VignetteData, strength), MEMBER(VignetteData, inner),
@@ -104,11 +112,11 @@ TEST(SharedStructs, LayerData) {
 }
 
 TEST(SharedStructs, SliceData) {
-  expect_offsets({"slice.frag"}, "SliceData",
-                 {MEMBER(SliceData, plane), MEMBER(SliceData, normal), MEMBER(SliceData, clip_slack), MEMBER(SliceData, is_lit),
-                  MEMBER(SliceData, color_last), MEMBER(SliceData, level_count), MEMBER(SliceData, line_color),
-                  MEMBER(SliceData, half_width), MEMBER(SliceData, depth_bias), MEMBER(SliceData, hidden_label),
-                  MEMBER(SliceData, threshold)});
+  expect_offsets(
+      {"slice.frag"}, "SliceData",
+      {MEMBER(SliceData, plane), MEMBER(SliceData, normal), MEMBER(SliceData, clip_slack), MEMBER(SliceData, is_lit),
+       MEMBER(SliceData, color_last), MEMBER(SliceData, level_count), MEMBER(SliceData, line_color), MEMBER(SliceData, half_width),
+       MEMBER(SliceData, depth_bias), MEMBER(SliceData, hidden_label), MEMBER(SliceData, threshold)});
 }
 
 TEST(SharedStructs, ComposeData) {

@@ -58,6 +58,7 @@ void draw_memory(const render::RenderStats& stats) {
   const std::string text = megabytes(stats.gpu_bytes) + " of " + megabytes(stats.gpu_budget);
   ImGui::ProgressBar(static_cast<float>(share), {-1, 0}, text.c_str());
   show_tooltip("memory used on " + stats.device + ", of the maximum (--gpu-memory)");
+  if (const std::string bricks = stats.paging.message(); !bricks.empty()) ImGui::TextWrapped("%s", bricks.c_str());
   for (const render::GridDownsampling& coarser : stats.downsampled_grids) ImGui::TextWrapped("%s", coarser.message().c_str());
   for (const std::string& note : stats.warnings) ImGui::TextWrapped("%s", note.c_str());
 }

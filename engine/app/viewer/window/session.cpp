@@ -240,9 +240,10 @@ std::optional<Failure> Session::run() {
     const bool pulsed = animate_bands(), reloaded = viewport_.reload_shaders();
     const bool head_moved = update_head();
     const bool turned = camera_.update(flies ? context_.window.held_fly_keys() : FlyKeys{});
+    const render::PagingStats bricks = viewport_.presenter().renderer().paging();
     const bool resized = viewport_.is_stale() || viewport_.update_layout();
     const bool moved = by_input.view || std::exchange(content_changed_, false) || opened || edited || resized || pulsed || reloaded ||
-                       turned || head_moved || context_.frame_times.count() == 0;
+                       turned || head_moved || bricks.has_arrived || context_.frame_times.count() == 0;
     if (in_headset && moved) viewport_.frame_builder().mark_changed();
     auto next = in_headset ? viewport_.frame_builder().interactive_frame() : next_frame(moved, state_changed || by_input.probe);
     if (!next && viewport_.frame_builder().idle_s() >= kEstimateS && std::exchange(estimate_requested_, false))

@@ -225,10 +225,11 @@ std::optional<Failure> Viewport::draw(const FrameRequest& next, bool for_file) {
   }
   const int recoveries = presenter_->recovery_count();
   const render::RenderTimer clock(presenter_->renderer());
-  auto drawn = presenter_->draw(*packet, next.settings);
+  render::RenderSettings settings = next.settings;
+  settings.waits_for_pages = for_file;
+  auto drawn = presenter_->draw(*packet, settings);
   // falls back to the embedded shaders if those of --shaders fail
-  if (!drawn && reload_ && reload_->fall_back(presenter_->renderer(), drawn.error().message))
-    drawn = presenter_->draw(*packet, next.settings);
+  if (!drawn && reload_ && reload_->fall_back(presenter_->renderer(), drawn.error().message)) drawn = presenter_->draw(*packet, settings);
   if (!drawn && context_.frame_times.count() > 0 && !drawn.error().system_failure && !presenter_->renderer().device().is_lost()) {
     // what cannot be drawn together comes from an edit: the last image stays
     context_.state.show_message(drawn.error().message, true);

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+#include "render/residency/page_loader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <condition_variable>
+#include <cstring>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "engine/base/clock.h"
+#include "engine/base/console.h"
+#include "engine/base/threads.h"
+#include "engine/field/bricks/with_number_type.h"
+
+namespace catena::render {
+
+namespace {
+
+using field::Brick;
+using field::Index3;
+using CodeArray = std::vector<std::uint8_t>;
+
+constexpr std::size_t kRow = kPageNodes, kPlane = kRow * kPageNodes;
+constexpr std::int64_t kRetryNs = 1'000'000'000;  // time after which an unreadable page is tried again
+constexpr std::size_t kMaxReady = 64;             // encoded pages that wait to be taken, 0.6 MB each
+
+/// The bricks that a page's nodes come from: itself and those behind it; bit 0 of the index: along x, 1: y, 2: z. Null: the level ends.
+using Corner = std::array<std::shared_ptr<const Brick>, 8>;
+
+Result<Corner> read_bricks(const field::PagedGrid& grid, const PageLevel& level, const Index3& brick) {
+  Corner bricks;
+  for (int c = 0; c < 8; ++c) {
+    const Index3 at{brick.x + (c & 1), brick.y + (c >> 1 & 1), brick.z + (c >> 2)};
+    if (at.x >= level.counts.x || at.y >= level.counts.y || at.z >= level.counts.z) continue;
+    CATENA_TRY(bricks[std::size_t(c)], grid.bricks().read(level.source_level, at));
+  }
+  return bricks;
+}
+
+/// Encodes `count` voxels of a row of a brick.
+void encode_row(const Brick& brick, std::size_t first, int count, const CodeScale& codes, std::uint8_t* out) {
+  const auto zero = float(codes.lo), scale = codes.per_code > 0 ? float(1 / codes.per_code) : 0.0f, low = float(codes.min_code());
+  field::with_number_type(brick.type(), [&](auto kind) {
+    using T = decltype(kind);
+    const std::byte* in = brick.values().data() + first * sizeof(T);
+    for (int i = 0; i < count; ++i) {
+      T number;
+      std::memcpy(&number, in + std::size_t(i) * sizeof(T), sizeof(T));
+      const auto value = static_cast<float>(number);
+      const float code = (value - zero) * scale + 0.5f;
+      out[i] = std::isfinite(value) ? std::uint8_t(code > low ? (code < 255.0f ? code : 255.0f) : low) : CodeScale::kInvalidCode;
+    }
+  });
+}
+
+/// Encodes the nodes of a page.
+CodeArray encode_nodes(const Corner& bricks, const CodeScale& codes) {
+  CodeArray out(kPlane * kPageNodes);
+  const Index3& own = bricks[0]->size();
+  const auto clamped = [](int node, int size, bool has_next) { return node < size || (node == kPageEdge && has_next) ? node : size - 1; };
+  for (int z = 0; z < kPageNodes; ++z)
+    for (int y = 0; y < kPageNodes; ++y) {
+      std::uint8_t* row = &out[std::size_t(z) * kPlane + std::size_t(y) * kRow];
+      const int at_z = clamped(z, own.z, bricks[4] != nullptr), at_y = clamped(y, own.y, bricks[2] != nullptr);
+      const int side = (at_y == kPageEdge ? 2 : 0) | (at_z == kPageEdge ? 4 : 0);
+      const auto encode = [&](const Brick& brick, int count, std::uint8_t* to) {
+        const Index3& n = brick.size();
+        const auto y_in = std::size_t(at_y % kPageEdge), z_in = std::size_t(at_z % kPageEdge);
+        encode_row(brick, (z_in * std::size_t(n.y) + y_in) * std::size_t(n.x), count, codes, to);
+      };
+      encode(*bricks[std::size_t(side)], own.x, row);
+      const auto& next = bricks[std::size_t(side | 1)];
+      if (next)
+        encode(*next, 1, row + kPageEdge);
+      else
+        std::fill(row + own.x, row + kRow, row[own.x - 1]);
+    }
+  return out;
+}
+
+/// Returns the range of the codes of each sub-brick.
+void find_ranges(const CodeArray& codes, bool masked, EncodedPage& page) {
+  std::size_t at = 0;
+  for (int z = 0; z < kPageEdge; z += kBrickSize)
+    for (int y = 0; y < kPageEdge; y += kBrickSize)
+      for (int x = 0; x < kPageEdge; x += kBrickSize) {
+        CodeRange range;
+        for (int k = z; k <= z + kBrickSize; ++k)
+          for (int j = y; j <= y + kBrickSize; ++j) {
+            const std::uint8_t* row = &codes[std::size_t(k) * kPlane + std::size_t(j) * kRow + std::size_t(x)];
+            for (int i = 0; i <= kBrickSize; ++i) {
+              const bool unused = masked && row[i] == CodeScale::kInvalidCode;
+              range.min = std::min(range.min, unused ? std::uint8_t(255) : row[i]);
+              range.max = std::max(range.max, row[i]);
+              range.has_unused = range.has_unused || unused;
+            }
+          }
+        page.ranges[at++] = range;
+      }
+}
+
+}  // namespace
+
+Result<EncodedPage> encode_page(const field::PagedGrid& grid, const std::vector<PageLevel>& levels, const PageId& id,
+                                const CodeScale& codes) {
+  CATENA_TRY(const Corner bricks, read_bricks(grid, levels[id.level], id.brick));
+  const CodeArray nodes = encode_nodes(bricks, codes);
+  EncodedPage page{id, std::vector<std::uint16_t>(kPageWords), {}};
+  find_ranges(nodes, codes.has_mask, page);
+  for (std::size_t line = 0; line < kPlane; ++line) {
+    const std::uint8_t* row = &nodes[line * kRow];
+    std::uint16_t* out = &page.words[line * kPageEdge];
+    for (std::size_t x = 0; x < kPageEdge; ++x) out[x] = std::uint16_t(row[x] | row[x + 1] << 8);
+  }
+  return page;
+}
+
+struct PageLoader::Impl {
+  std::shared_ptr<const field::PagedGrid> grid;
+  std::vector<PageLevel> levels;
+
+  mutable std::mutex mutex;
+  std::condition_variable planned, finished;
+  CodeScale codes;
+  std::deque<PageId> wanted;
+  std::vector<PageId> reading;
+  std::deque<EncodedPage> ready;
+  std::vector<std::pair<PageId, std::int64_t>> unreadable;  ///< with the time of the last attempt
+  bool is_listing = true, has_listed = false, stop = false, has_complained = false;
+  std::vector<std::thread> threads;
+
+  void list();
+  void read();
+  bool has_failed_lately(const PageId& id) const {
+    return std::ranges::any_of(unreadable, [&](const auto& failed) { return failed.first == id && now_ns() - failed.second < kRetryNs; });
+  }
+};
+
+/// Finds the bricks that the store does not have. What it cannot list is read.
+void PageLoader::Impl::list() {
+  const bool done(grid->source().find_empty_bricks(0));
+  const std::scoped_lock lock(mutex);
+  is_listing = false;
+  has_listed = done;
+  finished.notify_all();
+}
+
+/// Loop of a thread.
+void PageLoader::Impl::read() {
+  std::unique_lock lock(mutex);
+  for (;;) {
+    planned.wait(lock, [&] { return stop || (!wanted.empty() && ready.size() < kMaxReady); });
+    if (stop) return;
+    const PageId id = wanted.front();
+    wanted.pop_front();
+    reading.push_back(id);
+    const CodeScale used = codes;
+    lock.unlock();
+    auto page = encode_page(*grid, levels, id, used);
+    lock.lock();
+    std::erase(reading, id);
+    std::erase_if(unreadable, [&](const auto& failed) { return failed.first == id; });
+    if (!page) {
+      unreadable.emplace_back(id, now_ns());
+      if (!std::exchange(has_complained, true)) print_message("note: " + page.error().message + "; a coarser level is shown there");
+    } else if (used == codes) {
+      ready.push_back(std::move(*page));
+    }
+    finished.notify_all();
+  }
+}
+
+PageLoader::PageLoader(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Result<std::unique_ptr<PageLoader>> PageLoader::start(std::shared_ptr<const field::PagedGrid> grid, std::vector<PageLevel> levels) {
+  std::unique_ptr<PageLoader> loader(new PageLoader(std::make_unique<Impl>()));
+  Impl* impl = loader->impl_.get();
+  impl->grid = std::move(grid);
+  impl->levels = std::move(levels);
+  for (int i = 0; i < kThreads; ++i) {
+    CATENA_TRY(std::thread reader, start_thread("a reader of pages", [impl, i] {
+                 if (i == 0) impl->list();
+                 impl->read();
+               }));
+    impl->threads.push_back(std::move(reader));
+  }
+  return loader;
+}
+
+PageLoader::~PageLoader() {
+  {
+    const std::scoped_lock lock(impl_->mutex);
+    impl_->stop = true;
+  }
+  impl_->planned.notify_all();
+  for (std::thread& thread : impl_->threads) thread.join();
+}
+
+void PageLoader::set_wanted(std::vector<PageId> wanted, const CodeScale& codes) {
+  const std::scoped_lock lock(impl_->mutex);
+  if (!(codes == impl_->codes)) impl_->ready.clear();
+  impl_->codes = codes;
+  const auto is_known = [&](const PageId& id) {
+    return std::ranges::find(impl_->reading, id) != impl_->reading.end() || impl_->has_failed_lately(id) ||
+           std::ranges::any_of(impl_->ready, [&](const EncodedPage& page) { return page.id == id; });
+  };
+  std::erase_if(wanted, is_known);
+  impl_->wanted.assign(wanted.begin(), wanted.end());
+  impl_->planned.notify_all();
+}
+
+std::vector<EncodedPage> PageLoader::take(std::size_t max_pages) {
+  const std::scoped_lock lock(impl_->mutex);
+  std::vector<EncodedPage> pages;
+  while (!impl_->ready.empty() && pages.size() < max_pages) {
+    pages.push_back(std::move(impl_->ready.front()));
+    impl_->ready.pop_front();
+  }
+  impl_->planned.notify_all();
+  return pages;
+}
+
+bool PageLoader::has_arrived() const {
+  const std::scoped_lock lock(impl_->mutex);
+  return !impl_->ready.empty();
+}
+
+bool PageLoader::wait() {
+  std::unique_lock lock(impl_->mutex);
+  impl_->finished.wait(lock, [&] { return !impl_->ready.empty() || (impl_->wanted.empty() && impl_->reading.empty()); });
+  return !impl_->ready.empty();
+}
+
+bool PageLoader::take_found_empty(bool waits) {
+  std::unique_lock lock(impl_->mutex);
+  if (waits) impl_->finished.wait(lock, [&] { return !impl_->is_listing; });
+  return !impl_->is_listing && std::exchange(impl_->has_listed, false);
+}
+
+}  // namespace catena::render
