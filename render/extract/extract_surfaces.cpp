@@ -134,7 +134,7 @@ bool is_same_plane(const SliceItem& a, const SliceItem& b) {
 }
 
 /// Returns whether the slice's plane meets the grid's domain.
-bool cuts(const scene::Slice& slice, const field::ScalarGrid& grid) {
+bool cuts(const scene::Slice& slice, const field::Field& grid) {
   const Vec3 normal = direction(slice.normal);
   double min_distance = HUGE_VAL, max_distance = -HUGE_VAL;
   for (int i = 0; i < 8; ++i) {
@@ -220,12 +220,13 @@ Outcome extract_slices(const scene::Scene& scene, FramePacket& packet) {
     const std::shared_ptr<const field::ScalarGrid> grid = sliced_grid(scene, e);
     const scene::Slice& slice = scene.entities.get<scene::Slice>(e);
     // a widget may be dragged out of the domain: then nothing is drawn, without an error
-    if (!slice.widget && !cuts(slice, *grid))
+    const std::shared_ptr<const field::PagedGrid>& paged = scene::rendered_field(scene, slice.color_by.field).paged;
+    if (!slice.widget && !cuts(slice, paged ? static_cast<const field::Field&>(*paged) : *grid))
       return json::error_at(slice.where, "the slice's plane does not meet the domain of \"" + entity_name(scene, slice.color_by.field) +
                                              "\"; a plane that cuts it was expected");
     SliceItem item;
     item.grid = grid;
-    item.paged = scene::rendered_field(scene, slice.color_by.field).paged;
+    item.paged = paged;
     item.point = slice.point;
     item.normal = slice.normal;
     const DisplayRange& range = display_range(*grid);

@@ -41,6 +41,7 @@ FastSettings exact_rays(const RenderSettings& settings) {
   fast.step_voxels = settings.step_voxels;
   fast.termination = settings.termination;
   fast.skip_empty = settings.skip_empty;
+  fast.smooth_gradients = true;
   return fast;
 }
 

@@ -377,7 +377,7 @@ void Renderer::restore_shaders() {
 std::string PagingStats::message() const {
   if (visible == 0) return {};
   std::string text = fmt::format("{} of {} bricks", resident, visible);
-  if (finest_level > 0) text += fmt::format(" of level {}: the device's memory holds no more (--gpu-memory MB)", finest_level);
+  if (finest_level > 0) text += fmt::format(" of level {}: the memory holds no more (--gpu-memory MB, --memory MB)", finest_level);
   return text;
 }
 

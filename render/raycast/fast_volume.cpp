@@ -235,7 +235,8 @@ Outcome FastVolumeRaycast::draw(vk::Commands& commands, RayGrid& level, const Dr
       {5, vk::DescriptorKind::texture, nullptr, &resources_.map(), nullptr},
       {6, vk::DescriptorKind::texture, nullptr, draw.coarser ? draw.coarser : draw.placeholder, nullptr},
       {7, vk::DescriptorKind::texture, nullptr, &level.marks, nullptr},
-      {8, vk::DescriptorKind::sampled, nullptr, draw.shading == 2 ? &resources_.gradients() : &placeholder_gradients_, &linear_},
+      {8, vk::DescriptorKind::sampled, nullptr,
+       draw.shading == 2 && !resources_.pages() ? &resources_.gradients() : &placeholder_gradients_, &linear_},
       {9, vk::DescriptorKind::texture, nullptr, draw.tiles == Tiles::dirty ? &eye_state().opaque_tiles->dirty_tiles() : &placeholder_tiles_,
        nullptr}};
   if (const PagedVolume* pages = resources_.pages()) {

@@ -88,7 +88,7 @@ class FastVolumeRaycast {
   using Constants = std::array<std::uint32_t, 8>;
   Result<const vk::Pipeline*> pipeline(const Constants& constants, bool tiles);
   std::uint32_t shading(const FastSettings& settings) const {
-    return resources_.item().is_shaded ? (settings.smooth_gradients && !resources_.pages() ? 2 : 1) : 0;
+    return resources_.item().is_shaded ? (settings.smooth_gradients ? 2 : 1) : 0;
   }
   Result<shared::FrameData> write_frame(const CameraRays& rays, const FastSettings& settings);
   Outcome mark(vk::Commands& commands, RayGrid& level, vk::Image& coarser, bool opaque);

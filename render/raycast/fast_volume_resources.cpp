@@ -18,17 +18,19 @@ bool same_look(const VolumeItem& a, const VolumeItem& b) {
   return a.transfer.colors == b.transfer.colors && a.transfer.extinctions == b.transfer.extinctions && a.is_shaded == b.is_shaded;
 }
 
-constexpr double kValuesBeyondMeans = 0.25;  // share of the range by which values may exceed that of a coarser level
+/// Returns the interval from the first to the last point of a transfer function, and of `values`.
+ValueInterval transfer_span(const TransferTable& transfer, ValueInterval values) {
+  for (const auto& row : transfer.extinctions) values = {std::min(values.min, row[0]), std::max(values.max, row[0])};
+  for (const auto& row : transfer.colors) values = {std::min(values.min, row[0]), std::max(values.max, row[0])};
+  return values;
+}
 
 ValueInterval active_values(const VolumeItem& item) {
   const double background = item.grid->background();
   const field::GridStats& stats = item.grid->stats();
   ValueInterval values{std::min(stats.min, background), std::max(stats.max, background)};
-  if (item.paged) {
-    // voxels of finer levels lie beyond the means that `grid` has of them
-    const double beyond = kValuesBeyondMeans * (stats.max - stats.min);
-    values = {values.min - beyond, values.max + beyond};
-  }
+  // voxels of finer levels may lie far beyond the means that `grid` has of them
+  if (item.paged) return active_interval(item.transfer, transfer_span(item.transfer, values), item.is_shaded);
   // outliers look like the end of the display range, unless the transfer function varies among them
   const DisplayRange& shown = display_range(*item.grid);
   const auto changing = [&](double from, double to) { return active_interval(item.transfer, {from, to}, false); };
@@ -155,7 +157,10 @@ Outcome FastVolumeResources::prepare_pages(const VolumeItem& item, std::uint64_t
   if (other_look) {
     active_ = active_values(item);
     const bool has_holes = item.paged->source().type().name.starts_with("float");
-    const CodeScale codes(range_to_encode(*item.grid, active_), has_holes);
+    // cells of the finest level at the ends of the active interval may reach to any value
+    const field::GridStats& stats = item.grid->stats();
+    const ValueInterval all{std::min(active_.min, double(stats.min)), std::max(active_.max, double(stats.max))};
+    const CodeScale codes(clip_outliers(all, *item.grid, active_), has_holes);
     const PreintegratedTable table = make_preintegrated(item.transfer, codes.lo, codes.per_code, item.is_shaded);
     CATENA_CHECK(pages_->set_codes(codes, table.appearance));
     CATENA_CHECK(upload_table(table));

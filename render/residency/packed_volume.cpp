@@ -18,6 +18,22 @@ namespace {
 using field::Index3;
 constexpr double kMaxVoxels = 64.0 * 1024 * 1024;  // 256 MiB of words; larger grids are packed as bricks
 
+ValueInterval range_to_encode(const field::ScalarGrid& grid, const ValueInterval& active) {
+  ValueInterval range = active;
+  const field::GridStats& stats = grid.stats();
+  const double background = grid.background();
+  const bool whole = active.min <= std::min(stats.min, background) && active.max >= std::max(stats.max, background);
+  if (whole) return range;
+  std::mutex lock;
+  for_each_slab(grid, {.count = voxel_extent(grid).size.z, .margin_after = 1}, [&](const Slab& slab) {
+    ValueInterval part = active;
+    widen_to_cells(part, slab.block, active);
+    const std::scoped_lock held(lock);
+    range = {std::min(range.min, part.min), std::max(range.max, part.max)};
+  });
+  return clip_outliers(range, grid, active);
+}
+
 std::vector<std::uint8_t> all_codes(const field::ScalarGrid& grid, const CodeScale& scale) {
   const Index3 n = voxel_extent(grid).size;
   const std::size_t plane = std::size_t(n.x) * std::size_t(n.y);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "engine/base/threads.h"
 #include "engine/field/field_display_range.h"
@@ -123,22 +122,6 @@ ValueInterval clip_outliers(ValueInterval range, const field::ScalarGrid& grid, 
   if (shown.below.count > 0) range.min = std::max(range.min, std::min(active.min, shown.lo));
   if (shown.above.count > 0) range.max = std::min(range.max, std::max(active.max, shown.hi));
   return range;
-}
-
-ValueInterval range_to_encode(const field::ScalarGrid& grid, const ValueInterval& active) {
-  ValueInterval range = active;
-  const field::GridStats& stats = grid.stats();
-  const double background = grid.background();
-  const bool whole = active.min <= std::min(stats.min, background) && active.max >= std::max(stats.max, background);
-  if (whole) return range;
-  std::mutex lock;
-  for_each_slab(grid, {.count = voxel_extent(grid).size.z, .margin_after = 1}, [&](const Slab& slab) {
-    ValueInterval part = active;
-    widen_to_cells(part, slab.block, active);
-    const std::scoped_lock held(lock);
-    range = {std::min(range.min, part.min), std::max(range.max, part.max)};
-  });
-  return clip_outliers(range, grid, active);
 }
 
 void CodeScale::encode(const VoxelBlock& block, std::size_t first, std::size_t count, std::uint8_t* out) const {

@@ -50,10 +50,6 @@ void widen_to_cells(ValueInterval& range, const VoxelBlock& block, const ValueIn
 /// Returns the range without the part beyond both `active` and the grid's display range: outliers are clamped instead of taking up codes.
 ValueInterval clip_outliers(ValueInterval range, const field::ScalarGrid& grid, const ValueInterval& active);
 
-/// Returns the range of values to encode for a grid whose image depends on the values in `active`: that of all cells which touch it,
-/// without outliers.
-ValueInterval range_to_encode(const field::ScalarGrid& grid, const ValueInterval& active);
-
 /// Slabs of a grid: kSlabPlanes planes at a time, processed in parallel, each with `margin_before` extra planes in front and `margin_after`
 /// behind, as far as the grid has them: the grid is never copied as a whole.
 struct SlabRange {

@@ -50,7 +50,7 @@ struct RaySample {
 vec3 normal_at(RaySample at) {
   if (SHADED != 2u) return frame.grids[0].world_gradient * at.s.gradient;
 #ifdef IS_PAGED
-  return frame.grids[0].world_gradient * at.s.gradient;
+  return frame.grids[0].world_gradient * central_gradient(at.p, at.s);
 #else
   vec3 uvw = (at.p + 0.5) / (frame.grids[0].hi + 1.0);
   if (IS_BRICKED != 0u) {

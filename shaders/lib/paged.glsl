@@ -77,6 +77,23 @@ PackedSample sample_packed(vec3 p) {
   return s;
 }
 
+// Returns the central difference of codes over a voxel of the page's level on either side, codes per finest voxel. Ends are clamped to the
+// domain; an end in an invalid cell is replaced by the center.
+vec3 central_gradient(vec3 p, PackedSample s) {
+  const float width = is_stored(s.brick) ? pages.levels[page_level(s.brick)].step : 1.0;
+  vec3 gradient;
+  for (int axis = 0; axis < 3; ++axis) {
+    vec3 step = vec3(0.0);
+    step[axis] = width;
+    vec3 a = clamp(p - step, frame.grids[0].lo, frame.grids[0].hi), b = clamp(p + step, frame.grids[0].lo, frame.grids[0].hi);
+    PackedSample low = sample_packed(a), high = sample_packed(b);
+    if (MASKED != 0u && !low.valid) { low = s; a = p; }
+    if (MASKED != 0u && !high.valid) { high = s; b = p; }
+    gradient[axis] = (high.code - low.code) / max(dot(b - a, vec3(1.0)), 1e-6);
+  }
+  return gradient;
+}
+
 // Returns how many finest voxels a voxel at a sample is wide.
 float voxel_width(PackedSample s) { return is_stored(s.brick) ? pages.levels[page_level(s.brick)].step : 1.0; }
 

@@ -6,12 +6,15 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/memory_limit.h"
 #include "engine/field/grid/grid_from_slices.h"
 
 namespace catena::field {
 namespace {
 
-constexpr double kParallel = 1e-9;  // largest share of a normal along the two other axes of a parallel plane
+constexpr double kObliqueSpacing = 0.5;  // of a voxel edge, between the nodes of an oblique slab, so that interpolating twice loses little
+constexpr double kObliqueThickness = 0.1;  // of this spacing, between its two layers
+constexpr double kParallel = 1e-9;         // largest share of a normal along the two other axes of a parallel plane
 
 /// Node positions of a slab: world = mapping(index), index (0, 0, 0) .. size - 1.
 struct SlabNodes {
@@ -19,6 +22,12 @@ struct SlabNodes {
   Mapping mapping;
   double count() const { return static_cast<double>(size.x) * size.y * size.z; }
 };
+
+/// Returns whether a slab is small enough, and takes at most half of the available memory.
+bool fits(const SlabNodes& nodes) {
+  constexpr double kBytes = 20;  // of a node, while the slab is made
+  return nodes.count() <= kMaxSlabNodes && nodes.count() * kBytes <= 0.5 * static_cast<double>(available_memory());
+}
 
 /// Part of a level that a grid covers, voxels.
 struct LevelPart {
@@ -64,9 +73,9 @@ SlabNodes parallel_nodes(const LevelPart& part, const Vec3& point, int axis) {
   return {{size[0], size[1], size[2]}, Mapping::from_linear(part.level.mapping.world_from_index_linear, origin)};
 }
 
-/// Returns positions a voxel edge apart, in two layers on both sides of a plane, as far as it meets the grid's box.
-SlabNodes oblique_nodes(const LevelPart& part, const PagedGrid& grid, const Vec3& point, const Vec3& normal) {
-  const double edge = part.level.mapping.min_voxel_edge();
+/// Returns positions `spacing` voxel edges apart, in two layers on both sides of a plane, as far as it meets the grid's box.
+SlabNodes oblique_nodes(const LevelPart& part, const PagedGrid& grid, const Vec3& point, const Vec3& normal, double spacing) {
+  const double edge = spacing * part.level.mapping.min_voxel_edge(), thickness = kObliqueThickness * edge;
   const Vec3 w = normal / norm(normal);
   const Vec3 across = cross(std::fabs(w.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0), w), u = across / norm(across), v = cross(w, u);
   double lo[2] = {HUGE_VAL, HUGE_VAL}, hi[2] = {-HUGE_VAL, -HUGE_VAL};
@@ -92,8 +101,8 @@ SlabNodes oblique_nodes(const LevelPart& part, const PagedGrid& grid, const Vec3
   Mat3 linear(1.0);
   linear[0] = u * edge;
   linear[1] = v * edge;
-  linear[2] = w * edge;
-  out.mapping = Mapping::from_linear(linear, point + u * (lo[0] - 0.5 * edge) + v * (lo[1] - 0.5 * edge) - w * (0.5 * edge));
+  linear[2] = w * thickness;
+  out.mapping = Mapping::from_linear(linear, point + u * (lo[0] - 0.5 * edge) + v * (lo[1] - 0.5 * edge) - w * (0.5 * thickness));
   return out;
 }
 
@@ -113,6 +122,7 @@ class LevelSampler {
       const double at = std::clamp(index[axis], static_cast<double>(part_.lo[a]), static_cast<double>(part_.hi[a]));
       base[a] = std::clamp(static_cast<int>(at), part_.lo[a], std::max(part_.lo[a], part_.hi[a] - 1));
       f[axis] = at - base[a];
+      if (grid_.interpolation() == Interpolation::nearest) f[axis] = f[axis] < 0.5 ? 0 : 1;
     }
     // a node of the level needs one voxel, not eight
     double sum = 0;
@@ -159,7 +169,8 @@ Result<std::shared_ptr<const ScalarGrid>> make_slab(const PagedGrid& grid, const
   for (int number = 0; number < levels; ++number) {
     const LevelPart part(grid, number);
     const int axis = perpendicular_axis(part.level.mapping, normal);
-    const SlabNodes nodes = axis >= 0 ? parallel_nodes(part, point, axis) : oblique_nodes(part, grid, point, normal);
+    SlabNodes nodes = axis >= 0 ? parallel_nodes(part, point, axis) : oblique_nodes(part, grid, point, normal, kObliqueSpacing);
+    if (axis < 0 && !fits(nodes)) nodes = oblique_nodes(part, grid, point, normal, 1);
     if (nodes.size.x < 2 || nodes.size.y < 2 || nodes.size.z < 2) return std::shared_ptr<const ScalarGrid>();
     if (nodes.count() > kMaxSlabNodes && number + 1 < levels) continue;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Part of a paged grid around a plane, as a grid of its own, for slices: two layers of nodes, the plane between them.
 ///   parallel to two axes of the voxels   the voxels of the finest level on both sides of the plane: values in it are exact
-///   any other plane                      trilinear values of the finest level, spaced a voxel edge apart
+///   any other plane                      values of the finest level, spaced half a voxel edge apart, or one if memory is short
 /// If that has too many nodes, the finest coarser level that has few enough. Any thread.
 #pragma once
 #include <functional>

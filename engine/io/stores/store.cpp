@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "engine/io/stores/store.h"
 
+#include <unistd.h>
+
 #include <fmt/format.h>
 #include <sys/stat.h>
 
@@ -95,6 +97,8 @@ Outcome Store::ask(const StoreRequest& request, std::span<std::byte> out) {
 }
 
 Outcome Store::read(int grid, int level, int step, const StoreBox& box, std::span<std::byte> values) {
+  // a chunk that is not there has the fill value, a store that is not there has none
+  if (::access(path_.c_str(), F_OK) != 0) return Error{path_ + ": has been removed while it was in use", true};
   StoreRequest request;
   request.action = StoreAction::read;
   request.grid = grid;

@@ -59,7 +59,7 @@ TEST(Slab, AnyOtherPlaneIsInterpolated) {
   int count = 0;
   const auto slab = slab_of(*grid, point, normal);
   ASSERT_NE(slab, nullptr);
-  EXPECT_LT(difference(*slab, *source->whole(0), point, normal, count), 2500) << "of 36000; twice interpolated";
+  EXPECT_LT(difference(*slab, *source->whole(0), point, normal, count), 800) << "of 36000; interpolated twice";
   EXPECT_GT(count, 1000);
 }
 
