@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <type_traits>
 
 namespace catena {
@@ -15,6 +16,11 @@ struct Fnv1a {
   void add_bytes(const void* data, std::size_t size) {
     const auto* p = static_cast<const unsigned char*>(data);
     for (std::size_t i = 0; i < size; ++i) value = (value ^ p[i]) * 0x100000001b3ull;
+  }
+  /// Adds the length and the bytes of a text.
+  void add_text(std::string_view text) {
+    add(text.size());
+    add_bytes(text.data(), text.size());
   }
   /// Adds the bytes of a number in the byte order of this system. T must have no padding.
   template <class T>

@@ -387,10 +387,10 @@ PagingStats Renderer::paging() const {
     stats.has_arrived = stats.has_arrived || pass->has_new_data();
     const PagedVolume* pages = pass->ray_sampler() ? pass->ray_sampler()->pages() : nullptr;
     if (!pages) continue;
-    stats.visible = pages->state().visible;
-    stats.resident = pages->state().resident;
-    stats.finest_level = pages->state().bias;
-    stats.is_loading = pages->state().is_loading;
+    stats.visible = pages->plan().visible;
+    stats.resident = pages->plan().resident;
+    stats.finest_level = pages->plan().bias;
+    stats.is_loading = !pages->plan().loads.empty();
   }
   return stats;
 }

@@ -153,7 +153,6 @@ Outcome FastVolumeResources::prepare_pages(const VolumeItem& item, std::uint64_t
   }
   const bool other_look = other_grid || !same_look(item_, item);
   item_ = item;
-  version_ = item.grid->version();
   if (other_look) {
     active_ = active_values(item);
     const bool has_holes = item.paged->source().type().name.starts_with("float");

@@ -60,11 +60,8 @@ shared::PageLevels level_data(const std::vector<PageLevel>& levels) {
 
 Result<PagedVolume> PagedVolume::create(vk::Device& device, std::shared_ptr<const field::PagedGrid> grid, std::uint64_t max_bytes) {
   const std::vector<PageLevel> all = page_levels(grid->source());
-  const auto pages = [](const PageLevel& level) {
-    return std::uint64_t(level.counts.x) * std::uint64_t(level.counts.y) * std::uint64_t(level.counts.z);
-  };
-  std::uint64_t total = 0;
-  for (const PageLevel& level : all) total += pages(level);
+  const auto pages = [](const PageLevel& level) { return field::brick_count(level.counts); };
+  const std::uint64_t total = page_count(all);
   const std::uint64_t beside_slots = 3 * sizeof(std::uint32_t) * pages(all.front()) + kPagesPerUpload * kSlotBytes;
   const std::uint64_t room = max_bytes > beside_slots ? (max_bytes - beside_slots) / kSlotBytes : 0;
   const std::array<std::uint32_t, 3> slots =
@@ -72,7 +69,6 @@ Result<PagedVolume> PagedVolume::create(vk::Device& device, std::shared_ptr<cons
   const std::uint64_t needed = pages(all.back()) + 1, count = std::uint64_t(slots[0]) * slots[1] * slots[2];
   if (total > 1 && count < std::min(needed, total)) return memory_limit_error(needed * kSlotBytes + beside_slots, max_bytes);
   PagedVolume volume(device, std::move(grid), PageTable(all, slots));
-  volume.slots_ = slots;
   volume.ranges_.resize(count);
   CATENA_CHECK(volume.create_images(slots));
   CATENA_TRY(volume.loader_, PageLoader::start(volume.grid_, all));
@@ -134,15 +130,11 @@ void PagedVolume::find_looks() {
   const Index3& n = table_.counts();
   std::vector<CodeRange> ranges(table_.words().size());
   parallel_for(ranges.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    VoxelBlock ends;
+    const auto encode = codes_.encoder();
     for (std::size_t i = begin; i < end; ++i) {
       const field::BrickRange range = grid_->source().range(0, field::brick_at(n, i));
       ranges[i] = {0, 255, !range.is_known};
-      if (!range.is_known || range.min > range.max) continue;
-      ends.values = {float(range.min), float(range.max)};
-      std::array<std::uint8_t, 2> code{};
-      codes_.encode(ends, 0, 2, code.data());
-      ranges[i] = {code[0], code[1], false};
+      if (range.is_known && range.min <= range.max) ranges[i] = {encode(float(range.min)), encode(float(range.max)), false};
     }
   });
   table_.set_looks([&](const Index3& e) {
@@ -190,12 +182,9 @@ void PagedVolume::read_visits() {
     last_visits_ = std::move(visits);
 }
 
-/// Returns the pages to load.
-std::vector<PageId> PagedVolume::plan(bool is_final) {
-  PagePlan plan = table_.plan(
+void PagedVolume::make_plan(bool is_final) {
+  plan_ = table_.plan(
       last_visits_, [&](const Index3& entry) { return is_final ? 0 : desired_level(entry); }, !is_final);
-  state_ = {plan.visible, plan.resident, plan.bias, !plan.loads.empty()};
-  return std::move(plan.loads);
 }
 
 Outcome PagedVolume::update() {
@@ -203,7 +192,8 @@ Outcome PagedVolume::update() {
   if (loader_->take_found_empty(false)) has_new_looks_ = true;
   if (has_new_looks_ && table_.words().size() <= kMaxKnownLooks) find_looks();
   CATENA_CHECK(upload(loader_->take(kPagesPerImage)));
-  loader_->set_wanted(plan(false), codes_);
+  make_plan(false);
+  loader_->set_wanted(plan_.loads, codes_);
   return upload_map();
 }
 
@@ -211,13 +201,13 @@ Outcome PagedVolume::finish(bool only_if_they_fit) {
   read_visits();
   if (loader_->take_found_empty(true)) has_new_looks_ = true;
   if (has_new_looks_) find_looks();
-  std::vector<PageId> loads = plan(true);
-  if (only_if_they_fit && state_.bias > 0) return Done{};
+  make_plan(true);
+  if (only_if_they_fit && plan_.bias > 0) return Done{};
   // pages that are near each other need the same bricks
-  std::ranges::sort(loads, {}, [](const PageId& id) { return std::pair(id.level, morton_code(id.brick)); });
-  loader_->set_wanted(std::move(loads), codes_);
+  std::ranges::sort(plan_.loads, {}, [](const PageId& id) { return std::pair(id.level, morton_code(id.brick)); });
+  loader_->set_wanted(plan_.loads, codes_);
   while (loader_->wait()) CATENA_CHECK(upload(loader_->take(kPagesPerUpload)));
-  plan(true);
+  make_plan(true);
   return upload_map();
 }
 
@@ -233,12 +223,12 @@ Outcome PagedVolume::upload(std::vector<EncodedPage> pages) {
       if (table_.is_resident(page.id)) continue;
       const auto slot = table_.place(page.id);
       if (!slot) continue;
-      const auto [x, y, z] = *slot;
+      const auto [x, y, z] = table_.position(*slot);
       std::memcpy(staging_.bytes().data() + i * bytes, page.words.data(), bytes);
       commands.copy(staging_, i * bytes, words_, {int(x) * kPageEdge, int(y) * kPageNodes, int(z) * kPageNodes},
                     {kPageEdge, kPageNodes, kPageNodes});
-      placed.push_back((std::size_t(z) * slots_[1] + y) * slots_[0] + x);
-      ranges_[placed.back()] = page.ranges;
+      placed.push_back(*slot);
+      ranges_[*slot] = page.ranges;
     }
     commands.transition(words_, vk::kFragmentRead);
     CATENA_CHECK(commands.finish());
@@ -264,8 +254,8 @@ Outcome PagedVolume::upload_sub_bricks(std::span<const std::size_t> slots) {
       std::ranges::transform(ranges_[slot], kinds.begin(), [&](const CodeRange& range) { return appearance_.classify(range); });
       const std::vector<std::uint8_t> distances = homogeneous_distances({kPageBricks, kPageBricks, kPageBricks}, kinds);
       std::memcpy(staging_.bytes().data() + i * bytes, distances.data(), bytes);
-      const int x = int(slot % slots_[0]), y = int(slot / slots_[0] % slots_[1]), z = int(slot / slots_[0] / slots_[1]);
-      commands.copy(staging_, i * bytes, sub_bricks_, {x * kPageBricks, y * kPageBricks, z * kPageBricks},
+      const auto [x, y, z] = table_.position(slot);
+      commands.copy(staging_, i * bytes, sub_bricks_, {int(x) * kPageBricks, int(y) * kPageBricks, int(z) * kPageBricks},
                     {kPageBricks, kPageBricks, kPageBricks});
     }
     commands.transition(sub_bricks_, vk::kFragmentRead);

@@ -17,13 +17,6 @@
 
 namespace catena::render {
 
-/// How much of a paged volume an image shows.
-struct PagedState {
-  std::size_t visible = 0, resident = 0;  ///< pages that the image shows when complete; those of them that are in the pool
-  int bias = 0;                           ///< > 0: the pool is too small for this image; levels finer than this one are not shown
-  bool is_loading = false;                ///< pages are being read
-};
-
 /// Pool of pages of one paged grid.
 class PagedVolume {
  public:
@@ -38,15 +31,15 @@ class PagedVolume {
   /// nothing. An Error if a transfer to the device fails.
   Outcome update();
   /// Loads the pages that the rays of the last image visited, of the finest level however small its voxels are in the image. Blocks.
-  /// `only_if_they_fit`: none if a coarser level would have to do (PagedState::bias).
+  /// `only_if_they_fit`: none if a coarser level would have to do (PagePlan::bias).
   Outcome finish(bool only_if_they_fit);
   /// Sets the camera of the next image. `adds`: its rays are only some of the image, the others were not marched again.
   void begin_image(const CameraRays& rays, bool adds) {
     rays_ = rays;
     adds_visits_ = adds;
   }
-  /// Returns the state found by the last update.
-  const PagedState& state() const { return state_; }
+  /// Returns the plan of the last update.
+  const PagePlan& plan() const { return plan_; }
   /// Returns whether pages have been read that the next update will place.
   bool has_arrived() const { return loader_->has_arrived(); }
   /// Returns the number of pages loaded so far.
@@ -68,7 +61,7 @@ class PagedVolume {
   int desired_level(const field::Index3& entry) const;
   void find_looks();
   void read_visits();
-  std::vector<PageId> plan(bool is_final);
+  void make_plan(bool is_final);
   Outcome load_roots();
   Outcome upload(std::vector<EncodedPage> pages);
   Outcome upload_sub_bricks(std::span<const std::size_t> slots);
@@ -81,11 +74,10 @@ class PagedVolume {
   CodeScale codes_;
   CodeAppearance appearance_;
   CameraRays rays_;
-  PagedState state_;
+  PagePlan plan_;
   std::uint64_t version_ = 0, loaded_count_ = 0;
   bool adds_visits_ = false, has_new_looks_ = true;
   std::vector<std::uint32_t> last_visits_;
-  std::array<std::uint32_t, 3> slots_{};
   std::vector<PageRanges> ranges_;  ///< of the page in each slot
   vk::Image words_, sub_bricks_, map_;
   vk::Buffer levels_, visits_, staging_;

@@ -178,14 +178,8 @@ namespace {
 std::vector<CodeRange> code_ranges(const BrickScan& scan, const CodeScale& codes) {
   std::vector<CodeRange> ranges(scan.values.size());
   parallel_for(ranges.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    VoxelBlock ends;
-    ends.values.resize(2);
-    for (std::size_t i = begin; i < end; ++i) {
-      ends.values = {scan.values[i].min, scan.values[i].max};
-      std::array<std::uint8_t, 2> code{};
-      codes.encode(ends, 0, 2, code.data());
-      ranges[i] = {code[0], code[1], false};
-    }
+    const auto encode = codes.encoder();
+    for (std::size_t i = begin; i < end; ++i) ranges[i] = {encode(scan.values[i].min), encode(scan.values[i].max), false};
   });
   return ranges;
 }

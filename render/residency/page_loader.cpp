@@ -40,24 +40,18 @@ Result<Corner> read_bricks(const field::PagedGrid& grid, const PageLevel& level,
   return bricks;
 }
 
-/// Encodes `count` voxels of a row of a brick.
-void encode_row(const Brick& brick, std::size_t first, int count, const CodeScale& codes, std::uint8_t* out) {
-  const auto zero = float(codes.lo), scale = codes.per_code > 0 ? float(1 / codes.per_code) : 0.0f, low = float(codes.min_code());
-  field::with_number_type(brick.type(), [&](auto kind) {
-    using T = decltype(kind);
+/// Encodes the nodes of a page, of bricks with numbers of type T.
+template <class T>
+CodeArray encode_nodes(const Corner& bricks, const CodeScale& codes) {
+  const auto encode_row = [encode = codes.encoder()](const Brick& brick, std::size_t first, int count, std::uint8_t* out) {
     const std::byte* in = brick.values().data() + first * sizeof(T);
     for (int i = 0; i < count; ++i) {
       T number;
       std::memcpy(&number, in + std::size_t(i) * sizeof(T), sizeof(T));
       const auto value = static_cast<float>(number);
-      const float code = (value - zero) * scale + 0.5f;
-      out[i] = std::isfinite(value) ? std::uint8_t(code > low ? (code < 255.0f ? code : 255.0f) : low) : CodeScale::kInvalidCode;
+      out[i] = std::isfinite(value) ? encode(value) : CodeScale::kInvalidCode;
     }
-  });
-}
-
-/// Encodes the nodes of a page.
-CodeArray encode_nodes(const Corner& bricks, const CodeScale& codes) {
+  };
   CodeArray out(kPlane * kPageNodes);
   const Index3& own = bricks[0]->size();
   const auto clamped = [](int node, int size, bool has_next) { return node < size || (node == kPageEdge && has_next) ? node : size - 1; };
@@ -69,7 +63,7 @@ CodeArray encode_nodes(const Corner& bricks, const CodeScale& codes) {
       const auto encode = [&](const Brick& brick, int count, std::uint8_t* to) {
         const Index3& n = brick.size();
         const auto y_in = std::size_t(at_y % kPageEdge), z_in = std::size_t(at_z % kPageEdge);
-        encode_row(brick, (z_in * std::size_t(n.y) + y_in) * std::size_t(n.x), count, codes, to);
+        encode_row(brick, (z_in * std::size_t(n.y) + y_in) * std::size_t(n.x), count, to);
       };
       encode(*bricks[std::size_t(side)], own.x, row);
       const auto& next = bricks[std::size_t(side | 1)];
@@ -107,7 +101,8 @@ void find_ranges(const CodeArray& codes, bool masked, EncodedPage& page) {
 Result<EncodedPage> encode_page(const field::PagedGrid& grid, const std::vector<PageLevel>& levels, const PageId& id,
                                 const CodeScale& codes) {
   CATENA_TRY(const Corner bricks, read_bricks(grid, levels[id.level], id.brick));
-  const CodeArray nodes = encode_nodes(bricks, codes);
+  CodeArray nodes;
+  field::with_number_type(grid.source().type(), [&](auto number) { nodes = encode_nodes<decltype(number)>(bricks, codes); });
   EncodedPage page{id, std::vector<std::uint16_t>(kPageWords), {}};
   find_ranges(nodes, codes.has_mask, page);
   for (std::size_t line = 0; line < kPlane; ++line) {

@@ -56,9 +56,15 @@ std::vector<PageLevel> page_levels(const field::BrickSource& source) {
   return levels;
 }
 
+std::uint64_t page_count(const std::vector<PageLevel>& levels) {
+  std::uint64_t count = 0;
+  for (const PageLevel& level : levels) count += field::brick_count(level.counts);
+  return count;
+}
+
 PageTable::PageTable(std::vector<PageLevel> levels, const std::array<std::uint32_t, 3>& slots)
     : levels_(std::move(levels)), slots_per_axis_(slots), slots_(std::size_t(slots[0]) * slots[1] * slots[2]) {
-  const std::size_t count = std::size_t(counts().x) * std::size_t(counts().y) * std::size_t(counts().z);
+  const std::size_t count = field::brick_count(counts());
   words_.assign(count, kHomogeneous);
   shown_level_.assign(count, kNone);
   looks_.resize(count);
@@ -82,11 +88,9 @@ std::array<std::uint32_t, 3> PageTable::position(std::size_t slot) const {
 }
 
 std::vector<PageId> PageTable::root_pages() const {
-  std::vector<PageId> pages;
   const Index3& n = levels_.back().counts;
-  for (int z = 0; z < n.z; ++z)
-    for (int y = 0; y < n.y; ++y)
-      for (int x = 0; x < n.x; ++x) pages.push_back({std::uint32_t(levels_.size() - 1), {x, y, z}});
+  std::vector<PageId> pages(field::brick_count(n));
+  for (std::size_t i = 0; i < pages.size(); ++i) pages[i] = {std::uint32_t(levels_.size() - 1), field::brick_at(n, i)};
   return pages;
 }
 
@@ -99,8 +103,7 @@ void PageTable::for_each_entry(const PageId& page, const std::function<void(std:
   const Index3 &b = page.brick, &n = counts();
   for (int z = b.z << at.shift.z; z <= last(b.z, at.shift.z, at.counts.z, n.z); ++z)
     for (int y = b.y << at.shift.y; y <= last(b.y, at.shift.y, at.counts.y, n.y); ++y)
-      for (int x = b.x << at.shift.x; x <= last(b.x, at.shift.x, at.counts.x, n.x); ++x)
-        body((std::size_t(z) * std::size_t(n.y) + std::size_t(y)) * std::size_t(n.x) + std::size_t(x));
+      for (int x = b.x << at.shift.x; x <= last(b.x, at.shift.x, at.counts.x, n.x); ++x) body(field::brick_number(n, {x, y, z}));
 }
 
 void PageTable::write_word(std::size_t entry) {
@@ -150,9 +153,8 @@ PagePlan PageTable::plan(std::span<const std::uint32_t> visits, const std::funct
       visited.push_back({i, visits[i], std::min(coarsest, std::uint32_t(desired_level(field::brick_at(counts(), i))))});
 
   // the finest level of which all visited pages fit, with room for the last level and for pages on the way to finer ones
-  std::size_t total = 0;
-  for (const PageLevel& level : levels_) total += std::size_t(level.counts.x) * std::size_t(level.counts.y) * std::size_t(level.counts.z);
-  const std::size_t roots = root_pages().size(), reserve = stepwise && slots_.size() < total ? slots_.size() / 8 : 0;
+  const std::size_t roots = field::brick_count(levels_.back().counts);
+  const std::size_t reserve = stepwise && slots_.size() < page_count(levels_) ? slots_.size() / 8 : 0;
   const std::size_t capacity = slots_.size() > roots + reserve ? slots_.size() - roots - reserve : 1;
   PagePlan plan;
   std::unordered_map<std::uint64_t, Need> needs;
@@ -212,7 +214,7 @@ void PageTable::remove(std::size_t slot) {
   });
 }
 
-std::optional<std::array<std::uint32_t, 3>> PageTable::place(const PageId& page) {
+std::optional<std::size_t> PageTable::place(const PageId& page) {
   const auto oldest = std::ranges::min_element(slots_, {}, [](const Slot& s) { return s.is_pinned ? ~std::uint64_t{0} : s.last_needed; });
   if (oldest->is_pinned || oldest->last_needed >= clock_) return std::nullopt;
   const auto slot = std::size_t(oldest - slots_.begin());
@@ -224,7 +226,7 @@ std::optional<std::array<std::uint32_t, 3>> PageTable::place(const PageId& page)
     shown_level_[entry] = std::uint8_t(page.level);
     write_word(entry);
   });
-  return position(slot);
+  return slot;
 }
 
 }  // namespace catena::render

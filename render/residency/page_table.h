@@ -35,6 +35,8 @@ struct PageLevel {
 /// Returns the levels of which pages can be made, the finest first: those whose voxels are powers of two of the finest ones, parallel to
 /// them.
 std::vector<PageLevel> page_levels(const field::BrickSource& source);
+/// Returns the number of pages of all levels.
+std::uint64_t page_count(const std::vector<PageLevel>& levels);
 
 /// A page: a brick of a level.
 struct PageId {
@@ -80,9 +82,10 @@ class PageTable {
   /// Plans the loads. `visits`: weight of the rays that visited each entry. `desired_level`: finest level that the image needs for an
   /// entry. `stepwise`: each entry is refined level by level, so that all of the image becomes better at the same time.
   PagePlan plan(std::span<const std::uint32_t> visits, const std::function<int(const field::Index3& entry)>& desired_level, bool stepwise);
-  /// Assigns a slot to a page, that of the page which has not been seen for longest. Returns its position in slots; nullopt: all pages are
-  /// needed.
-  std::optional<std::array<std::uint32_t, 3>> place(const PageId& page);
+  /// Assigns a slot to a page, that of the page which has not been seen for longest. Returns the slot; nullopt: all pages are needed.
+  std::optional<std::size_t> place(const PageId& page);
+  /// Returns the position of a slot, in slots.
+  std::array<std::uint32_t, 3> position(std::size_t slot) const;
   /// Returns whether a page is in the pool.
   bool is_resident(const PageId& page) const { return resident_.contains(key_of(page)); }
 
@@ -96,7 +99,6 @@ class PageTable {
 
   std::uint64_t key_of(const PageId& page) const;
   PageId ancestor(const field::Index3& entry, std::uint32_t level) const;
-  std::array<std::uint32_t, 3> position(std::size_t slot) const;
   void for_each_entry(const PageId& page, const std::function<void(std::size_t)>& body) const;
   void remove(std::size_t slot);
   void write_word(std::size_t entry);

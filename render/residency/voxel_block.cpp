@@ -125,12 +125,9 @@ ValueInterval clip_outliers(ValueInterval range, const field::ScalarGrid& grid, 
 }
 
 void CodeScale::encode(const VoxelBlock& block, std::size_t first, std::size_t count, std::uint8_t* out) const {
-  const auto zero = float(lo), scale = per_code > 0 ? float(1 / per_code) : 0.0f, min_value = float(min_code());
+  const auto encode_value = encoder();
   const float* values = &block.values[first];
-  for (std::size_t i = 0; i < count; ++i) {
-    const float code = (values[i] - zero) * scale + 0.5f;
-    out[i] = std::uint8_t(code > min_value ? (code < 255.0f ? code : 255.0f) : min_value);
-  }
+  for (std::size_t i = 0; i < count; ++i) out[i] = encode_value(values[i]);
   if (block.used.empty()) return;
   for (std::size_t i = 0; i < count; ++i)
     if (!block.used[first + i]) out[i] = kInvalidCode;

@@ -77,6 +77,13 @@ struct CodeScale {
   CodeScale() = default;
   CodeScale(const ValueInterval& range, bool is_masked);
   std::uint8_t min_code() const { return has_mask ? 1 : 0; }
+  /// Returns the function that encodes finite values.
+  auto encoder() const {
+    return [zero = float(lo), scale = per_code > 0 ? float(1 / per_code) : 0.0f, least = float(min_code())](float value) {
+      const float code = (value - zero) * scale + 0.5f;
+      return std::uint8_t(code > least ? (code < 255.0f ? code : 255.0f) : least);
+    };
+  }
   /// Encodes `count` voxels of a block from `first` on.
   void encode(const VoxelBlock& block, std::size_t first, std::size_t count, std::uint8_t* out) const;
 };

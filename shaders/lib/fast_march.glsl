@@ -9,16 +9,13 @@ layout(constant_id = 2) const uint HAS_OPAQUE = 0;
 layout(constant_id = 7) const uint HALF_OPACITY_DEPTH = 0;  // output: depth of half transmittance instead of a color
 
 layout(binding = 4) uniform utexture2D preintegrated;  // 256 x 256
-layout(binding = 8) uniform sampler3D gradients;       // render/residency/gradient_volume.h
+float seen_transmittance = 1.0;  // of the ray, in front of the segment
 #ifdef IS_PAGED
 #include "shaders/lib/paged.glsl"
-const uint IS_BRICKED = 0u;
 #else
 #include "shaders/lib/packed.glsl"
-float voxel_width(PackedSample s) { return 1.0; }
 #endif
 
-#define SMALL_BRICK_SIZE 4.0
 #define SEARCH_VOXELS 1.5  // maximum step of the search for the first visible value
 // At the first visible value, segments are a part of a step, and grow; shading needs shorter ones than color. Unshaded rays without
 // empty-space skipping start at the volume's boundary with full steps.
@@ -48,19 +45,7 @@ struct RaySample {
 
 // Returns the gradient at a sample, in codes per world unit.
 vec3 normal_at(RaySample at) {
-  if (SHADED != 2u) return frame.grids[0].world_gradient * at.s.gradient;
-#ifdef IS_PAGED
-  return frame.grids[0].world_gradient * central_gradient(at.p, at.s);
-#else
-  vec3 uvw = (at.p + 0.5) / (frame.grids[0].hi + 1.0);
-  if (IS_BRICKED != 0u) {
-    const vec3 brick = floor(clamp(floor(at.p), frame.grids[0].lo, frame.grids[0].hi - 1.0) * 0.125);
-    const float nodes = ray_grid.gradient_nodes;
-    uvw = (nodes * unpack_slot(at.s.brick) + 0.125 * (nodes - 1.0) * (at.p - 8.0 * brick) + 0.5) / vec3(textureSize(gradients, 0));
-    if (!is_stored(at.s.brick)) return vec3(0.0);
-  }
-  return frame.grids[0].world_gradient * textureLod(gradients, uvw, 0.0).rgb;
-#endif
+  return frame.grids[0].world_gradient * (SHADED == 2u ? smooth_gradient(at.p, at.s) : at.s.gradient);
 }
 
 // Returns the mean shading over half a segment, along which the derivative goes from a to b. `across2`: squared length of the gradient's
@@ -94,17 +79,8 @@ RaySample next_sample(March m, RaySample from, out float curved) {
   float next = from.t + h;
   curved = 1.0;
   if (SKIPS_EMPTY != 0u) {
-#ifdef IS_PAGED
     const float leave = homogeneous_exit(from.s, from.p, m.ray.direction, m.inverse, m.is_forward_axis);
-    const float d = leave;
-#else
-    const float size = IS_BRICKED != 0u ? 8.0 : SMALL_BRICK_SIZE;
-    const vec3 brick = min(floor(from.p * (1.0 / size)), ceil(frame.grids[0].hi * (1.0 / size)) - 1.0);
-    const float d = float(IS_BRICKED != 0u ? from.s.brick >> 24 & 127u : texelFetch(homogeneous_map, ivec3(brick), 0).r);
-    const vec3 way = (mix(brick + 1.0 - d, brick + d, m.is_forward_axis) * size - from.p) * m.inverse;
-    const float leave = min(min(way.x, way.y), way.z);
-#endif
-    if (d > 0.0 && leave > h) {
+    if (leave > h) {
       next = from.t + leave;
       curved = 0.0;
     }
@@ -234,9 +210,7 @@ vec4 march_packed(vec2 q, float end) {
       last = second.yzw;
     }
     transmittance = after;
-#ifdef IS_PAGED
     seen_transmittance = transmittance;
-#endif
     s = e;
   }
   if (HALF_OPACITY_DEPTH != 0u) return vec4(NO_DEPTH, 0.0, 0.0, 0.0);

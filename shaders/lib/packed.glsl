@@ -3,10 +3,12 @@
 //   dense (render/residency/packed_volume.h): two words of four codes per cell
 //   IS_BRICKED (render/residency/packed_atlas.h): four words of two codes in the brick's slot, or the constant code of the brick
 layout(constant_id = 5) const uint IS_BRICKED = 0;
-layout(constant_id = 6) const uint MASKED = 0;  // a cell is valid if none of its codes is 0
 
-layout(binding = 3) uniform utexture3D packed_words;
 layout(binding = 5) uniform utexture3D homogeneous_map;
+layout(binding = 8) uniform sampler3D gradients;  // render/residency/gradient_volume.h
+#include "shaders/lib/packed_cell.glsl"
+
+#define SMALL_BRICK_SIZE 4.0
 
 struct PackedSample {
   float code;
@@ -15,11 +17,6 @@ struct PackedSample {
   bool valid;
 };
 
-vec4 four_codes(uint word) { return vec4(word & 255u, word >> 8 & 255u, word >> 16 & 255u, word >> 24); }
-
-uint slot_word(ivec3 at) { return texelFetch(packed_words, at, 0).r; }
-
-bool is_stored(uint word) { return word >> 31 == 0u; }
 vec3 unpack_slot(uint word) { return vec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u); }
 
 PackedSample sample_packed(vec3 p) {
@@ -28,26 +25,41 @@ PackedSample sample_packed(vec3 p) {
   const ivec3 cell = ivec3(base);
   PackedSample s;
   s.brick = 0u;
-  s.valid = true;
   vec4 near, far;  // (0,0) (1,0) (0,1) (1,1) in x and y, at z = 0 and 1
   if (IS_BRICKED != 0u) {
     s.brick = texelFetch(homogeneous_map, cell >> 3, 0).r;
     const bool stored = is_stored(s.brick);
     const ivec3 at = stored ? ivec3(unpack_slot(s.brick)) * ivec3(8, 9, 9) + (cell & 7) : ivec3(0);
-    near = four_codes(slot_word(at) | slot_word(at + ivec3(0, 1, 0)) << 16);
-    far = four_codes(slot_word(at + ivec3(0, 0, 1)) | slot_word(at + ivec3(0, 1, 1)) << 16);
+    read_cell(at, near, far);
     if (!stored) near = far = vec4(s.brick & 255u);
   } else {
     near = four_codes(slot_word(cell));
     far = four_codes(slot_word(cell + ivec3(0, 0, 1)));
   }
-  if (MASKED != 0u) s.valid = all(greaterThan(min(near, far), vec4(0.0)));
-  const vec4 along = far - near;
-  const vec4 at_z = near + along * f.z;
-  const vec2 along_y = at_z.zw - at_z.xy;              // at x = 0, 1
-  const vec2 at_y = at_z.xy + along_y * f.y;
-  const vec2 z_at_y = along.xy + (along.zw - along.xy) * f.y;
-  s.gradient = vec3(at_y.y - at_y.x, mix(along_y.x, along_y.y, f.x), mix(z_at_y.x, z_at_y.y, f.x));
-  s.code = at_y.x + s.gradient.x * f.x;
+  s.valid = is_valid_cell(near, far);
+  s.code = interpolate_cell(near, far, f, s.gradient);
   return s;
+}
+
+float voxel_width(PackedSample s) { return 1.0; }
+
+// Returns the precomputed gradient at a position, codes per voxel.
+vec3 smooth_gradient(vec3 p, PackedSample s) {
+  vec3 uvw = (p + 0.5) / (frame.grids[0].hi + 1.0);
+  if (IS_BRICKED != 0u) {
+    const vec3 brick = floor(clamp(floor(p), frame.grids[0].lo, frame.grids[0].hi - 1.0) * 0.125);
+    const float nodes = ray_grid.gradient_nodes;
+    uvw = (nodes * unpack_slot(s.brick) + 0.125 * (nodes - 1.0) * (p - 8.0 * brick) + 0.5) / vec3(textureSize(gradients, 0));
+    if (!is_stored(s.brick)) return vec3(0.0);
+  }
+  return textureLod(gradients, uvw, 0.0).rgb;
+}
+
+// Returns the depth from a sample to the ray's exit from the cube of homogeneous bricks around it; 0: the values vary there.
+float homogeneous_exit(PackedSample s, vec3 p, vec3 direction, vec3 inverse, vec3 is_forward_axis) {
+  const float size = IS_BRICKED != 0u ? 8.0 : SMALL_BRICK_SIZE;
+  const vec3 brick = min(floor(p * (1.0 / size)), ceil(frame.grids[0].hi * (1.0 / size)) - 1.0);
+  const float d = float(IS_BRICKED != 0u ? s.brick >> 24 & 127u : texelFetch(homogeneous_map, ivec3(brick), 0).r);
+  const vec3 way = (mix(brick + 1.0 - d, brick + d, is_forward_axis) * size - p) * inverse;
+  return d > 0.0 ? min(min(way.x, way.y), way.z) : 0.0;
 }

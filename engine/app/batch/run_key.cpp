@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "engine/base/hash.h"
 #include "engine/base/numbers.h"
 #include "engine/base/version.h"
 
@@ -19,13 +18,10 @@ constexpr std::uint64_t kWholeBytes = std::uint64_t{4} << 20, kBlockBytes = 4096
 
 }  // namespace
 
-RunKey::RunKey(std::string_view command) : hash_(Fnv1a{}.value) { add(command).add(kVersion); }
+RunKey::RunKey(std::string_view command) { add(command).add(kVersion); }
 
 RunKey& RunKey::add(std::string_view words) {
-  Fnv1a hash{hash_};
-  hash.add(words.size());
-  hash.add_bytes(words.data(), words.size());
-  hash_ = hash.value;
+  hash_.add_text(words);
   return *this;
 }
 
@@ -68,6 +64,6 @@ RunKey& RunKey::add_files(const std::vector<std::string>& paths) {
   return *this;
 }
 
-std::string RunKey::text() const { return fmt::format("{:016x}", hash_); }
+std::string RunKey::text() const { return fmt::format("{:016x}", hash_.value); }
 
 }  // namespace catena::app

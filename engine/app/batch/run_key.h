@@ -2,10 +2,11 @@
 /// Identity of a run: the command, its options and the content of its inputs, but not where these files are nor which shard is run. Parts
 /// are put together only if their keys are equal.
 #pragma once
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "engine/base/hash.h"
 
 namespace catena::app {
 
@@ -24,7 +25,7 @@ class RunKey {
 
  private:
   void add_file(const std::string& path);
-  std::uint64_t hash_;
+  Fnv1a hash_;
 };
 
 }  // namespace catena::app

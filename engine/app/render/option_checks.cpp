@@ -53,8 +53,7 @@ Outcome check_shard_settings(const RenderOptions& o, const scene::Scene& scene, 
   if (!o.probe.empty() && (targets.max_proxy_error || targets.max_tick_us))
     return Error{
         "--shard: max_proxy_error and max_tick_us choose the settings of links by the time of this machine; \"method\" and \"tolerance\" "
-        "of "
-        "the links were expected instead"};
+        "of the links were expected instead"};
   return Done{};
 }
 

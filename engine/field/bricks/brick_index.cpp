@@ -10,10 +10,6 @@
 namespace catena::field {
 namespace {
 
-std::uint64_t count_bricks(const Index3& n) {
-  return static_cast<std::uint64_t>(n.x) * static_cast<std::uint64_t>(n.y) * static_cast<std::uint64_t>(n.z);
-}
-
 /// Returns the nearest 32-bit float that is not above the value, or not below it.
 float round_outward(double value, bool is_upper) {
   constexpr float kFloatInfinity = std::numeric_limits<float>::infinity(), kMax = std::numeric_limits<float>::max();
@@ -69,7 +65,7 @@ LevelIndex::LevelIndex(const Index3& counts, std::vector<std::uint64_t> bits) : 
 
 LevelIndex::LevelIndex(const Index3& counts, const std::function<bool(std::uint64_t)>& has_data)
     : LevelIndex(counts, [&] {
-        const std::uint64_t bricks = count_bricks(counts);
+        const std::uint64_t bricks = brick_count(counts);
         std::vector<std::uint64_t> bits((bricks + 63) / 64);
         for (std::uint64_t number = 0; number < bricks; ++number)
           if (has_data(number)) bits[number / 64] |= std::uint64_t{1} << (number % 64);
@@ -78,7 +74,7 @@ LevelIndex::LevelIndex(const Index3& counts, const std::function<bool(std::uint6
 
 std::vector<LevelIndex> LevelIndex::from_parts(const Index3& counts, std::vector<std::uint64_t> bits, std::vector<Entry> entries,
                                                std::vector<std::uint32_t> checksums) {
-  const std::uint64_t bricks = count_bricks(counts);
+  const std::uint64_t bricks = brick_count(counts);
   if (bits.size() != (bricks + 63) / 64) return {};
   if (bricks % 64 != 0 && bits.back() >> (bricks % 64) != 0) return {};
   LevelIndex index(counts, std::move(bits));

@@ -47,6 +47,11 @@ inline Index3 brick_size(const BrickLevel& level, const Index3& brick) {
   return {edge(level.size.x, brick.x), edge(level.size.y, brick.y), edge(level.size.z, brick.z)};
 }
 
+/// Returns the number of bricks of a level with `counts` along each axis.
+inline std::uint64_t brick_count(const Index3& counts) {
+  return static_cast<std::uint64_t>(counts.x) * static_cast<std::uint64_t>(counts.y) * static_cast<std::uint64_t>(counts.z);
+}
+
 /// Returns the number of a brick among `counts` bricks along each axis, x fastest.
 inline std::uint64_t brick_number(const Index3& counts, const Index3& brick) {
   const auto wide = [](std::int32_t n) { return static_cast<std::uint64_t>(n); };

@@ -51,9 +51,7 @@ AnyField with_interpolation(AnyField field, Interpolation linear_or_nearest) {
 
 BrickId PagedGrid::brick_id(const Index3& brick) const noexcept { return {version(), brick_number(counts_, brick)}; }
 
-std::uint64_t PagedGrid::brick_count() const noexcept {
-  return static_cast<std::uint64_t>(counts_.x) * static_cast<std::uint64_t>(counts_.y) * static_cast<std::uint64_t>(counts_.z);
-}
+std::uint64_t PagedGrid::brick_count() const noexcept { return field::brick_count(counts_); }
 
 Index3 PagedGrid::brick_at(std::uint64_t number) const noexcept { return field::brick_at(counts_, number); }
 

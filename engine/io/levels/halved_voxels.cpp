@@ -143,8 +143,7 @@ VoxelSource halve_voxels(VoxelSource full, const Index3& chunk, double max_bytes
   source.identity = full.identity + "at half the resolution\n";
   source.bricks_at_once = bricks_that_share_chunks(source.size, half(chunk), source.type.bytes, max_bytes);
   if (full.is_empty) {
-    const auto along = [](int voxels) { return (voxels - 1) / kBrickEdge + 1; };
-    const Index3 counts{along(full.size.x), along(full.size.y), along(full.size.z)};
+    const Index3 counts = brick_counts({full.size, {}});
     source.is_empty = [is_empty = full.is_empty, counts](const Index3& brick) {
       for (int z = 2 * brick.z; z < std::min(counts.z, 2 * brick.z + 2); ++z)
         for (int y = 2 * brick.y; y < std::min(counts.y, 2 * brick.y + 2); ++y)

@@ -156,8 +156,7 @@ Result<Cached> make_cached_levels(const std::shared_ptr<Store>& store, int grid,
   if (cache_folder->empty()) return Error{"there is no folder for caches: HOME or XDG_CACHE_HOME was expected to be set"};
   const std::vector<StoreLevel>& own = grid_of(*store, grid).levels;
   constexpr double kMostBricks = 1 << 25;
-  const Index3 bricks = brick_counts({own.back().size, {}});
-  if (const double count = static_cast<double>(bricks.x) * bricks.y * bricks.z; count > kMostBricks)
+  if (const auto count = static_cast<double>(brick_count(brick_counts({own.back().size, {}}))); count > kMostBricks)
     return Error{fmt::format("there are {:.3g} bricks of {}^3 voxels, at most {:.3g} were expected", count, kBrickEdge, kMostBricks)};
   const CachePlace place{folder_for(*store, grid, step), identify_stored_grid(*store, grid, step)};
   if (is_path_within(place.folder, store->path())) return Error{one_line(place.folder) + ": lies in the folder of the data"};
@@ -208,9 +207,8 @@ Result<Cached> make_cached_levels(const std::shared_ptr<Store>& store, int grid,
 }
 
 void cache_index(const std::string& path, const BrickIndex& index) {
-  constexpr double kFewBricks = 512;
-  const Index3& n = index.levels.front().counts();
-  if (!cache_folder || cache_folder->empty() || static_cast<double>(n.x) * n.y * n.z < kFewBricks) return;
+  constexpr std::uint64_t kFewBricks = 512;
+  if (!cache_folder || cache_folder->empty() || brick_count(index.levels.front().counts()) < kFewBricks) return;
   const auto store = Store::open(path, /*is_input=*/false);
   if (!store || (*store)->description().grids.size() != 1) return;
   const CachePlace place{folder_for(**store, 0, 0), identify_stored_grid(**store, 0, 0)};

@@ -30,8 +30,7 @@ BrickLog::BrickLog(std::string path, const std::vector<BrickLevel>& levels)
   for (const BrickLevel& level : levels) {
     const Index3 n = brick_counts(level);
     counts_.push_back(n);
-    states_.emplace_back(static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z),
-                         BrickState::missing);
+    states_.emplace_back(brick_count(n), BrickState::missing);
     checksums_.emplace_back(states_.back().size());
   }
 }

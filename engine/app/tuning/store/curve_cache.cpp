@@ -13,7 +13,6 @@
 #include "engine/app/cli/io_conflicts.h"
 #include "engine/app/tuning/report/report.h"
 #include "engine/app/tuning/report/system_info.h"
-#include "engine/base/hash.h"
 #include "engine/base/json_edit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
@@ -42,7 +41,7 @@ bool is_sane(const Curve& curve) {
 
 }  // namespace
 
-CurveKey::CurveKey(std::string_view sense) : hash_(Fnv1a{}.value) {
+CurveKey::CurveKey(std::string_view sense) {
   add(sense);
   for (const auto& [name, value] : system_info())
     if (name != "date") add(value);
@@ -52,10 +51,7 @@ CurveKey::CurveKey(std::string_view sense) : hash_(Fnv1a{}.value) {
 }
 
 CurveKey& CurveKey::add(std::string_view words) {
-  Fnv1a hash{hash_};
-  hash.add(words.size());
-  hash.add_bytes(words.data(), words.size());
-  hash_ = hash.value;
+  hash_.add_text(words);
   return *this;
 }
 
@@ -102,7 +98,7 @@ CurveKey& CurveKey::add(const scene::Scene& scene, std::string_view text) {
   return *this;
 }
 
-std::string CurveKey::text() const { return fmt::format("{:016x}", hash_); }
+std::string CurveKey::text() const { return fmt::format("{:016x}", hash_.value); }
 
 CurveCache::CurveCache() : CurveCache(user_folder("XDG_CACHE_HOME", ".cache")) {
   if (!folder_.empty()) folder_ += "/plans";

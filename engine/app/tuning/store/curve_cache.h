@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/app/tuning/measure/curve.h"
+#include "engine/base/hash.h"
 #include "engine/scene/scene.h"
 
 namespace catena::app::tuning {
@@ -34,7 +35,7 @@ class CurveKey {
 
  private:
   void add_file(const std::string& path);
-  std::uint64_t hash_;
+  Fnv1a hash_;
 };
 
 /// Reads and writes the files of cached curves.
