@@ -17,6 +17,7 @@
 #include "engine/field/field_display_range.h"
 #include "engine/io/formats.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/default_channels.h"
 #include "engine/scene/default_points.h"
 #include "engine/scene/default_visualization.h"
 #include "engine/scene/labels.h"
@@ -135,10 +136,30 @@ void show_fibres(DataFile& file, DefaultScene& default_scene, DefaultVisualizati
     if (!fibres.is_fibers) continue;
     visualization.scene_members = visualization.shell_members + ",\n" + fibres.scene_members;
     visualization.note += "; " + in_quotes(grid.name) + " " + fibres.note;
-    default_scene.fibers_grid = grid.name;
-    default_scene.fibers = *loaded;
+    default_scene.more_grids.emplace_back(grid.name, *loaded);
     return;
   }
+}
+
+/// Shows the channels of a microscope's image. Returns whether the file has several.
+bool show_channels(DataFile& file, DefaultScene& default_scene, DefaultVisualization& visualization) {
+  if (default_scene.request.grid.empty() || !default_scene.field.scalar || !file.grids()) return false;
+  std::vector<Channel> channels;
+  for (const field::GridInfo* grid : find_channels(*file.grids())) {
+    const bool is_first = grid->name == default_scene.request.grid;
+    field::LoadRequest request = default_scene.request;
+    request.grid = grid->name;
+    const auto loaded = is_first ? Result<field::AnyField>(default_scene.field) : field::load(request);
+    if (!loaded || !loaded->scalar) continue;
+    channels.push_back({grid, json::serialize_string(field_name(grid->name)), *loaded});
+    if (!is_first) default_scene.more_grids.emplace_back(grid->name, *loaded);
+  }
+  const auto has_name = [&](const Channel& channel) { return std::ranges::count(channels, channel.field_name, &Channel::field_name) == 1; };
+  if (channels.size() < 2 || !std::ranges::all_of(channels, has_name)) return false;
+  visualization = {};
+  visualization.scene_members = channel_volumes(channels);
+  visualization.note = channels_note(channels);
+  return true;
 }
 
 /// Shows the labels of a map by groups of equal opacity.
@@ -217,8 +238,12 @@ Result<DefaultScene> scene_of_one_file(const std::string& path, const std::strin
                                                         field::read_units(result.request.path, result.request.grid), colors)
                          : choose_default_visualization(name, *shown_field.vector->grid(), colors.named);
   if (later) visualization.note += fmt::format(" (at step {}; at step {} all values are equal)", later->step, step);
-  if (grid.empty() && colors.is_default()) show_fibres(data_file, result, visualization);
-  result.note = name + " " + visualization.note;
+  bool has_channels = false;
+  if (grid.empty() && colors.is_default()) {
+    show_fibres(data_file, result, visualization);
+    has_channels = !visualization.is_label_map && show_channels(data_file, result, visualization);
+  }
+  result.note = (has_channels ? "" : name + " ") + visualization.note;
   result.text = "{\n  \"fields\": {" + name + ": {\"file\": " + file;
   if (!result.request.grid.empty()) result.text += ", \"grid\": " + json::serialize_string(result.request.grid);
   if (!visualization.is_label_map && !colors.label_opacities.empty())
@@ -242,7 +267,9 @@ Result<DefaultScene> scene_of_one_file(const std::string& path, const std::strin
   result.text += "}" + visualization.extra_fields;
   const std::string others = other_fields(data_file, result.request.grid, file, name);
   result.text += others;
-  if (grid.empty() && !others.empty())
+  if (has_channels)
+    result.note += "; --grid NAME shows one alone";
+  else if (grid.empty() && !others.empty())
     result.note += "; the file has more fields: --grid NAME shows another one (catena info FILE lists them)";
   if (const std::string note = outlier_note(field::display_range(result.field)); !note.empty()) result.field.notes.push_back(note);
   result.text += std::string("},\n") +
@@ -342,7 +369,7 @@ void adopt_loaded_data(const DefaultScene& default_scene, Scene& scene) {
         source.loaded = source.rendered = field;
     };
     adopt(default_scene.request.grid, default_scene.field);
-    adopt(default_scene.fibers_grid, default_scene.fibers);
+    for (const auto& [grid, field] : default_scene.more_grids) adopt(grid, field);
     load_label_map(source);
   });
   const auto adopt_shape = [&](auto& source, const auto& loaded) {

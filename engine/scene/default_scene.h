@@ -15,8 +15,8 @@ struct DefaultScene {
   std::string note;            ///< Classification of the data and the reason; empty for a mesh
   field::LoadRequest request;  ///< Request that loaded the file; for a pattern the file of the step
   field::AnyField field;       ///< The loaded field; empty for other data
-  std::string fibers_grid{};   ///< Grid of the fibers that lie in the body shown; empty: none
-  field::AnyField fibers{};    ///< The loaded `fibers_grid`
+  /// Further grids that were loaded: the fibers that lie in the body shown, the other channels.
+  std::vector<std::pair<std::string, field::AnyField>> more_grids{};
   mesh::MeshPtr mesh;          ///< The loaded mesh; null for other data
   curves::PointSetPtr points;  ///< The loaded points; null for other data
   curves::CurveSetPtr curves;  ///< The loaded curves; null for other data

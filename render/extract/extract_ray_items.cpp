@@ -75,8 +75,9 @@ Outcome extract_isosurfaces(const scene::Scene& scene, FramePacket& packet) {
     CATENA_CHECK(scene::check_level(*grid, surface.level, json::member_or_parent(surface.where, "level")));
     CATENA_TRY(auto color_by, color_source(scene, surface.color_by, surface.field));
     const std::uint32_t id = packet.add_object("isosurface", entity_name(scene, surface.field), surface.where.label);
-    packet.isosurfaces.push_back(
-        {std::move(grid), surface.level, surface.color, static_cast<float>(surface.opacity), id, surface.clipped, std::move(color_by)});
+    const std::shared_ptr<const field::PagedGrid>& paged = scene::rendered_field(scene, surface.field).paged;
+    packet.isosurfaces.push_back({std::move(grid), surface.level, surface.color, static_cast<float>(surface.opacity), id, surface.clipped,
+                                  std::move(color_by), paged});
   }
   return Done{};
 }

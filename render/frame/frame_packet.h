@@ -134,6 +134,9 @@ struct IsosurfaceItem {
   std::uint32_t id = 0;                           ///< id in the id image; 0: none
   bool is_clipped = true;                         ///< cut by the clip planes
   std::optional<ColorSource> color_by{};          ///< color by another field; nullopt: `color` everywhere
+  /// Finest level of the data of which `grid` is a coarser one; null: `grid` is all. Translucent surfaces, and those with `color_by`, are
+  /// drawn from `grid`.
+  std::shared_ptr<const field::PagedGrid> paged{};
   bool operator==(const IsosurfaceItem&) const = default;
 };
 

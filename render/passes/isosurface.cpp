@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <map>
 
+#include "engine/field/bricks/paged_grid.h"
+#include "render/passes/paged_surfaces.h"
 #include "render/passes/passes.h"
 #include "render/passes/surface_cache.h"
 #include "render/raycast/grid_bindings.h"
@@ -18,18 +20,6 @@ constexpr std::uint32_t kIsosurfaceFragmentShader[] = {
 #include "spirv/isosurface.frag.inc"
 };
 
-/// Returns the pixels that the bricks containing the level can cover.
-VkRect2D surface_area(const CellMap& cells, const ResidentGrid& uploaded, const field::Mapping& mapping, const Camera& camera) {
-  if (cells.lo == cells.hi) return {};
-  const Vec3 origin(uploaded.origin.x, uploaded.origin.y, uploaded.origin.z);
-  std::array<Vec3, 8> corners;
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 local{(i & 1) ? cells.hi.x : cells.lo.x, (i & 2) ? cells.hi.y : cells.lo.y, (i & 4) ? cells.hi.z : cells.lo.z};
-    corners[i] = mapping.world_from_index(origin + local);
-  }
-  return covered_area(corners, camera);
-}
-
 bool is_opaque(const IsosurfaceItem& item) { return item.opacity >= 1; }
 
 class IsosurfacePass final : public Pass {
@@ -39,12 +29,14 @@ class IsosurfacePass final : public Pass {
     CATENA_TRY(self->linear_, vk::Sampler::create(device, vk::Filter::linear));
     return std::unique_ptr<Pass>(std::move(self));
   }
-  PassUse use(const Frame& frame) const override { return {0, target::opaque, frame.settings.reuse_rays}; }
+  PassUse use(const Frame& frame) const override { return {0, target::opaque, frame.settings.reuse_rays || has_pages_}; }
   Outcome prepare(Frame& frame) override;
   Bounds bounds() const override;
   Outcome record(vk::Commands& commands, Frame& frame) override;
   bool casts_surface_rays() const override { return true; }
   bool reused_previous() const override { return keeps_ && still_[eye_].reused_previous(); }
+  std::vector<PagedVolume*> pages() override { return paged_.pages(); }
+  std::string warning() const override { return paged_.warning(); }
 
  private:
   struct Surface {
@@ -53,8 +45,14 @@ class IsosurfacePass final : public Pass {
     vk::Image cell_map;  // empty if the map would be too large, or if the state holds it
     IsosurfaceItem item;
     vk::Buffer uniform;
+    bool has_pages = false;  // drawn by PagedSurfaces; the members above `item` are empty
     Outcome make_cells(vk::Device& device);
+    /// Returns the pixels that the bricks containing the level can cover.
+    VkRect2D area(const Camera& camera) const;
   };
+  shared::GridData grid_data(const Frame& frame, const Surface& surface) const {
+    return surface.has_pages ? paged_.grid_data(frame.rays, surface.item) : surface_data(frame.rays, surface.state, surface.item);
+  }
   Result<const vk::Pipeline*> pipeline(vk::Device& device, std::uint32_t flags, bool has_cells);
 
   vk::Sampler linear_;
@@ -66,6 +64,8 @@ class IsosurfacePass final : public Pass {
   std::size_t eye_ = 0;
   std::uint64_t version_ = 0;  ///< number of changes found by prepare()
   bool keeps_ = false;
+  PagedSurfaces paged_;
+  bool has_pages_ = false;  ///< any surface
 };
 
 Result<const vk::Pipeline*> IsosurfacePass::pipeline(vk::Device& device, std::uint32_t flags, bool has_cells) {
@@ -84,6 +84,20 @@ Result<const vk::Pipeline*> IsosurfacePass::pipeline(vk::Device& device, std::ui
   return &pipeline;
 }
 
+VkRect2D IsosurfacePass::Surface::area(const Camera& camera) const {
+  const field::Field* const paged = item.paged.get();
+  if (has_pages) return covered_area({&paged, 1}, camera);
+  if (cells.lo == cells.hi) return {};
+  const ResidentGrid& resident = *state.resident;
+  const Vec3 origin(resident.origin.x, resident.origin.y, resident.origin.z);
+  std::array<Vec3, 8> corners;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 local{(i & 1) ? cells.hi.x : cells.lo.x, (i & 2) ? cells.hi.y : cells.lo.y, (i & 4) ? cells.hi.z : cells.lo.z};
+    corners[i] = resident.source(*item.grid).mapping().world_from_index(origin + local);
+  }
+  return covered_area(corners, camera);
+}
+
 Outcome IsosurfacePass::Surface::make_cells(vk::Device& device) {
   cell_map = {};
   if (state.resident->cubic) {
@@ -100,8 +114,22 @@ Outcome IsosurfacePass::Surface::make_cells(vk::Device& device) {
 
 Outcome IsosurfacePass::prepare(Frame& frame) {
   std::size_t count = 0;
+  std::vector<const IsosurfaceItem*> paged;
+  for (const IsosurfaceItem& item : frame.packet.isosurfaces)
+    if (is_opaque(item) && item.paged && item.grid->interpolation() == field::Interpolation::linear) paged.push_back(&item);
+  CATENA_CHECK(paged_.prepare(frame, paged));
+  has_pages_ = !paged_.pages().empty();
   for (const IsosurfaceItem& item : frame.packet.isosurfaces) {
     if (!is_opaque(item)) continue;
+    if (paged_.has_pages(item)) {
+      if (count == surfaces_.size()) surfaces_.emplace_back();
+      Surface& surface = surfaces_[count++];
+      surface.state = {};
+      surface.cell_map = {};
+      surface.item = item;
+      surface.has_pages = true;
+      continue;
+    }
     CATENA_TRY(auto uploaded, frame.resident_grid(*item.grid));
     if (!uploaded->is_drawable) continue;
     if (count == surfaces_.size()) surfaces_.emplace_back();
@@ -109,6 +137,7 @@ Outcome IsosurfacePass::prepare(Frame& frame) {
     const bool same = surface.state.map.image && surface.state.resident == uploaded && surface.state.level == float(item.level);
     CATENA_CHECK(surface.state.update(frame.device, *item.grid, std::move(uploaded), item.level));
     surface.item = item;
+    surface.has_pages = false;
     version_ += !same;
     if (!same) CATENA_CHECK(surface.make_cells(frame.device));
   }
@@ -118,38 +147,44 @@ Outcome IsosurfacePass::prepare(Frame& frame) {
 
 Bounds IsosurfacePass::bounds() const {
   Bounds all;
-  for (const Surface& surface : surfaces_) all.extend(surface.item.grid->world_bounds());
+  for (const Surface& surface : surfaces_)
+    all.extend(surface.has_pages ? surface.item.paged->world_bounds() : surface.item.grid->world_bounds());
   return all;
 }
 
 Outcome IsosurfacePass::record(vk::Commands& commands, Frame& frame) {
   keeps_ = false;
-  if (!frame.settings.reuse_rays) return draw(commands, frame);
+  if (!use(frame).owns_rendering) return draw(commands, frame);
   still_.resize(frame.eye_count);
   SurfaceCache& still = still_[eye_ = frame.eye_index];
-  keeps_ = bool(still.ensure(frame.device, {frame.packet.width, frame.packet.height, 1}));
+  keeps_ = frame.settings.reuse_rays && still.ensure(frame.device, {frame.packet.width, frame.packet.height, 1});
   if (keeps_) {
-    SurfaceCache::Key look{{}, version_};
+    SurfaceCache::Key look{{}, version_ + paged_.version()};
     for (const Surface& surface : surfaces_) {
       look.surfaces.push_back(frame.rays.frame_data());
-      look.surfaces.back().grids[0] = surface_data(frame.rays, surface.state, surface.item);
+      look.surfaces.back().grids[0] = grid_data(frame, surface);
     }
     CATENA_CHECK(still.update(commands, std::move(look), [&] { return draw(commands, frame); }));
   }
   frame.targets.begin(commands, target::opaque, target::opaque & ~frame.written_targets);
   CATENA_CHECK(keeps_ ? still.draw(frame.device, commands, frame.rays.frame_data()) : draw(commands, frame));
   commands.end_pass();
+  paged_.finish_visits(commands);
   return Done{};
 }
 
 Outcome IsosurfacePass::draw(vk::Commands& commands, Frame& frame) {
   for (Surface& surface : surfaces_) {
-    const ResidentGrid& uploaded = *surface.state.resident;
-    const VkRect2D area = surface_area(surface.cells, uploaded, uploaded.source(*surface.item.grid).mapping(), frame.rays.camera);
+    const VkRect2D area = surface.area(frame.rays.camera);
     if (area.extent.width == 0 || area.extent.height == 0) continue;
+    commands.set_scissor(area);
     shared::FrameData data = frame.rays.frame_data();
-    data.grids[0] = surface_data(frame.rays, surface.state, surface.item);
+    data.grids[0] = grid_data(frame, surface);
     CATENA_CHECK(vk::write_uniform(frame.device, surface.uniform, data));
+    if (surface.has_pages) {
+      CATENA_CHECK(paged_.draw(commands, frame, surface.item, surface.uniform));
+      continue;
+    }
     const GridBinding bound = surface.state.binding();
     const bool has_cells = frame.settings.skip_empty && surface.cell_map;
     CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, grid_flags({&bound, 1}), has_cells));
@@ -158,7 +193,6 @@ Outcome IsosurfacePass::draw(vk::Commands& commands, Frame& frame) {
         {0, vk::DescriptorKind::uniform, &surface.uniform, nullptr, nullptr},
         {1, vk::DescriptorKind::texture, nullptr, has_cells ? &surface.cell_map : &bound.map->image, nullptr}};
     add_grid_bindings(bindings, {&bound, 1}, 1, linear_);
-    commands.set_scissor(area);
     commands.bind(*pipe, bindings);
     commands.draw_triangle();
   }

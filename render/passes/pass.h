@@ -137,8 +137,6 @@ class RaySampler {
   virtual vk::Image* dirty_tiles() = 0;
   /// Returns FastVolumeRaycast::marked_blocks of the fast raycast's last image.
   virtual std::array<vk::Image*, 2> marked_blocks() = 0;
-  /// Returns the pages of the volume that was prepared last; null: it is not paged.
-  virtual PagedVolume* pages() = 0;
 
  protected:
   ~RaySampler() = default;
@@ -154,6 +152,8 @@ class Pass {
   virtual Outcome prepare(Frame& frame) = 0;
   /// Returns the world bounds of the items found by prepare().
   virtual Bounds bounds() const { return {}; }
+  /// Returns the volumes in pages that were prepared last.
+  virtual std::vector<PagedVolume*> pages() { return {}; }
   /// Returns whether data that the pass reads in the background have arrived since prepare().
   virtual bool has_new_data() const { return false; }
   /// Records the rendering commands.

@@ -44,8 +44,8 @@ bool is_translucent(const MeshItem& item);
 /// Everything else is rendered by the exact raycast (volume.h), also volumes for which the fast raycast has no memory; that takes longer
 /// and is reported in RenderStats::warnings.
 extern const PassEntry kRaycastPass;
-/// Returns whether the fast raycast can render the packet: exactly one volume, in composite projection, no translucent isosurface, a grid
-/// that can be packed, and an appearance that depends on the value alone.
+/// Returns whether the fast raycast can render the packet: exactly one volume, or several in the same pages, in composite projection, no
+/// translucent isosurface, a grid that can be packed, and an appearance that depends on the value alone.
 bool supports_fast_raycast(const vk::Device& device, const FramePacket& packet);
 
 /// X-ray overlay: the cursor where something occludes it (CursorItem::show_occluded). Its triangles are rendered a second time, with a

@@ -10,6 +10,7 @@
 #include "render/passes/renderer.h"
 #include "render/passes/slice.h"
 #include "render/raycast/fast_volume.h"
+#include "render/raycast/paged_projection.h"
 #include "render/raycast/projection.h"
 #include "render/raycast/volume.h"
 
@@ -24,6 +25,15 @@ std::size_t surfaces_of(const FramePacket& packet) {
 }
 
 bool is_projected(const VolumeItem& item) { return item.projection != Projection::composite; }
+
+/// Returns whether the volumes are paged, with the same pages, and cut alike.
+bool are_channels(const FramePacket& packet) {
+  if (packet.volumes.empty() || packet.volumes.size() > kMaxChannels) return false;
+  const VolumeItem& first = packet.volumes.front();
+  return std::ranges::all_of(packet.volumes, [&](const VolumeItem& item) {
+    return first.paged && item.paged && item.is_clipped == first.is_clipped && have_same_pages(*first.paged, *item.paged);
+  });
+}
 
 RaySettings ray_settings(const Frame& frame) {
   const RenderSettings& s = frame.settings;
@@ -89,10 +99,12 @@ class RaycastPass final : public Pass, public RaySampler {
     return fast_ ? fast_pass_->dirty_tiles() : exact_pass_->dirty_tiles();
   }
   std::array<vk::Image*, 2> marked_blocks() override { return fast_ ? fast_pass_->marked_blocks() : std::array<vk::Image*, 2>{}; }
-  bool has_new_data() const override { return fast_ && fast_pass_->pages() && fast_pass_->pages()->has_arrived(); }
-  PagedVolume* pages() override { return fast_ ? fast_pass_->pages() : nullptr; }
+  std::vector<PagedVolume*> pages() override {
+    if (projects_pages_) return {&paged_projection_->pages()};
+    return fast_ && fast_pass_->pages() ? std::vector<PagedVolume*>{fast_pass_->pages()} : std::vector<PagedVolume*>{};
+  }
   bool was_out_of_memory(const FramePacket& packet) const override {
-    return !refused_.reason.empty() && packet.volumes.size() == 1 && packet.volumes.front().grid->version() == refused_.version;
+    return !refused_.reason.empty() && !packet.volumes.empty() && packet.volumes.front().grid->version() == refused_.version;
   }
 
  private:
@@ -105,17 +117,20 @@ class RaycastPass final : public Pass, public RaySampler {
     std::string reason;
   };
   bool prepare_fast(Frame& frame);
+  /// Returns false if the memory does not suffice, or there is no projected volume in pages.
+  bool prepare_paged_projection(Frame& frame);
   /// Draws the volumes or the projected volume into the current rendering scope.
   Outcome record_exact(vk::Commands& commands, Frame& frame, const CameraRays& rays, const VkRect2D& area);
 
   std::optional<VolumeRaycast> exact_pass_;
   std::optional<ProjectionRaycast> projection_pass_;
+  std::optional<PagedProjection> paged_projection_;
   std::optional<FastVolumeRaycast> fast_pass_;
-  const VolumeItem* fast_ = nullptr;  ///< the frame's volume, if the fast raycast draws it
+  const VolumeItem* fast_ = nullptr;  ///< the frame's first volume, if the fast raycast draws the volumes
   FastSettings fast_settings_;        ///< of the last frame that wanted the fast raycast
   Refused refused_;
   bool wanted_fast_ = false;
-  bool any_ = false, projected_ = false;
+  bool any_ = false, projected_ = false, projects_pages_ = false;
   std::vector<const field::Field*> grids_;
 };
 
@@ -151,19 +166,36 @@ bool RaycastPass::prepare_fast(Frame& frame) {
   }
   if (prepared && (item.paged || !can_pack_dense(frame.device, *item.grid))) {
     exact_pass_.reset();
-    frame.residency.drop_unused(*item.grid);
+    for (const VolumeItem& volume : frame.packet.volumes) frame.residency.drop_unused(*volume.grid);
   }
-  if (prepared) prepared = fast_pass_->prepare(item, settings, frame.residency.available_bytes(), !frame.settings.waits_for_pages);
+  if (prepared)
+    prepared = fast_pass_->prepare(frame.packet.volumes, settings, frame.residency.available_bytes(), !frame.settings.waits_for_pages);
   if (prepared) return true;
   fast_pass_.reset();
   refused_.reason = fmt::format("the grid \"{}\" is drawn by exact rays, slower: {}", item.grid->name(), prepared.error().message);
   return false;
 }
 
+bool RaycastPass::prepare_paged_projection(Frame& frame) {
+  const FramePacket& packet = frame.packet;
+  const bool is_alone = packet.volumes.size() == 1 && surfaces_of(packet) == 0 && frame.layers.empty();
+  const bool is_paged = is_alone && packet.volumes.front().paged && is_projected(packet.volumes.front()) &&
+                        packet.volumes.front().grid->interpolation() == field::Interpolation::linear;
+  if (is_paged) {
+    if (!paged_projection_) paged_projection_.emplace(frame.device);
+    std::uint64_t most = page_pool_bytes(frame.device, frame.residency.available_bytes(), 1);
+    if (frame.settings.fast) most = std::min(most, frame.settings.fast->max_bytes);
+    if (paged_projection_->prepare(packet.volumes.front(), most, !frame.settings.waits_for_pages)) return true;
+  }
+  paged_projection_.reset();
+  return false;
+}
+
 Outcome RaycastPass::prepare(Frame& frame) {
   const FramePacket& packet = frame.packet;
   grids_.clear();
-  const bool is_paged = packet.volumes.size() == 1 && packet.volumes.front().paged;
+  const bool is_paged = !packet.volumes.empty() && packet.volumes.front().paged;
+  projects_pages_ = false;
   wanted_fast_ = (frame.settings.fast || is_paged) && frame.layers.empty() && supports_fast_raycast(frame.device, packet);
   fast_settings_ = frame.settings.fast ? *frame.settings.fast : exact_rays(frame.settings);
   fast_ = wanted_fast_ && prepare_fast(frame) ? &packet.volumes.front() : nullptr;
@@ -175,6 +207,12 @@ Outcome RaycastPass::prepare(Frame& frame) {
     return Done{};
   }
   if (fast_pass_ && fast_pass_->is_bricked()) fast_pass_.reset();
+  projects_pages_ = prepare_paged_projection(frame);
+  if (projects_pages_) {
+    any_ = projected_ = true;
+    grids_.push_back(packet.volumes.front().paged.get());
+    return Done{};
+  }
 
   std::vector<ResidentItem<VolumeItem>> volumes;
   std::vector<ResidentItem<IsosurfaceItem>> surfaces;
@@ -244,11 +282,13 @@ Outcome RaycastPass::record(vk::Commands& commands, Frame& frame) {
   targets.begin(commands, target::volume, target::volume);
   CATENA_CHECK(record_exact(commands, frame, frame.rays, area));
   commands.end_pass();
+  if (projects_pages_) paged_projection_->pages().finish_visits(commands);
   return Done{};
 }
 
 Outcome RaycastPass::record_exact(vk::Commands& commands, Frame& frame, const CameraRays& rays, const VkRect2D& area) {
   if (!any_) return Done{};
+  if (projects_pages_) return paged_projection_->record(commands, rays, ray_settings(frame), area, ray_scene(frame));
   if (projected_) return projection_pass_->record(commands, rays, ray_settings(frame), area, ray_scene(frame));
   return exact_pass_->record(commands, rays, ray_settings(frame), area, ray_scene(frame));
 }
@@ -266,6 +306,7 @@ Outcome RaycastPass::record_ray_samples(vk::Commands& commands, Frame& frame, st
   const VkExtent3D& extent = target.info().extent;
   CATENA_CHECK(record_exact(commands, frame, rays, {{0, 0}, {extent.width, extent.height}}));
   commands.end_pass();
+  if (projects_pages_) paged_projection_->pages().finish_visits(commands);
   return Done{};
 }
 
@@ -292,11 +333,13 @@ Outcome RaycastPass::record_half_opacity_depth(vk::Commands& commands, Frame& fr
 }  // namespace
 
 bool supports_fast_raycast(const vk::Device& device, const FramePacket& packet) {
-  if (packet.volumes.size() != 1) return false;
-  const VolumeItem& item = packet.volumes.front();
-  return !is_projected(item) && !item.color_by && item.transfer.gradient_factors.empty() && packet.lights.empty() && !packet.fog &&
-         !needs_layers(packet) && surfaces_of(packet) == 0 && item.grid->interpolation() == field::Interpolation::linear &&
-         FastVolumeResources::can_pack(device, *item.grid) && FastVolumeResources::can_quantize(item);
+  const auto supports = [&](const VolumeItem& item) {
+    return !is_projected(item) && !item.color_by && item.transfer.gradient_factors.empty() &&
+           item.grid->interpolation() == field::Interpolation::linear && FastVolumeResources::can_pack(device, *item.grid) &&
+           FastVolumeResources::can_quantize(item);
+  };
+  return (packet.volumes.size() == 1 || are_channels(packet)) && packet.lights.empty() && !packet.fog && !needs_layers(packet) &&
+         surfaces_of(packet) == 0 && std::ranges::all_of(packet.volumes, supports);
 }
 
 bool uses_raycast(const FramePacket& packet) { return !packet.volumes.empty() || needs_layers(packet) || surfaces_of(packet) > 0; }

@@ -242,7 +242,7 @@ Outcome Renderer::draw(const FramePacket& packet, const RenderSettings& settings
   return impl_->within_budget(packet, [&]() -> Outcome {
     CATENA_CHECK(draw_once(packet, settings));
     for (int k = 0; settings.waits_for_pages && k < kMaxPageRounds; ++k) {
-      CATENA_TRY(const bool loaded, impl_->load_pages(settings.divides_for_pages));
+      CATENA_TRY(const bool loaded, impl_->load_pages(settings));
       if (!loaded) break;
       CATENA_CHECK(draw_once(packet, settings));
     }
@@ -250,15 +250,14 @@ Outcome Renderer::draw(const FramePacket& packet, const RenderSettings& settings
   });
 }
 
-Result<bool> Renderer::Impl::load_pages(bool only_if_they_fit) {
+Result<bool> Renderer::Impl::load_pages(const RenderSettings& settings) {
   bool loaded = false;
-  for (Pass* pass : active_passes()) {
-    PagedVolume* pages = pass->ray_sampler() ? pass->ray_sampler()->pages() : nullptr;
-    if (!pages) continue;
-    const std::uint64_t before = pages->loaded_count();
-    CATENA_CHECK(pages->finish(only_if_they_fit));
-    loaded = loaded || pages->loaded_count() != before;
-  }
+  for (Pass* pass : active_passes())
+    for (PagedVolume* pages : pass->pages()) {
+      const std::uint64_t before = pages->loaded_count();
+      CATENA_CHECK(pages->finish(settings.shows_finest_pages, settings.divides_for_pages));
+      loaded = loaded || pages->loaded_count() != before;
+    }
   return loaded;
 }
 
@@ -385,12 +384,14 @@ PagingStats Renderer::paging() const {
   PagingStats stats;
   for (Pass* pass : impl_->active_passes()) {
     stats.has_arrived = stats.has_arrived || pass->has_new_data();
-    const PagedVolume* pages = pass->ray_sampler() ? pass->ray_sampler()->pages() : nullptr;
-    if (!pages) continue;
-    stats.visible = pages->plan().visible;
-    stats.resident = pages->plan().resident;
-    stats.finest_level = pages->plan().bias;
-    stats.is_loading = !pages->plan().loads.empty();
+    for (const PagedVolume* pages : pass->pages()) {
+      const PagePlan& plan = pages->plan();
+      stats.visible += plan.visible;
+      stats.resident += plan.resident;
+      stats.finest_level = std::max(stats.finest_level, plan.bias);
+      stats.is_loading = stats.is_loading || !plan.loads.empty();
+      stats.has_arrived = stats.has_arrived || pages->has_arrived();
+    }
   }
   return stats;
 }

@@ -55,9 +55,8 @@ struct Renderer::Impl {
   /// Renders one view into targets.output.
   Outcome draw(const FramePacket& packet, const RenderSettings& settings, std::size_t eye = 0, std::size_t eyes = 1, bool is_first = true,
                bool is_last = true);
-  /// Loads the pages that the rays of the last image missed; `only_if_they_fit`: none if a coarser level would have to do. Returns whether
-  /// there were any.
-  Result<bool> load_pages(bool only_if_they_fit);
+  /// Loads the pages that the rays of the last image missed. Returns whether there were any.
+  Result<bool> load_pages(const RenderSettings& settings);
   /// Renders the half-opacity depth of the frame, if requested.
   Outcome draw_ray_depth(Frame& frame);
   /// Returns the number of texels set in a mask image.

@@ -87,6 +87,9 @@ constexpr std::uint32_t kFastVolumeFragmentShader[] = {
 constexpr std::uint32_t kPagedVolumeFragmentShader[] = {
 #include "spirv/volume_paged.frag.inc"
 };
+constexpr std::uint32_t kPagedChannelsFragmentShader[] = {
+#include "spirv/channels_paged.frag.inc"
+};
 constexpr std::uint32_t kFastVolumeTilesShader[] = {
 #include "spirv/ray_grid_tiles.vert.inc"
 };
@@ -161,7 +164,10 @@ Result<const vk::Pipeline*> FastVolumeRaycast::pipeline(const Constants& constan
   if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = tiles ? vk::Spirv(kFastVolumeTilesShader) : vk::Spirv(kFastVolumeVertexShader);
-    info.fragment = is_paged ? vk::Spirv(kPagedVolumeFragmentShader) : vk::Spirv(kFastVolumeFragmentShader);
+    const bool has_channels = resources_.items().size() > 1;
+    info.fragment = has_channels ? vk::Spirv(kPagedChannelsFragmentShader)
+                    : is_paged   ? vk::Spirv(kPagedVolumeFragmentShader)
+                                 : vk::Spirv(kFastVolumeFragmentShader);
     info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::uniform}, {2, vk::DescriptorKind::texture},
                             {3, vk::DescriptorKind::texture}, {4, vk::DescriptorKind::texture}, {5, vk::DescriptorKind::texture},
                             {6, vk::DescriptorKind::texture}, {7, vk::DescriptorKind::texture}, {8, vk::DescriptorKind::sampled},
@@ -207,12 +213,18 @@ Result<shared::FrameData> FastVolumeRaycast::write_frame(const CameraRays& rays,
   shared::FrameData frame = rays.frame_data();
   const field::Mapping& mapping = resources_.domain().mapping();
   frame.grids[0] = rays.grid_data(resources_.local_geometry(), mapping);
-  frame.grids[0].id = resources_.item().id;
-  frame.grids[0].is_clipped = resources_.item().is_clipped;
+  frame.grids[0].id = resources_.items().front().id;
+  frame.grids[0].is_clipped = resources_.items().front().is_clipped;
   frame.termination = float(settings.termination);
   frame.step_world = float(settings.step_voxels * mapping.min_voxel_edge());
   CATENA_CHECK(vk::write_uniform(*device_, frame_, frame));
   return frame;
+}
+
+std::uint32_t FastVolumeRaycast::shaded_channels() const {
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < resources_.items().size(); ++i) bits |= std::uint32_t{resources_.items()[i].is_shaded} << i;
+  return bits;
 }
 
 bool FastVolumeRaycast::skips_empty_space() const { return resources_.skippable_share() > kMinSkippableShare; }
@@ -221,7 +233,8 @@ Outcome FastVolumeRaycast::draw(vk::Commands& commands, RayGrid& level, const Dr
   const bool leaps = draw.skips_empty && this->skips_empty_space();
   CATENA_TRY(const vk::Pipeline* pipe, pipeline({draw.shading, leaps, draw.opaque_depth != nullptr, draw.coarser != nullptr,
                                                  (draw.marches ? 1u : 0u) | (draw.target->info().format == kVolumeFormat ? 2u : 0u),
-                                                 resources_.is_bricked(), resources_.is_masked(), draw.half_opacity_depth},
+                                                 resources_.is_bricked(), resources_.is_masked(), draw.half_opacity_depth,
+                                                 std::uint32_t(resources_.items().size()), shaded_channels(), resources_.is_dithered()},
                                                 draw.tiles != Tiles::all));
   vk::ColorTarget color{draw.target, std::array<float, 4>{0, 0, 0, 0}};
   if (draw.tiles != Tiles::all) color.clear.reset();
@@ -351,13 +364,8 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
     coarser = &image;
   }
   if (target) eye.reuse = now;
-  finish_visits(commands);
+  if (resources_.pages()) resources_.pages()->finish_visits(commands);
   return Done{};
-}
-
-void FastVolumeRaycast::finish_visits(vk::Commands& commands) {
-  constexpr vk::ResourceUse kVisit{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_WRITE_BIT};
-  if (resources_.pages()) commands.barrier(resources_.pages()->visits(), kVisit, vk::kHostRead);
 }
 
 Outcome FastVolumeRaycast::record_ray_samples(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings,
@@ -388,7 +396,7 @@ Outcome FastVolumeRaycast::record_samples(vk::Commands& commands, const CameraRa
   params.area = {{0, 0}, {extent.width, extent.height}};
   if (resources_.pages()) resources_.pages()->begin_image(rays, false);
   CATENA_CHECK(draw(commands, sample_grid_, params));
-  finish_visits(commands);
+  if (resources_.pages()) resources_.pages()->finish_visits(commands);
   return Done{};
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// Fast raycast of one volume, with a measured error (render/quality/quality.h): packed codes, pre-integrated transfer function, Hermite
-/// midpoints, skipping of homogeneous bricks; rays on a ray grid of every 4th, 2nd or every pixel, refined where the fourth difference of
-/// the image predicts an interpolation error.   ray grid -> marks -> finer ray grid -> .. -> every pixel A large grid is packed as the
-/// bricks that are visible under its transfer function. What is not supported (several volumes, too many bricks) is rendered by
-/// VolumeRaycast. Frame thread only.
+/// Fast raycast of one volume, or of several channels in pages, with a measured error (render/quality/quality.h): packed codes,
+/// pre-integrated transfer function, Hermite midpoints, skipping of homogeneous bricks; rays on a ray grid of every 4th, 2nd or every
+/// pixel, refined where the fourth difference of the image predicts an interpolation error.   ray grid -> marks -> finer ray grid -> .. ->
+/// every pixel A large grid is packed as the bricks that are visible under its transfer function. What is not supported (several volumes,
+/// too many bricks) is rendered by VolumeRaycast. Frame thread only.
 #pragma once
 #include <array>
 #include <map>
@@ -26,8 +26,8 @@ class FastVolumeRaycast {
   static Result<FastVolumeRaycast> create(vk::Device& device);
   /// Packs the volume if it changed; loads pages if `loads`. `left`: device bytes that it may allocate in addition to what it holds. An
   /// Error if that does not suffice.
-  Outcome prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left, bool loads) {
-    return resources_.prepare(item, settings, left, loads);
+  Outcome prepare(std::span<const VolumeItem> items, const FastSettings& settings, std::uint64_t left, bool loads) {
+    return resources_.prepare(items, settings, left, loads);
   }
   /// Returns the pages; null: the volume is not paged.
   PagedVolume* pages() { return resources_.pages(); }
@@ -85,11 +85,10 @@ class FastVolumeRaycast {
   Outcome ensure(RayGrid& level, std::uint32_t spacing, const VkExtent3D& target);
   /// Tiles of a ray grid that are rendered; the others keep their content.
   enum class Tiles { all, marked, dirty };
-  using Constants = std::array<std::uint32_t, 8>;
+  using Constants = std::array<std::uint32_t, 11>;
   Result<const vk::Pipeline*> pipeline(const Constants& constants, bool tiles);
-  std::uint32_t shading(const FastSettings& settings) const {
-    return resources_.item().is_shaded ? (settings.smooth_gradients ? 2 : 1) : 0;
-  }
+  std::uint32_t shading(const FastSettings& settings) const { return shaded_channels() == 0 ? 0 : settings.smooth_gradients ? 2 : 1; }
+  std::uint32_t shaded_channels() const;  ///< one bit per volume
   Result<shared::FrameData> write_frame(const CameraRays& rays, const FastSettings& settings);
   Outcome mark(vk::Commands& commands, RayGrid& level, vk::Image& coarser, bool opaque);
   /// Parameters of rendering a ray grid: its target, the coarser grid to interpolate (or null) and whether rays are marched.
@@ -120,9 +119,6 @@ class FastVolumeRaycast {
     std::optional<ReuseState> reuse;
   };
   EyeState& eye_state() { return eye_states_[eye_index_]; }
-
-  /// Makes the visits of a paged volume's pages visible to the host.
-  void finish_visits(vk::Commands& commands);
 
   vk::Device* device_;
   FastVolumeResources resources_;

@@ -6,7 +6,6 @@
 #include <cstring>
 
 #include "engine/base/clock.h"
-#include "engine/base/memory_limit.h"
 #include "engine/field/field_display_range.h"
 #include "render/vk/commands.h"
 
@@ -47,8 +46,6 @@ ValueInterval active_values(const VolumeItem& item) {
 
 constexpr double kMaxChange = 0.03;  // maximum mean change by quantization to codes (quantization_change)
 
-constexpr std::uint64_t kMinHostPoolBytes = std::uint64_t{64} << 20;  // pool of pages in the memory of the host, at least
-
 bool shows_values(const VolumeItem& item) {
   struct Answer {
     std::uint64_t version = 0;
@@ -69,18 +66,19 @@ bool FastVolumeResources::can_pack(const vk::Device& device, const field::Scalar
 }
 
 bool FastVolumeResources::can_quantize(const VolumeItem& item) {
-  return resolves_transfer_function(item.transfer, active_values(item)) && shows_values(item);
+  return resolves_transfer_function(item.transfer, active_values(item)) && (item.paged || shows_values(item));
 }
 
-Outcome FastVolumeResources::prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left, bool loads) {
-  if (item.paged) return prepare_pages(item, std::min(settings.max_bytes, left - left / 8), loads);
+Outcome FastVolumeResources::prepare(std::span<const VolumeItem> items, const FastSettings& settings, std::uint64_t left, bool loads) {
+  const VolumeItem& item = items.front();
+  if (item.paged) return prepare_pages(items, std::min(settings.max_bytes, page_pool_bytes(*device_, left, 1)), loads);
   if (pages_) table_ = {};
   pages_.reset();
   const std::int64_t start = now_ns();
   const bool other_grid = !table_ || version_ != item.grid->version();
-  const bool other_look = other_grid || !same_look(item_, item);
+  const bool other_look = other_grid || !same_look(items_.front(), item);
   if (other_grid) table_ = {};
-  item_ = item;
+  items_ = {item};
   const bool gradients = item.is_shaded && settings.smooth_gradients, whole = can_pack_dense(*device_, *item.grid);
   const std::uint64_t bytes = whole ? packed_bytes(*item.grid, gradients) : bricks_ && !other_grid ? bricks_->atlas.bytes() : 0;
   if (bytes > settings.max_bytes) return memory_limit_error(bytes, settings.max_bytes);
@@ -101,14 +99,14 @@ Outcome FastVolumeResources::pack_dense(bool gradients, bool other_range) {
   if (other_range) {
     gradients_ = {};
     packed_ = {};
-    CATENA_TRY(packed_, make_packed_volume(*device_, *item_.grid, active_));
+    CATENA_TRY(packed_, make_packed_volume(*device_, *item().grid, active_));
   }
   if (gradients && !gradients_) {
-    CATENA_TRY(gradients_, make_gradient_volume(*device_, *item_.grid, packed_.codes.per_code));
+    CATENA_TRY(gradients_, make_gradient_volume(*device_, *item().grid, packed_.codes.per_code));
   }
-  const PreintegratedTable table = make_preintegrated(item_.transfer, packed_.codes.lo, packed_.codes.per_code, item_.is_shaded);
+  const PreintegratedTable table = make_preintegrated(item().transfer, packed_.codes.lo, packed_.codes.per_code, item().is_shaded);
   CATENA_TRY(map_, make_homogeneous_map(*device_, packed_, table.appearance));
-  return upload_table(table);
+  return upload_tables({&table, 1});
 }
 
 Outcome FastVolumeResources::pack_bricks(bool other_range, std::uint64_t permitted_bytes) {
@@ -116,29 +114,32 @@ Outcome FastVolumeResources::pack_bricks(bool other_range, std::uint64_t permitt
   map_ = {};
   gradients_ = {};
   // gradients of bricks are small, so that every shaded volume has them
-  const bool gradients = item_.is_shaded, scans = !bricks_ || other_range || (gradients && !this->gradients());
+  const bool gradients = item().is_shaded, scans = !bricks_ || other_range || (gradients && !this->gradients());
   if (scans) {
     bricks_.reset();
     bricks_.emplace();
-    bricks_->scan = scan_bricks(*item_.grid, active_, gradients);
+    bricks_->scan = scan_bricks(*item().grid, active_, gradients);
   }
   BrickScan& scan = bricks_->scan;
   PackedAtlas& atlas = bricks_->atlas;
   const CodeScale codes(scan.range, false);
-  const PreintegratedTable table = make_preintegrated(item_.transfer, codes.lo, codes.per_code, item_.is_shaded);
+  const PreintegratedTable table = make_preintegrated(item().transfer, codes.lo, codes.per_code, item().is_shaded);
   bool remapped = false;
   if (!scans) {
     CATENA_TRY(remapped, remap_atlas(*device_, atlas, scan, table.appearance));
   }
   if (!remapped) {
     atlas = {};
-    CATENA_TRY(atlas, make_packed_atlas(*device_, *item_.grid, scan, codes, table.appearance, permitted_bytes));
+    CATENA_TRY(atlas, make_packed_atlas(*device_, *item().grid, scan, codes, table.appearance, permitted_bytes));
   }
-  return upload_table(table);
+  return upload_tables({&table, 1});
 }
 
-Outcome FastVolumeResources::prepare_pages(const VolumeItem& item, std::uint64_t permitted_bytes, bool loads) {
-  const bool other_grid = !pages_ || pages_->grid().version() != item.paged->version();
+Outcome FastVolumeResources::prepare_pages(std::span<const VolumeItem> items, std::uint64_t permitted_bytes, bool loads) {
+  const auto shows = [](const std::shared_ptr<const field::PagedGrid>& grid, const VolumeItem& item) {
+    return grid->version() == item.paged->version();
+  };
+  const bool other_grid = !pages_ || !std::ranges::equal(pages_->grids(), items, shows);
   if (other_grid) {
     const std::int64_t start = now_ns();
     bricks_.reset();
@@ -146,36 +147,46 @@ Outcome FastVolumeResources::prepare_pages(const VolumeItem& item, std::uint64_t
     packed_ = {};
     map_ = {};
     gradients_ = {};
-    // a software renderer's device memory is that of the host
-    if (device_->info().is_cpu()) permitted_bytes = std::min(permitted_bytes, std::max(available_memory() / 2, kMinHostPoolBytes));
-    CATENA_TRY(pages_, PagedVolume::create(*device_, item.paged, permitted_bytes));
+    ChannelGrids grids;
+    for (const VolumeItem& item : items) grids.push_back(item.paged);
+    CATENA_TRY(pages_, PagedVolume::create(*device_, std::move(grids), PageFormat::codes, permitted_bytes));
     build_ms_ += ms_since(start);
   }
-  const bool other_look = other_grid || !same_look(item_, item);
-  item_ = item;
+  const bool other_look = other_grid || !std::ranges::equal(items_, items, same_look);
+  items_.assign(items.begin(), items.end());
   if (other_look) {
-    active_ = active_values(item);
-    const bool has_holes = item.paged->source().type().name.starts_with("float");
-    // cells of the finest level at the ends of the active interval may reach to any value
-    const field::GridStats& stats = item.grid->stats();
-    const ValueInterval all{std::min(active_.min, double(stats.min)), std::max(active_.max, double(stats.max))};
-    const CodeScale codes(clip_outliers(all, *item.grid, active_), has_holes);
-    const PreintegratedTable table = make_preintegrated(item.transfer, codes.lo, codes.per_code, item.is_shaded);
-    CATENA_CHECK(pages_->set_codes(codes, table.appearance));
-    CATENA_CHECK(upload_table(table));
+    ChannelCodes codes;
+    std::vector<PreintegratedTable> tables;
+    std::vector<CodeAppearance> appearances;
+    for (const VolumeItem& item : items) {
+      const ValueInterval active = active_values(item);
+      const bool has_holes = item.paged->source().type().name.starts_with("float");
+      // cells of the finest level at the ends of the active interval may reach to any value
+      const field::GridStats& stats = item.grid->stats();
+      const ValueInterval all{std::min(active.min, double(stats.min)), std::max(active.max, double(stats.max))};
+      codes.emplace_back(clip_outliers(all, *item.grid, active), has_holes);
+      codes.back().is_dithered = !item.is_shaded && !shows_values(item);
+      tables.push_back(make_preintegrated(item.transfer, codes.back().lo, codes.back().per_code, item.is_shaded));
+      appearances.push_back(tables.back().appearance);
+    }
+    CATENA_CHECK(pages_->set_codes(std::move(codes), std::move(appearances)));
+    CATENA_CHECK(upload_tables(tables));
   }
   if (loads) CATENA_CHECK(pages_->update());
   return Done{};
 }
 
-Outcome FastVolumeResources::upload_table(const PreintegratedTable& table) {
+Outcome FastVolumeResources::upload_tables(std::span<const PreintegratedTable> tables) {
   vk::ImageInfo info;
   info.format = VK_FORMAT_R32G32_UINT;
-  info.extent = {256, 256, 1};
+  info.extent = {256, 256 * std::uint32_t(tables.size()), 1};
   info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   CATENA_TRY(table_, vk::Image::create(*device_, info));
   return vk::upload_planes(*device_, table_, 1, [&](std::uint32_t, std::uint32_t, std::byte* out) {
-    std::memcpy(out, table.entries.data(), table.entries.size() * sizeof(table.entries[0]));
+    for (const PreintegratedTable& table : tables) {
+      const auto bytes = std::as_bytes(std::span(table.entries));
+      out = std::ranges::copy(bytes, out).out;
+    }
   });
 }
 
@@ -183,15 +194,8 @@ float FastVolumeResources::gradient_nodes() const { return bricks_ ? float(brick
 
 ResidentGrid FastVolumeResources::local_geometry() const {
   const auto wide = [](const field::Index3& i) { return Vec3(i.x, i.y, i.z); };
+  if (pages_) return pages_->local_geometry();
   ResidentGrid layout;
-  if (pages_) {
-    // positions are those of the source's finest level
-    const field::Index3& first = pages_->grid().first_voxel();
-    layout.origin = {-first.x, -first.y, -first.z};
-    layout.box_lo = wide(first);
-    layout.box_hi = wide(first) + pages_->grid().index_box().hi;
-    return layout;
-  }
   layout.origin = bricks_ ? bricks_->scan.origin : packed_.origin;
   if (bricks_) layout.box_lo = wide(bricks_->scan.box_lo);
   layout.box_hi = bricks_ ? wide(bricks_->scan.box_hi) : wide(packed_.size) - Vec3(1.0);

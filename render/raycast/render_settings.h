@@ -70,6 +70,8 @@ struct RenderSettings {
   /// Images of volumes and slices that are larger than memory are complete: what they show is awaited. False: they show what has been read
   /// so far, and what is missing is read in the background (Renderer::paging()).
   bool waits_for_pages = false;
+  /// A complete image shows the finest level, however small its voxels are. False: levels whose voxels are not larger than a pixel.
+  bool shows_finest_pages = false;
   /// The caller divides an image whose pages do not fit (PagingStats::finest_level): no coarser ones are read for it.
   bool divides_for_pages = false;
   /// > 0: the rays of every n-th pixel in each direction are marched a second time, after the image, for Renderer::ray_depth().

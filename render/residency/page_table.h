@@ -4,7 +4,7 @@
 ///   entry   one per brick of the finest level: the slot of the finest page in the pool that covers it, or that it is homogeneous
 /// The coarsest level stays in the pool, so that every entry has a page. What rays visited in the last image decides which pages are
 /// loaded. If the visited pages do not fit, all are taken from a coarser level. No device is needed. Frame thread.
-///   word, 32 bits: bits 0..20 the slot (x, y, z, 7 bits each), bits 21..24 the level, or, if bit 31 is set (homogeneous), bits 0..7 the
+///   word, 32 bits: bits 0..20 the slot (x, y, z, 7 bits each), bits 21..24 the level, or, if bit 31 is set (homogeneous), bits 0..15 the
 ///   code; bits 25..30 as the distance in HomogeneousMap (brick_map.h), in entries, at most 63
 #pragma once
 #include <array>
@@ -48,7 +48,7 @@ struct PageId {
 /// Look of a homogeneous part: kind as in CodeAppearance::classify(), not 0, and code.
 struct PageLook {
   std::uint16_t kind = 0;  ///< 0: varies, or is not known
-  std::uint8_t code = 0;
+  std::uint16_t code = 0;
 };
 
 /// What to load for the next image.

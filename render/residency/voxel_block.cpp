@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/base/threads.h"
 #include "engine/field/field_display_range.h"
@@ -111,10 +112,22 @@ void widen_to_cells(ValueInterval& range, const VoxelBlock& block, const ValueIn
   range.max = std::max(range.max, double(max_value));
 }
 
-CodeScale::CodeScale(const ValueInterval& range, bool is_masked) : has_mask(is_masked) {
-  per_code = (range.max - range.min) / (255 - min_code());
+CodeScale::CodeScale(const ValueInterval& range, bool is_masked, int bits) : has_mask(is_masked), max_code((1 << bits) - 1) {
+  per_code = (range.max - range.min) / (max_code - min_code());
   if (!(per_code > 0) || !std::isfinite(1 / per_code)) per_code = 0;
   lo = range.min - min_code() * per_code;
+}
+
+CodeRange CodeScale::range_of(int min, int max, bool has_unused) const {
+  constexpr int kLast = 255;
+  if (max_code <= kLast) return {std::uint8_t(min), std::uint8_t(max), has_unused};
+  const auto unit = [&](int code) { return code < range_lo ? 0 : (code - range_lo) / range_step; };
+  return {std::uint8_t(std::min(unit(min), kLast - 1)), std::uint8_t(std::min(unit(max) + 1, kLast)), has_unused};
+}
+
+double CodeScale::lower_end(int unit) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return unit == 0 ? -kInfinity : unit == 255 ? kInfinity : range_lo + double(unit) * range_step;
 }
 
 ValueInterval clip_outliers(ValueInterval range, const field::ScalarGrid& grid, const ValueInterval& active) {

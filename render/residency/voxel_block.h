@@ -66,34 +66,45 @@ inline constexpr int kSlabPlanes = 8;
 /// Calls `body` for every slab, from several threads at a time.
 void for_each_slab(const field::ScalarGrid& grid, const SlabRange& slabs, const std::function<void(const Slab&)>& body);
 
-/// Scale of 8-bit codes: value = lo + code * per_code. A cell is valid if none of its corners has the code kInvalidCode, which only masked
-/// grids use.
-struct CodeScale {
-  static constexpr std::uint8_t kInvalidCode = 0;
-  double lo = 0, per_code = 0;
-  bool has_mask = false;
-
-  bool operator==(const CodeScale&) const = default;
-  CodeScale() = default;
-  CodeScale(const ValueInterval& range, bool is_masked);
-  std::uint8_t min_code() const { return has_mask ? 1 : 0; }
-  /// Returns the function that encodes finite values.
-  auto encoder() const {
-    return [zero = float(lo), scale = per_code > 0 ? float(1 / per_code) : 0.0f, least = float(min_code())](float value) {
-      const float code = (value - zero) * scale + 0.5f;
-      return std::uint8_t(code > least ? (code < 255.0f ? code : 255.0f) : least);
-    };
-  }
-  /// Encodes `count` voxels of a block from `first` on.
-  void encode(const VoxelBlock& block, std::size_t first, std::size_t count, std::uint8_t* out) const;
-};
-
 /// Range of the codes of a brick's used voxels.
 struct CodeRange {
   std::uint8_t min = 255, max = 0;  ///< some voxels are not used
   bool has_unused = false;          ///< some voxels are not in use
 
   bool empty() const { return min > max; }
+};
+
+/// Scale of codes of 8 or 16 bits: value = lo + code * per_code. A cell is valid if none of its corners has the code kInvalidCode, which
+/// only masked grids use.
+struct CodeScale {
+  static constexpr std::uint8_t kInvalidCode = 0;
+  double lo = 0, per_code = 0;
+  bool has_mask = false;
+  int max_code = 255;
+  /// Of 16-bit codes: a CodeRange is in units of range_step codes above range_lo.
+  int range_lo = 0, range_step = 1;
+
+  bool operator==(const CodeScale&) const = default;
+  CodeScale() = default;
+  CodeScale(const ValueInterval& range, bool is_masked, int bits = 8);
+  std::uint8_t min_code() const { return has_mask ? 1 : 0; }
+  /// Codes of a value between two are the lower or the upper one by the voxel's position, so that the mean is right.
+  bool is_dithered = false;
+  /// Returns the function that encodes finite values, as codes of a type that holds them; rounds down after adding `offset`.
+  template <class Code = std::uint8_t>
+  auto encoder() const {
+    return [zero = float(lo), scale = per_code > 0 ? float(1 / per_code) : 0.0f, least = float(min_code()), most = float(max_code)](
+               float value, float offset = 0.5f) {
+      const float code = (value - zero) * scale + offset;
+      return Code(code > least ? (code < most ? code : most) : least);
+    };
+  }
+  /// Returns the range of codes from min to max: of 16-bit codes, min >= lower_end(range.min) and max < lower_end(range.max).
+  CodeRange range_of(int min, int max, bool has_unused) const;
+  /// Returns the smallest 16-bit code of a unit of CodeRange; the first and the last unit have no lower and no upper end.
+  double lower_end(int unit) const;
+  /// Encodes `count` voxels of a block from `first` on.
+  void encode(const VoxelBlock& block, std::size_t first, std::size_t count, std::uint8_t* out) const;
 };
 
 /// Classification of codes by a transfer function (make_preintegrated).

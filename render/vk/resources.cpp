@@ -109,12 +109,14 @@ VkDeviceSize texel_bytes(VkFormat format) {
     case VK_FORMAT_R16_UINT:
       return 2;
     case VK_FORMAT_R32_SFLOAT:
+    case VK_FORMAT_R16G16_UINT:
     case VK_FORMAT_R32_UINT:
     case VK_FORMAT_D32_SFLOAT:
     case VK_FORMAT_R8G8B8A8_UNORM:
       return 4;
     case VK_FORMAT_R32G32_UINT:
     case VK_FORMAT_R16G16B16A16_SFLOAT:
+    case VK_FORMAT_R16G16B16A16_UINT:
       return 8;
     case VK_FORMAT_R32G32B32A32_SFLOAT:
       return 16;

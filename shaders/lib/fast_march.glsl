@@ -3,13 +3,7 @@
 // of the Hermite cubic, (s0 + s1) / 2 + (d0 - d1) L / 8; each half is integrated by the pre-integrated table
 // (render/raycast/transfer_tables.h). A segment in a cube of homogeneous bricks (render/residency/brick_map.h) extends to the ray's exit
 // from the cube.
-layout(constant_id = 0) const uint SHADED = 0;  // 1: by the gradient of the cell, 2: by precomputed gradients
-layout(constant_id = 1) const uint SKIPS_EMPTY = 0;
-layout(constant_id = 2) const uint HAS_OPAQUE = 0;
-layout(constant_id = 7) const uint HALF_OPACITY_DEPTH = 0;  // output: depth of half transmittance instead of a color
-
-layout(binding = 4) uniform utexture2D preintegrated;  // 256 x 256
-float seen_transmittance = 1.0;  // of the ray, in front of the segment
+#include "shaders/lib/preintegrated.glsl"
 #ifdef IS_PAGED
 #include "shaders/lib/paged.glsl"
 #else
@@ -21,19 +15,6 @@ float seen_transmittance = 1.0;  // of the ray, in front of the segment
 // empty-space skipping start at the volume's boundary with full steps.
 const bool FROM_VISIBLE = SHADED != 0u || SKIPS_EMPTY != 0u;
 const float FIRST_STEP = SHADED != 0u ? 0.125 : FROM_VISIBLE ? 0.25 : 1.0, STEP_GROWTH = SHADED != 0u ? 1.1 : 1.3;
-
-// Returns x: sigma, yzw: color.
-vec4 lookup_preintegrated(float a, float b) {
-  const uvec2 e = texelFetch(preintegrated, ivec2(int(a + 0.5), int(b + 0.5)), 0).rg;
-  return vec4(uintBitsToFloat(e.x), vec3(e.y & 2047u, e.y >> 11 & 2047u, e.y >> 22) * vec3(1.0 / 2047.0, 1.0 / 2047.0, 1.0 / 1023.0));
-}
-
-// Returns the shading of a headlight as in `lit` (lighting.glsl), from the cosine n of normal and ray: x * color + y.
-vec2 light_at(float n, float n2) {
-  const float m = max(0.0, 2.0 * n2 - 1.0);
-  const float m2 = m * m, m4 = m2 * m2, m8 = m4 * m4;
-  return vec2(0.2 + 0.7 * n, 0.2 * m8 * m8 * m4);
-}
 
 // Sample of the ray at depth t, with the slope for the segment after it.
 struct RaySample {
@@ -79,7 +60,7 @@ RaySample next_sample(March m, RaySample from, out float curved) {
   float next = from.t + h;
   curved = 1.0;
   if (SKIPS_EMPTY != 0u) {
-    const float leave = homogeneous_exit(from.s, from.p, m.ray.direction, m.inverse, m.is_forward_axis);
+    const float leave = homogeneous_exit(from.s, from.p, m.inverse, m.is_forward_axis);
     if (leave > h) {
       next = from.t + leave;
       curved = 0.0;
@@ -128,9 +109,6 @@ RaySample find_first_visible(March m, RaySample s) {
   if (behind > s.t) s = sample_at(m, mix(s.t, behind, dark));
   return s;
 }
-
-// Returns the position where transmittance falls to 0.5 in a segment of constant sigma, as a share of its length; before > 0.5 >= after.
-float half_transmittance_position(float before, float after) { return clamp(log(2.0 * before) / log(before / max(after, 1e-30)), 0.0, 1.0); }
 
 // Returns the premultiplied color along the ray of pixel coordinate q, up to depth `end`; with HALF_OPACITY_DEPTH that depth, and alpha 1
 // if it exists.

@@ -56,7 +56,7 @@ vec3 smooth_gradient(vec3 p, PackedSample s) {
 }
 
 // Returns the depth from a sample to the ray's exit from the cube of homogeneous bricks around it; 0: the values vary there.
-float homogeneous_exit(PackedSample s, vec3 p, vec3 direction, vec3 inverse, vec3 is_forward_axis) {
+float homogeneous_exit(PackedSample s, vec3 p, vec3 inverse, vec3 is_forward_axis) {
   const float size = IS_BRICKED != 0u ? 8.0 : SMALL_BRICK_SIZE;
   const vec3 brick = min(floor(p * (1.0 / size)), ceil(frame.grids[0].hi * (1.0 / size)) - 1.0);
   const float d = float(IS_BRICKED != 0u ? s.brick >> 24 & 127u : texelFetch(homogeneous_map, ivec3(brick), 0).r);

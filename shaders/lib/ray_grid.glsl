@@ -16,7 +16,11 @@ layout(location = 0) out vec4 out_color;  // premultiplied
 
 #define BRICK_SIZE 8
 #include "shaders/lib/rays.glsl"
+#ifdef HAS_CHANNELS
+#include "shaders/lib/channels_march.glsl"
+#else
 #include "shaders/lib/fast_march.glsl"
+#endif
 
 vec4 coarser_texel(ivec2 at) { return texelFetch(coarser, at, 0); }
 vec4 cubic_weights_at(int point) { return (point & 1) == 0 ? vec4(0.0, 1.0, 0.0, 0.0) : vec4(-0.0625, 0.5625, 0.5625, -0.0625); }

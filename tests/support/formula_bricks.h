@@ -35,7 +35,7 @@ class FormulaBricks final : public field::BrickSource {
   Outcome read(int level, const field::Index3& brick, std::span<std::byte> values) const override {
     if (latency_us > 0) std::this_thread::sleep_for(std::chrono::microseconds(latency_us));
     ++reads;
-    if (fails) return Error{"formula: the disk is gone"};
+    if (fails || (breaks && breaks(level, brick))) return Error{"formula: the disk is gone"};
     const field::Index3 n = brick_size(levels()[static_cast<std::size_t>(level)], brick);
     const std::size_t row = static_cast<std::size_t>(n.x) * sizeof(std::uint16_t);
     std::byte* to = values.data();
@@ -58,9 +58,10 @@ class FormulaBricks final : public field::BrickSource {
     return std::static_pointer_cast<const field::ScalarGrid>(made.scalar);
   }
 
-  std::atomic<int> latency_us = 0;     ///< time that a read takes
-  std::atomic<bool> fails = false;     ///< reads fail
-  mutable std::atomic<int> reads = 0;  ///< number of reads
+  std::atomic<int> latency_us = 0;                                    ///< time that a read takes
+  std::atomic<bool> fails = false;                                    ///< reads fail
+  std::function<bool(int level, const field::Index3& brick)> breaks;  ///< reads of a brick fail; set before the first one
+  mutable std::atomic<int> reads = 0;                                 ///< number of reads
 
  private:
   static std::vector<field::BrickLevel> levels_of(const field::Index3& n, double spacing) {

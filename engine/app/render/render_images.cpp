@@ -190,12 +190,14 @@ bool RenderRun::choose_settings(bool single_image) {
     // errors are measured on the bricks that the image shows
     render::RenderSettings complete = render::draft_settings();
     complete.waits_for_pages = true;
+    complete.shows_finest_pages = quality_.settings.shows_finest_pages;
     if (std::ranges::any_of(sample.packet.volumes, [](const render::VolumeItem& item) { return item.paged != nullptr; }))
       machine(frames_->renderer->draw(sample.packet, complete));
     choice = machine(render::choose_quality(*frames_->renderer, sample.packet, goal, [&progress](double done) { progress.update(done); }));
   }
   stats_.settings_search_ms += ms_since(start);
   frames_->settings = choice.settings;
+  frames_->settings.shows_finest_pages = quality_.settings.shows_finest_pages;
   stats_.estimated_rmse = choice.estimated_rmse;
   say(fmt::format("quality {}{}: {}, error about {:.2f}/255{}", quality_name_, single_image ? "" : " of the sequence",
                   describe(frames_->settings), choice.estimated_rmse,

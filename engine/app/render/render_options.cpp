@@ -93,15 +93,26 @@ Result<std::vector<int>> parse_steps(const std::string& words) {
 
 bool is_fixed_quality(std::string_view words) { return !words.empty() && !scene::image_targets(words).has_image_targets(); }
 
+namespace {
+
+render::RenderSettings with_finest_pages(render::RenderSettings settings) {
+  settings.shows_finest_pages = true;
+  return settings;
+}
+
+}  // namespace
+
 Result<Quality> parse_quality(const std::string& words) {
   using Kind = render::QualityGoal::Kind;
   if (words == "draft") return Quality{render::draft_settings(), {}};
   if (words == "balanced") return Quality{render::balanced_settings(), {}};
-  if (words == "reference") return Quality{render::reference_settings(), {}};
+  if (words == "reference") return Quality{with_finest_pages(render::reference_settings()), {}};
   for (const auto& [prefix, kind] : {std::pair{"error=", Kind::error}, std::pair{"time=", Kind::time}}) {
     if (!words.starts_with(prefix)) continue;
     const auto value = parse_double(words.substr(std::string_view(prefix).size()));
-    if (value && std::isfinite(*value) && *value > 0) return Quality{render::balanced_settings(), render::QualityGoal{kind, *value}};
+    const render::RenderSettings balanced = render::balanced_settings();
+    if (value && std::isfinite(*value) && *value > 0)
+      return Quality{kind == Kind::error ? with_finest_pages(balanced) : balanced, render::QualityGoal{kind, *value}};
     return Error{"--quality " + words + ": expected a positive number of " + (kind == Kind::error ? "1/255" : "milliseconds")};
   }
   if (words.starts_with("step=")) {
@@ -109,7 +120,7 @@ Result<Quality> parse_quality(const std::string& words) {
     if (step && std::isfinite(*step) && *step >= 0.01 && *step <= 100) {
       render::RenderSettings settings;
       settings.step_voxels = *step;
-      return Quality{settings, {}};
+      return Quality{with_finest_pages(settings), {}};
     }
     return Error{"--quality " + words + ": expected a step of 0.01 to 100 voxels"};
   }

@@ -78,6 +78,8 @@ class BrickSource {
   const std::vector<BrickLevel>& levels() const { return levels_; }
   /// Returns what is known of a brick's range; reads and waits for nothing.
   virtual BrickRange range(int level, const Index3& brick) const noexcept = 0;
+  /// Returns how many voxels of a level are decoded for each voxel of a brick that is read alone.
+  virtual double decoded_voxels(int /*level*/) const noexcept { return 1; }
   /// Finds the bricks of a level for which nothing is stored, so that their ranges are known. Blocks. The Error is a complete message.
   virtual Outcome find_empty_bricks(int /*level*/) const { return Done{}; }
   /// Reads all voxels of a brick; `values` has exactly their bytes. Where the store has none, the fill value is written. Blocks. The Error

@@ -64,15 +64,20 @@ struct FittingPart {
   Outcome fits = Done{};
 };
 
-/// Finds the finest level, from the requested one on, whose part fits into memory.
+/// Finds the finest level, from the requested one on, whose part fits into memory. A coarser level than the requested one takes at most a
+/// part of the memory: the rest is for bricks of the finest level.
 Result<FittingPart> find_part(const LoadRequest& request, const std::shared_ptr<const StoredLevels>& stored) {
+  constexpr double kPart = 0.25;
   FittingPart found{{stored, static_cast<int>(level_for(stored->description(), request.level)), StoreBox{}}};
+  const int requested = found.part.level;
+  const double available = static_cast<double>(available_memory());
   for (LevelPart& part = found.part;; ++part.level) {
     CATENA_TRY(part.box, needed_box(request.path, stored->description(), part.at(), request.crop));
+    const bool is_small = part.level == requested || part.box.voxels() * sizeof(float) <= kPart * available;
     const std::string what = one_line(fmt::format("{}: {}", request.path, size_text(part.grid_size()) + " voxels"));
     const MemoryReservation slab(LevelReader(part).slab_bytes());
     found.fits = check_dense_memory(what, part.grid_size(), 1, false);
-    if (found.fits || part.level + 1 == stored->count()) return found;
+    if ((found.fits && is_small) || part.level + 1 == stored->count()) return found;
   }
 }
 
@@ -137,7 +142,7 @@ Result<AnyField> load_part(const LoadRequest& request, const StoreDescription& a
     file.notes.push_back(
         fmt::format("level {} of {}, {} of {} voxels{}", part.level, grid.levels.size(), size_text(part.box.size), size_text(full.size),
                     part.level == finest ? ""
-                    : request.level == 0 ? ": the memory limit allows no finer one (--memory MB); volumes, slices and links read the finest"
+                    : request.level == 0 ? ": the memory limit allows no finer one (--memory MB); volumes, isosurfaces, slices and links read the finest"
                                          : ": the memory limit allows no finer one (--memory MB allows more)"));
   }
   if (!(part.grid_size() == part.box.size)) file.notes.push_back("flat data get a thickness of one voxel");

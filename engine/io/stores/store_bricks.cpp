@@ -47,6 +47,12 @@ Outcome StoreBricks::read(int level, const Index3& brick, std::span<std::byte> v
   return Done{};
 }
 
+double StoreBricks::decoded_voxels(int level) const noexcept {
+  const Index3& chunk = stored_->description().levels[static_cast<std::size_t>(level)].chunk;
+  const auto along = [](int edge) { return edge > 0 ? double((kBrickEdge - 1) / edge + 1) * edge / kBrickEdge : 1.0; };
+  return along(chunk.x) * along(chunk.y) * along(chunk.z);
+}
+
 Outcome StoreBricks::find_empty_bricks(int level) const {
   if (stored_->is_indexed(level)) return Done{};
   CATENA_TRY(std::vector<std::uint8_t> present, stored_->list(level));

@@ -23,6 +23,7 @@ class StoreBricks final : public BrickSource {
   BrickRange range(int level, const Index3& brick) const noexcept override;
   Outcome read(int level, const Index3& brick, std::span<std::byte> values) const override;
 
+  double decoded_voxels(int level) const noexcept override;
   /// Lists the store, unless there is an index, which takes a second per million stored chunks.
   Outcome find_empty_bricks(int level) const override;
 

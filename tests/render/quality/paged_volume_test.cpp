@@ -17,7 +17,7 @@ class PagedVolumes : public ImageTest {
   static RenderSettings exact(double step) {
     RenderSettings settings;
     settings.step_voxels = step;
-    settings.waits_for_pages = true;
+    settings.waits_for_pages = settings.shows_finest_pages = true;
     return settings;
   }
   static RenderSettings fast(double step) {
@@ -67,6 +67,55 @@ TEST_F(PagedVolumes, TheImageIsThatOfTheVolumeInMemory) {
     EXPECT_GT(covered(image), 4000);
     // by the rays of an exact raycast
     EXPECT_LT(rmse(draw(view(in_pages), exact(0.25)), expected), 0.5);
+  }
+}
+
+TEST_F(PagedVolumes, ChannelsAreBlendedAsInMemory) {
+  const std::shared_ptr<const FormulaBricks> sources[] = {waves(), std::make_shared<const FormulaBricks>(kSize, 1, [](const Vec3& p) {
+                                                            return 20000 + 19000 * std::sin(0.13 * p.y) * std::sin(0.05 * p.x);
+                                                          })};
+  for (const bool shade : {false, true}) {
+    FramePacket whole = view(cloud(nullptr, nullptr)), in_pages = whole, coarse = whole;
+    for (FramePacket* packet : {&whole, &in_pages, &coarse}) packet->volumes.clear();
+    for (const auto& source : sources) {
+      VolumeItem item = cloud(source->whole(0), nullptr);
+      item.is_shaded = shade;
+      if (source == sources[1]) item.transfer.colors = {{0, 0.1, 0.9, 0.1}, {40000, 0.2, 1, 0.9}};
+      whole.volumes.push_back(item);
+      item.grid = source->whole(1);
+      coarse.volumes.push_back(item);
+      item.paged = make_paged(source);
+      in_pages.volumes.push_back(item);
+    }
+    const Image8 expected = draw(whole, exact(0.25), "expected");
+    EXPECT_LT(rmse(draw(in_pages, fast(0.25), shade ? "channels_shaded" : "channels"), expected), shade ? 1 : 0.3);
+    EXPECT_GT(rmse(draw(coarse, exact(0.25)), expected), 1);
+  }
+}
+
+TEST_F(PagedVolumes, ValuesBetweenCodesKeepTheirMean) {
+  // a haze of which a code more or less is a difference of 13/255, and a few values that set the range
+  const auto source =
+      std::make_shared<const FormulaBricks>(kSize, 1, [](const Vec3& p) { return p.x < 4 && p.y < 4 && p.z < 4 ? 60000.0 : 30190.0; });
+  VolumeItem whole = cloud(source->whole(0), nullptr), in_pages = cloud(source->whole(1), make_paged(source));
+  whole.transfer.extinctions = in_pages.transfer.extinctions = {{0, 0}, {30000, 0}, {60000, 0.5}};
+  const Image8 expected = draw(view(whole), exact(0.5), "expected");
+  EXPECT_LT(rmse(draw(view(in_pages), fast(0.5), "dithered"), expected), 1);
+}
+
+TEST_F(PagedVolumes, ProjectionsAreThoseOfTheVolumeInMemory) {
+  const auto source = waves();
+  const auto paged = make_paged(source);
+  for (const Projection projection : {Projection::maximum, Projection::minimum, Projection::average}) {
+    VolumeItem whole = cloud(source->whole(0), nullptr), in_pages = cloud(source->whole(1), paged);
+    for (VolumeItem* item : {&whole, &in_pages}) {
+      item->projection = projection;
+      item->transfer.extinctions = {{0, 0.5}, {60000, 3}};
+    }
+    const Image8 expected = draw(view(whole), exact(0.25), "expected");
+    EXPECT_LT(rmse(draw(view(in_pages), exact(0.25), "projection"), expected), kQuantization) << int(projection);
+    in_pages.paged.reset();
+    EXPECT_GT(rmse(draw(view(in_pages), exact(0.25)), expected), 2 * kQuantization) << int(projection);
   }
 }
 

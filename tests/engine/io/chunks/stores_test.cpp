@@ -107,7 +107,7 @@ TEST_F(Stores, TheFinestLevelWithinTheMemoryLimitIsLoaded) {
     // the third level is the last in the store: it is reduced once more
     EXPECT_EQ(value_of(load_grid(path, 3)).get()->index_box().hi.x, 15);
   }
-  set_memory_limit(4'000'000);
+  set_memory_limit(5'000'000);
   {
     const AnyField less = value_of(load_grid(path));
     ASSERT_FALSE(less.notes.empty());
