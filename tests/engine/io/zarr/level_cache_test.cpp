@@ -41,7 +41,7 @@ class LevelCache : public testing::Test {
   }
   void TearDown() override { unsetenv("XDG_CACHE_HOME"); }
 
-  std::vector<std::string> words() const { return {"info", folder_ / "scene.json", "--memory", "6"}; }
+  std::vector<std::string> words() const { return {"info", folder_ / "scene.json", "--memory", "10"}; }
   /// Returns the folder of the cache; empty: none.
   std::string entry() const {
     std::error_code code;
