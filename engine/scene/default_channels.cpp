@@ -13,7 +13,6 @@
 namespace catena::scene {
 namespace {
 
-constexpr std::size_t kMaxChannels = 4;
 constexpr double kMeanChannelDepth = 3.5,
                  kMaxChannelDepth = 150;  // optical depths of a ray across the domain: the mean one, and one in full color
 constexpr Color kColors[] = {{0, 1, 0}, {1, 0, 1}, {0, 1, 1}, {1, 1, 0}};
@@ -55,14 +54,13 @@ double mean_share(const field::ScalarField& field, const std::array<double, 2>& 
 }  // namespace
 
 std::vector<const field::GridInfo*> find_channels(const std::vector<field::GridInfo>& grids) {
+  const auto is_marked = [](const field::GridInfo& grid) { return grid.color >= 0 || grid.name.starts_with("channel "); };
+  const auto first = std::ranges::find_if(grids, is_marked);
   std::vector<const field::GridInfo*> channels;
-  for (const field::GridInfo& grid : grids) {
-    const bool is_channel =
-        !grid.levels.empty() && grid.is_usable && !grid.is_vector && (grid.color >= 0 || grid.name.starts_with("channel "));
-    if (is_channel && (channels.empty() || has_same_place(grid, *channels.front()))) channels.push_back(&grid);
-  }
+  if (first == grids.end()) return channels;
+  for (const field::GridInfo& grid : grids)
+    if (!grid.levels.empty() && grid.is_usable && !grid.is_vector && has_same_place(grid, *first)) channels.push_back(&grid);
   if (channels.size() < 2) channels.clear();
-  channels.resize(std::min(channels.size(), kMaxChannels));
   return channels;
 }
 
@@ -82,8 +80,8 @@ std::string channel_volumes(const std::vector<Channel>& channels) {
   return text + "]";
 }
 
-std::string channels_note(const std::vector<Channel>& channels) {
-  std::string text = fmt::format("{} channels", channels.size());
+std::string channels_note(const std::vector<Channel>& channels, std::size_t count) {
+  std::string text = fmt::format("{}{} channels", count > channels.size() ? fmt::format("{} of ", channels.size()) : "", count);
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const Color color = color_of(*channels[i].grid, i);
     const auto byte = [](float component) { return int(std::lround(255 * component)); };

@@ -21,12 +21,15 @@ struct Channel {
   field::AnyField field;
 };
 
-/// Returns the channels among the grids of a file: two to four scalar grids of one size and position, which have a color in the file or
-/// the names "channel N". Empty: there are none. Of more channels the first four.
+/// Most channels that are shown.
+inline constexpr std::size_t kMaxChannels = 4;
+
+/// Returns the channels among the grids of a file: two or more scalar grids of one size and position, at least one of which has a color in
+/// the file or the name "channel N". Empty: there are none.
 std::vector<const field::GridInfo*> find_channels(const std::vector<field::GridInfo>& grids);
 /// Returns the member "volumes" of a scene that shows the channels.
 std::string channel_volumes(const std::vector<Channel>& channels);
-/// Returns the names and colors of the channels, for a note.
-std::string channels_note(const std::vector<Channel>& channels);
+/// Returns the names, colors and windows of the channels that are shown, of `count`, for a note.
+std::string channels_note(const std::vector<Channel>& channels, std::size_t count);
 
 }  // namespace catena::scene

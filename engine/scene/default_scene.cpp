@@ -144,8 +144,11 @@ void show_fibres(DataFile& file, DefaultScene& default_scene, DefaultVisualizati
 /// Shows the channels of a microscope's image. Returns whether the file has several.
 bool show_channels(DataFile& file, DefaultScene& default_scene, DefaultVisualization& visualization) {
   if (default_scene.request.grid.empty() || !default_scene.field.scalar || !file.grids()) return false;
+  std::vector<const field::GridInfo*> found = find_channels(*file.grids());
+  std::erase_if(found, [&](const field::GridInfo* grid) { return field::read_units(file.path, grid->name).is_label_map; });
   std::vector<Channel> channels;
-  for (const field::GridInfo* grid : find_channels(*file.grids())) {
+  for (const field::GridInfo* grid : found) {
+    if (channels.size() == kMaxChannels) break;
     const bool is_first = grid->name == default_scene.request.grid;
     field::LoadRequest request = default_scene.request;
     request.grid = grid->name;
@@ -158,7 +161,7 @@ bool show_channels(DataFile& file, DefaultScene& default_scene, DefaultVisualiza
   if (channels.size() < 2 || !std::ranges::all_of(channels, has_name)) return false;
   visualization = {};
   visualization.scene_members = channel_volumes(channels);
-  visualization.note = channels_note(channels);
+  visualization.note = channels_note(channels, found.size());
   return true;
 }
 

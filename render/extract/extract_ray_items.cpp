@@ -72,10 +72,11 @@ Outcome extract_isosurfaces(const scene::Scene& scene, FramePacket& packet) {
     if (is_hidden(scene.entities, e)) continue;
     CATENA_TRY(auto grid, drawn_grid(scene, surface.field, surface.where, "an isosurface"));
     CATENA_CHECK(scene::check_surface(scene, surface.field, json::member_or_parent(surface.where, "field")));
-    CATENA_CHECK(scene::check_level(*grid, surface.level, json::member_or_parent(surface.where, "level")));
+    // the finest level may have values that the level in memory does not have
+    const std::shared_ptr<const field::PagedGrid>& paged = scene::rendered_field(scene, surface.field).paged;
+    if (!paged) CATENA_CHECK(scene::check_level(*grid, surface.level, json::member_or_parent(surface.where, "level")));
     CATENA_TRY(auto color_by, color_source(scene, surface.color_by, surface.field));
     const std::uint32_t id = packet.add_object("isosurface", entity_name(scene, surface.field), surface.where.label);
-    const std::shared_ptr<const field::PagedGrid>& paged = scene::rendered_field(scene, surface.field).paged;
     packet.isosurfaces.push_back({std::move(grid), surface.level, surface.color, static_cast<float>(surface.opacity), id, surface.clipped,
                                   std::move(color_by), paged});
   }

@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "engine/field/bricks/paged_grid.h"
 #include "engine/field/grid/grid.h"
 #include "render/extract/extract.h"
 #include "render/extract/extract_internal.h"
@@ -39,6 +40,7 @@ class StretchedCopies {
 struct StretchedData {
   Vec3 stretch{1.0};
   StretchedCopies<field::ScalarGrid> grids;
+  StretchedCopies<field::PagedGrid> paged_grids;
   StretchedCopies<MeshGeometry> meshes;
   StretchedCopies<SphereSet> spheres;
 };
@@ -56,25 +58,31 @@ class Stretcher {
 
   void grid(std::shared_ptr<const field::ScalarGrid>& grid) const {
     if (!grid) return;
-    grid = data_.grids.get(grid, [&](const field::ScalarGrid& original) {
-      const field::Mapping& from = original.mapping();
-      Mat3 linear = from.world_from_index_linear;
-      for (int column = 0; column < 3; ++column) linear[column] *= s_;
-      return original.with_mapping(field::Mapping::from_linear(linear, s_ * from.origin));
-    });
+    grid = data_.grids.get(grid, [&](const field::ScalarGrid& original) { return original.with_mapping(stretched(original.mapping())); });
+  }
+  void grid(std::shared_ptr<const field::ScalarGrid>& grid, std::shared_ptr<const field::PagedGrid>& paged) const {
+    this->grid(grid);
+    if (!paged) return;
+    paged =
+        data_.paged_grids.get(paged, [&](const field::PagedGrid& original) { return original.over(grid, stretched(original.mapping())); });
+  }
+  field::Mapping stretched(const field::Mapping& from) const {
+    Mat3 linear = from.world_from_index_linear;
+    for (int column = 0; column < 3; ++column) linear[column] *= s_;
+    return field::Mapping::from_linear(linear, s_ * from.origin);
   }
   void colors(std::optional<ColorSource>& source) const {
     if (source) grid(source->grid);
   }
   void operator()(VolumeItem& item) const {
-    grid(item.grid);
+    grid(item.grid, item.paged);
     colors(item.color_by);
     for (auto& row : item.transfer.extinctions) row[1] /= scale_;
     for (auto& row : item.transfer.gradient_factors) row[0] /= scale_;
     item.transfer.opacity_length *= scale_;
   }
   void operator()(IsosurfaceItem& item) const {
-    grid(item.grid);
+    grid(item.grid, item.paged);
     colors(item.color_by);
   }
   void operator()(MeshItem& item) const {
@@ -86,7 +94,7 @@ class Stretcher {
     });
   }
   void operator()(SliceItem& item) const {
-    grid(item.grid);
+    grid(item.grid, item.paged);
     (*this)(item.point, item.normal);
   }
   void operator()(Vec3& point, Vec3& normal) const {
@@ -144,7 +152,7 @@ void prepare_stretch(scene::Scene& scene) {
   if (scene.stretch == Vec3(1.0)) return;
   if (!scene.cache.has<StretchCache>(kOwner)) scene.cache.emplace<StretchCache>(kOwner);
   auto& data = scene.cache.get<StretchCache>(kOwner).data;
-  if (!data || data->stretch != scene.stretch) data = std::make_shared<StretchedData>(StretchedData{scene.stretch, {}, {}, {}});
+  if (!data || data->stretch != scene.stretch) data = std::make_shared<StretchedData>(StretchedData{scene.stretch, {}, {}, {}, {}});
 }
 
 void stretch_cursor(const Vec3& stretch, double scale, CursorItem& cursor) {
@@ -176,6 +184,7 @@ void stretch_items(const scene::Scene& scene, FramePacket& packet) {
   for (LabelItem& label : packet.overlay.labels) label.position *= scene.stretch;
   for (Plane& plane : packet.clip_planes) stretch(plane.point, plane.normal);
   data.grids.drop_unused();
+  data.paged_grids.drop_unused();
   data.meshes.drop_unused();
   data.spheres.drop_unused();
 }

@@ -36,7 +36,7 @@ class IsosurfacePass final : public Pass {
   bool casts_surface_rays() const override { return true; }
   bool reused_previous() const override { return keeps_ && still_[eye_].reused_previous(); }
   std::vector<PagedVolume*> pages() override { return paged_.pages(); }
-  std::string warning() const override { return paged_.warning(); }
+  std::string warning() const override { return paged_.warning().empty() ? coarse_.warning() : paged_.warning(); }
 
  private:
   struct Surface {
@@ -66,6 +66,7 @@ class IsosurfacePass final : public Pass {
   bool keeps_ = false;
   PagedSurfaces paged_;
   bool has_pages_ = false;  ///< any surface
+  CoarseGrids coarse_;
 };
 
 Result<const vk::Pipeline*> IsosurfacePass::pipeline(vk::Device& device, std::uint32_t flags, bool has_cells) {
@@ -119,6 +120,7 @@ Outcome IsosurfacePass::prepare(Frame& frame) {
     if (is_opaque(item) && item.paged && item.grid->interpolation() == field::Interpolation::linear) paged.push_back(&item);
   CATENA_CHECK(paged_.prepare(frame, paged));
   has_pages_ = !paged_.pages().empty();
+  coarse_.clear();
   for (const IsosurfaceItem& item : frame.packet.isosurfaces) {
     if (!is_opaque(item)) continue;
     if (paged_.has_pages(item)) {
@@ -138,6 +140,7 @@ Outcome IsosurfacePass::prepare(Frame& frame) {
     CATENA_CHECK(surface.state.update(frame.device, *item.grid, std::move(uploaded), item.level));
     surface.item = item;
     surface.has_pages = false;
+    if (item.paged) coarse_.add(item.grid->name());
     version_ += !same;
     if (!same) CATENA_CHECK(surface.make_cells(frame.device));
   }

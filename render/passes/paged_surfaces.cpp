@@ -59,7 +59,7 @@ Outcome PagedSurfaces::prepare(Frame& frame, const std::vector<const IsosurfaceI
   for (auto& [grid, pool] : pools_) {
     const std::vector<double> next(levels[grid].begin(), levels[grid].end());
     if (pool.levels != next) {
-      const CodeScale codes = number_scale(*grid);
+      const CodeScale codes = number_scale(*grid, {next.front(), next.back()});
       CATENA_CHECK(pool.pages.set_codes({codes}, {level_appearance(codes, next)}));
       pool.levels = next;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Opaque isosurfaces of volumes that do not fit into the device's memory: pages of 16-bit numbers (paged_volume.h), one pool per field.
-/// A number represents integers of 8 and 16 bits exactly, other values with 1/32000 of the range of the level in memory. Part of the
+/// A number represents integers of 8 and 16 bits exactly (number_scale). Part of the
 /// isosurface pass. Frame thread.
 #pragma once
 #include <map>

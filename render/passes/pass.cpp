@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "engine/base/result.h"
+#include "engine/base/text.h"
 #include "engine/field/field_display_range.h"
 #include "shaders/shared/frame.h"
 
@@ -121,6 +122,17 @@ ResidencyOptions residency_options(const FramePacket& packet, const RenderSettin
 
 Result<std::shared_ptr<const ResidentGrid>> Frame::resident_grid(const field::ScalarGrid& grid) const {
   return residency.get(grid, residency_options(packet, settings, grid));
+}
+
+void CoarseGrids::add(const std::string& name) {
+  if (std::ranges::find(names_, name) == names_.end()) names_.push_back(name);
+}
+
+std::string CoarseGrids::warning() const {
+  std::string text;
+  for (const std::string& name : names_)
+    text += (text.empty() ? "drawn from the level in memory, not from the finest one: " : ", ") + in_quotes(name);
+  return text;
 }
 
 }  // namespace catena::render

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -171,6 +172,18 @@ class Pass {
   /// Returns a one-line message about items of the last image that are missing or were rendered in another way than requested, and why;
   /// empty: none.
   virtual std::string warning() const { return {}; }
+};
+
+/// Names of grids that a pass draws from the level in memory although finer ones are stored.
+class CoarseGrids {
+ public:
+  void clear() { names_.clear(); }
+  void add(const std::string& name);
+  /// Returns a warning that lists the names; empty: there are none.
+  std::string warning() const;
+
+ private:
+  std::vector<std::string> names_;
 };
 
 /// Entry of a pass in the renderer's list.

@@ -84,7 +84,7 @@ class RaycastPass final : public Pass, public RaySampler {
   Outcome record(vk::Commands& commands, Frame& frame) override;
   double build_ms() const override { return fast_pass_ ? fast_pass_->build_ms() : 0; }
   std::uint64_t grid_bytes() const override { return fast_pass_ ? fast_pass_->grid_bytes() : 0; }
-  std::string warning() const override { return wanted_fast_ && !fast_ ? refused_.reason : std::string(); }
+  std::string warning() const override { return wanted_fast_ && !fast_ ? refused_.reason : coarse_.warning(); }
 
   RaySampler* ray_sampler() override { return this; }
   Outcome record_ray_samples(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) override;
@@ -129,6 +129,7 @@ class RaycastPass final : public Pass, public RaySampler {
   const VolumeItem* fast_ = nullptr;  ///< the frame's first volume, if the fast raycast draws the volumes
   FastSettings fast_settings_;        ///< of the last frame that wanted the fast raycast
   Refused refused_;
+  CoarseGrids coarse_;
   bool wanted_fast_ = false;
   bool any_ = false, projected_ = false, projects_pages_ = false;
   std::vector<const field::Field*> grids_;
@@ -194,6 +195,7 @@ bool RaycastPass::prepare_paged_projection(Frame& frame) {
 Outcome RaycastPass::prepare(Frame& frame) {
   const FramePacket& packet = frame.packet;
   grids_.clear();
+  coarse_.clear();
   const bool is_paged = !packet.volumes.empty() && packet.volumes.front().paged;
   projects_pages_ = false;
   wanted_fast_ = (frame.settings.fast || is_paged) && frame.layers.empty() && supports_fast_raycast(frame.device, packet);
@@ -221,6 +223,7 @@ Outcome RaycastPass::prepare(Frame& frame) {
     CATENA_TRY(auto grid, frame.resident_grid(*item.grid));
     if (!grid->is_drawable) return Done{};
     grids_.push_back(item.grid.get());
+    if (item.paged) coarse_.add(item.grid->name());
     list.push_back({&item, std::move(grid), nullptr});
     if (!item.color_by) return Done{};
     CATENA_TRY(grid, frame.resident_grid(*item.color_by->grid));

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "engine/field/field_display_range.h"
+
 namespace catena::render {
 namespace {
 
@@ -13,9 +15,10 @@ constexpr std::uint32_t kPagedProjectionFragmentShader[] = {
 #include "spirv/projection_paged.frag.inc"
 };
 
-/// Returns the range of the values of the level in memory and of the transfer function's points.
+/// Returns the display range of the level in memory, extended to the transfer function's points.
 BrickRange table_range(const VolumeItem& item) {
-  BrickRange range{float(item.grid->stats().min), float(item.grid->stats().max)};
+  const DisplayRange& shown = display_range(*item.grid);
+  BrickRange range{float(shown.lo), float(shown.hi)};
   const auto extend = [&range](double value) { range = {std::min(range.min, float(value)), std::max(range.max, float(value))}; };
   for (const auto& row : item.transfer.extinctions) extend(row[0]);
   for (const auto& row : item.transfer.colors) extend(row[0]);
@@ -30,12 +33,14 @@ Outcome PagedProjection::prepare(const VolumeItem& item, std::uint64_t max_bytes
     pages_.reset();
     CATENA_TRY(pages_, PagedVolume::create(*device_, {item.paged}, PageFormat::numbers, max_bytes));
   }
-  if (other_grid || item_.projection != item.projection)
-    CATENA_CHECK(pages_->set_codes(number_scale(*item.paged),
+  const bool other_table = other_grid || !(item_.transfer == item.transfer);
+  const BrickRange range = table_range(item);
+  if (other_table || item_.projection != item.projection)
+    CATENA_CHECK(pages_->set_codes(number_scale(*item.paged, {range.min, range.max}),
                                    item.projection == Projection::minimum ? SubBrickTexels::minima : SubBrickTexels::maxima));
-  if (other_grid || !(item_.transfer == item.transfer)) {
+  if (other_table) {
     opacity_length_ = item.transfer.opacity_length > 0 ? item.transfer.opacity_length : item.paged->mapping().min_voxel_edge();
-    lut_ = make_transfer_lut(item.transfer, table_range(item), opacity_length_);
+    lut_ = make_transfer_lut(item.transfer, range, opacity_length_);
     const std::vector<glm::vec4> words = lut_.pack_for_shader();
     CATENA_TRY(table_, vk::upload_buffer(*device_, std::as_bytes(std::span(words)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
   }

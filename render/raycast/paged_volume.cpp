@@ -11,6 +11,7 @@
 
 #include "engine/base/memory_limit.h"
 #include "engine/base/threads.h"
+#include "engine/field/field_display_range.h"
 #include "render/residency/brick_map.h"
 #include "render/residency/packed_atlas.h"
 #include "render/vk/commands.h"
@@ -63,11 +64,13 @@ shared::PageLevels level_data(const std::vector<PageLevel>& levels) {
 
 }  // namespace
 
-CodeScale number_scale(const field::PagedGrid& grid) {
+CodeScale number_scale(const field::PagedGrid& grid, const ValueInterval& needed) {
   constexpr int kBits = 16, kUnits = 253;
   const std::string_view type = grid.source().type().name;
-  const double half = 0.5 * (grid.max_value() - grid.min_value());
-  ValueInterval values{grid.min_value() - half, grid.max_value() + half};
+  constexpr double kMargin = 2;  // in extents of the display range
+  const DisplayRange& shown = display_range(grid.resident_grid());
+  const double margin = kMargin * (shown.hi - shown.lo);
+  ValueInterval values{std::min(shown.lo - margin, needed.min), std::max(shown.hi + margin, needed.max)};
   const auto holds_all_of = [&values](auto number) {
     using Limits = std::numeric_limits<decltype(number)>;
     values = {double(Limits::min()), double(Limits::max())};
@@ -78,8 +81,8 @@ CodeScale number_scale(const field::PagedGrid& grid) {
   if (type == "int16") holds_all_of(std::int16_t{});
   CodeScale scale(values, type.starts_with("float"), kBits);
   const auto encode = scale.encoder<std::uint16_t>();
-  scale.range_lo = encode(float(grid.min_value()));
-  scale.range_step = std::max(1, (encode(float(grid.max_value())) - scale.range_lo) / kUnits);
+  scale.range_lo = encode(float(shown.lo));
+  scale.range_step = std::max(1, (encode(float(shown.hi)) - scale.range_lo) / kUnits);
   return scale;
 }
 

@@ -26,9 +26,9 @@ enum class SubBrickTexels {
   minima      ///< of numbers: 0 if no cell is valid, else 255 minus the lower end of the range
 };
 
-/// Returns the scale of numbers (PageFormat::numbers) of a grid: all values of an integer type of 8 or 16 bits, else the range of the
-/// level in memory, with half of its extent on either side for values that only finer levels have.
-CodeScale number_scale(const field::PagedGrid& grid);
+/// Returns the scale of numbers (PageFormat::numbers) of a grid: all values of an integer type of 8 or 16 bits; else the display range of
+/// the level in memory, which leaves out outliers, and twice its extent on either side, and `needed`. Values beyond are clamped.
+CodeScale number_scale(const field::PagedGrid& grid, const ValueInterval& needed);
 
 /// Returns how many of `left` bytes of the device one of `sharers` pools may have.
 std::uint64_t page_pool_bytes(const vk::Device& device, std::uint64_t left, std::size_t sharers);

@@ -1,19 +1,30 @@
 // SPDX-License-Identifier: MIT
-// First crossing of a level along a ray in a paged volume, page by page. Pages of different levels do not meet: where the value is on one
-// side of the level at the end of a page, and on the other side at the beginning of the next, the surface is there. `level`: in codes.
+// First crossing of a level along a ray in a paged volume. The side of the level is followed from cell to cell: where it is another one at
+// the beginning of a cell than at the end of the cell before, the surface is between them. So there are no holes where values round
+// differently, nor where pages of different levels, whose values differ, meet. `level`: in codes.
 #include "shaders/lib/surface_cell.glsl"
 #include "shaders/lib/page_traversal.glsl"
-#define UNKNOWN NO_DEPTH
+#define UNKNOWN_SIDE 0
 
-// Crossing in a page: the cubic along a segment of the ray, a bracket of its root, and the depths of the segment's ends.
+// Crossing: the cubic along a segment of the ray, a bracket of its root, and the depths of the segment's ends.
 struct PageCrossing {
   vec4 cubic;
   Bracket bracket;
   vec2 depths;
 };
 
-// Finds the first crossing in the page of an entry.
-bool find_crossing(EntryPart part, float level, out PageCrossing crossing) {
+int side_of(float value) { return value >= 0.0 ? 1 : -1; }
+int side_of_code(float code, float level) { return MASKED != 0u && code == 0.0 ? UNKNOWN_SIDE : side_of(code - level); }
+
+// Returns whether the side changes between two cells, at depth t; the crossing is there then.
+bool side_changes(int before, int after, float t, inout PageCrossing crossing) {
+  const bool changes = before != UNKNOWN_SIDE && after != UNKNOWN_SIDE && before != after;
+  if (changes) crossing = PageCrossing(vec4(0.0), Bracket(0.0, 0.0, 0.0, 1.0), vec2(t));
+  return changes;
+}
+
+// Finds the first crossing in the page of an entry. `side`: at the end of the part before on input, of this part on output.
+bool find_crossing(EntryPart part, float level, inout int side, inout PageCrossing crossing) {
   const FlippedRay flipped = make_flipped_ray(part.ray, ivec3(0), ivec3(PAGE_EDGE));
   const ivec3 slot = unpack_slot(part.word);
   CellTraversal traversal = begin_page(part, flipped);
@@ -22,27 +33,31 @@ bool find_crossing(EntryPart part, float level, out PageCrossing crossing) {
     const ivec3 cell = traversal.cell ^ flipped.turned;
     const int distance = int(texelFetch(sub_bricks, slot * PAGE_BRICKS + (cell >> 3), 0).r);
     if (distance > 0) {
+      const int here = side_of_code(float(slot_word(slot * PAGE_TEXELS + cell)), level);
+      found = side_changes(side, here, traversal.t, crossing);
+      side = here;
       advance_past(traversal, flipped, (traversal.cell | 7) + (8 * distance - 7));
     } else {
       vec4 near, far;
       read_cell(slot * PAGE_TEXELS + cell, near, far);
-      if (is_valid_cell(near, far) && holds_level(near - level, far - level)) {
+      const bool valid = is_valid_cell(near, far);
+      near -= level;
+      far -= level;
+      int begin = valid ? side_of(near.x) : UNKNOWN_SIDE, end = begin;
+      if (valid && holds_level(near, far)) {
         const RaySegment segment = segment_in_cell(traversal, flipped, part.to);
-        crossing.cubic = cell_cubic(near - level, far - level, segment.a, segment.b);
+        crossing.cubic = cell_cubic(near, far, segment.a, segment.b);
         crossing.depths = vec2(segment.from, segment.to);
         found = first_bracket(crossing.cubic, crossing.bracket);
+        begin = side_of(crossing.cubic.x);
+        end = side_of(crossing.cubic.w);
       }
+      if (side_changes(side, begin, traversal.t, crossing)) found = true;
+      side = end;
       advance_past(traversal, flipped, traversal.cell + 1);
     }
   }
   return found;
-}
-
-// Returns the value minus the level at a depth of an entry's part of the ray; UNKNOWN where it is not valid.
-float side_at(EntryPart part, float t, float level) {
-  if (!is_stored(part.word)) return MASKED == 0u ? look_code(part.word) - level : UNKNOWN;
-  const PackedSample s = sample_page(part.word, part.ray.origin + t * part.ray.direction);
-  return s.valid ? s.code - level : UNKNOWN;
 }
 
 // Returns the first depth in [from, to] at which the ray crosses the level; NO_DEPTH: none.
@@ -51,21 +66,17 @@ float first_crossing(LocalRay ray, float from, float to, float level) {
   CellTraversal traversal = begin_traversal(ray, flipped, from);
   PageCrossing crossing = PageCrossing(vec4(0.0), Bracket(0.0, 0.0, 0.0, 1.0), vec2(0.0));
   bool found = false;
-  float behind = UNKNOWN, between = NO_DEPTH;  // value minus level at the end of the page before; depth of a crossing between pages
+  int side = UNKNOWN_SIDE;
   while (!found && is_inside(traversal, flipped, to)) {
     const EntryPart part = enter_entry(ray, traversal, flipped, to);
-    const float here = side_at(part, part.from, level);
-    if (here != UNKNOWN && behind != UNKNOWN && (here >= 0.0) != (behind >= 0.0)) {
-      found = true;
-      between = part.from;
-    }
-    behind = here;
-    if (!found && is_stored(part.word)) {
-      found = find_crossing(part, level, crossing);
-      behind = side_at(part, part.to, level);
+    if (is_stored(part.word)) {
+      found = find_crossing(part, level, side, crossing);
+    } else {
+      const int here = side_of_code(look_code(part.word), level);
+      found = side_changes(side, here, part.from, crossing);
+      side = here;
     }
     leave_entry(part, traversal, flipped);
   }
-  if (!found) return NO_DEPTH;
-  return between < NO_DEPTH ? between : mix(crossing.depths.x, crossing.depths.y, find_root(crossing.cubic, crossing.bracket));
+  return found ? mix(crossing.depths.x, crossing.depths.y, find_root(crossing.cubic, crossing.bracket)) : NO_DEPTH;
 }

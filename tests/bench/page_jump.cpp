@@ -43,6 +43,7 @@ void refine(render::Renderer& renderer, const render::FramePacket& packet, const
   std::vector<double> frames;
   double at_share = -1;
   std::uint64_t visible = 0;
+  int level = 0;
   const std::int64_t start = now_ns();
   for (bool done = false; !done && 1e-3 * ms_since(start) < kMaxS;) {
     const std::int64_t frame = now_ns();
@@ -50,13 +51,14 @@ void refine(render::Renderer& renderer, const render::FramePacket& packet, const
     frames.push_back(ms_since(frame));
     const render::PagingStats pages = renderer.paging();
     visible = pages.visible;
+    level = pages.finest_level;
     // the first image has no visits yet
     if (frames.size() > 2 && at_share < 0 && double(pages.resident) >= kShare * double(visible)) at_share = 1e-3 * ms_since(start);
     done = frames.size() > 2 && pages.resident == visible && !pages.is_loading && !pages.has_arrived;
   }
   const double total = 1e-3 * ms_since(start);
   std::ranges::sort(frames);
-  fmt::print("{},{},{:.2f},{:.2f},{},{:.0f},{:.0f}\n", name, visible, at_share, total, frames.size(), frames[frames.size() / 2],
+  fmt::print("{},{},{},{:.2f},{:.2f},{},{:.0f},{:.0f}\n", name, visible, level, at_share, total, frames.size(), frames[frames.size() / 2],
              frames.back());
 }
 
@@ -71,7 +73,7 @@ int main(int count, char** arguments) {
   scene::Scene scene = get(scene::read_scene(arguments[1]));
   render::FramePacket packet = get(render::make_frame(scene, 960, 740));
   const auto renderer = get(render::Renderer::create({}));
-  fmt::print("view,bricks,95 % s,all s,frames,median frame ms,longest frame ms\n");
+  fmt::print("view,bricks,coarsest level for lack of memory,95 % s,all s,frames,median frame ms,longest frame ms\n");
   drop_from_page_cache(arguments[2]);
   refine(*renderer, packet, "first");
   render::View view = packet.view;

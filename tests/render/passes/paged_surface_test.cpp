@@ -56,6 +56,21 @@ TEST_F(PagedSurfaces, AreThoseOfTheGridInMemory) {
   EXPECT_LE(wrong, 2u);  // rays that graze the surface
 }
 
+TEST_F(PagedSurfaces, HaveNoHolesOnTheFaceBetweenBricks) {
+  const auto source = std::make_shared<const FormulaBricks>(kSize, 1, [](const Vec3& p) { return 20000 + 100 * p.z; });
+  FramePacket packet = make_packet({-145, -397, 226}, {75, 65, 64}, 20);
+  packet.isosurfaces = {surface(source->whole(0), nullptr, 26400, 1)};
+  draw(packet, complete());
+  const std::vector<std::uint32_t> expected = ids();
+  packet.isosurfaces = {surface(source->whole(1), make_paged(source), 26400, 1)};
+  draw(packet, complete(), "face");
+  const std::vector<std::uint32_t> shown = ids();
+  std::size_t covered = 0, different = 0;
+  for (std::size_t i = 0; i < shown.size(); ++i) covered += expected[i] == 1, different += expected[i] != shown[i];
+  EXPECT_GT(covered, 2000u);
+  EXPECT_LE(different, 2u);
+}
+
 TEST_F(PagedSurfaces, HaveNoHolesWherePagesOfDifferentLevelsMeet) {
   // a wall in y of waves that the coarse level flattens: it is at another place in the pages that can be read
   const auto source = std::make_shared<FormulaBricks>(
