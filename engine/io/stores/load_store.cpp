@@ -62,22 +62,38 @@ std::size_t level_for(const StoreGrid& grid, int requested) {
 struct FittingPart {
   LevelPart part;
   Outcome fits = Done{};
+  bool is_small = true;  ///< it leaves memory for channels or bricks
 };
 
-/// Finds the finest level, from the requested one on, whose part fits into memory. A coarser level than the requested one takes at most a
-/// part of the memory: the rest is for bricks of the finest level.
-Result<FittingPart> find_part(const LoadRequest& request, const std::shared_ptr<const StoredLevels>& stored) {
-  constexpr double kPart = 0.25;
+/// Returns the number of channels that are likely to be loaded together with a grid: those of its size, at most kMaxTogether.
+int channels_of(const StoreDescription& store, int grid) {
+  constexpr int kMaxTogether = 4;
+  const auto is_channel = [&](const StoreGrid& other) {
+    const StoreGrid& own = store.grids[static_cast<std::size_t>(grid)];
+    return other.levels.front().size == own.levels.front().size && (other.color >= 0 || other.name.starts_with("channel "));
+  };
+  return is_channel(store.grids[static_cast<std::size_t>(grid)])
+             ? std::min(kMaxTogether, static_cast<int>(std::ranges::count_if(store.grids, is_channel)))
+             : 1;
+}
+
+/// Finds the finest level, from the requested one on, whose part fits into memory. All `channels` must fit into most of the limit together,
+/// so that either all or none are drawn from their finest level by bricks. A coarser level than the requested one takes at most a part of
+/// the memory: the rest is for bricks of the finest level.
+Result<FittingPart> find_part(const LoadRequest& request, const std::shared_ptr<const StoredLevels>& stored, int channels) {
+  constexpr double kPart = 0.25, kMost = 0.75;
   FittingPart found{{stored, static_cast<int>(level_for(stored->description(), request.level)), StoreBox{}}};
   const int requested = found.part.level;
   const double available = static_cast<double>(available_memory());
   for (LevelPart& part = found.part;; ++part.level) {
     CATENA_TRY(part.box, needed_box(request.path, stored->description(), part.at(), request.crop));
-    const bool is_small = part.level == requested || part.box.voxels() * sizeof(float) <= kPart * available;
+    const double bytes = part.box.voxels() * sizeof(float);
+    const double most = kMost * static_cast<double>(memory_limit().value_or(available_memory()));
+    found.is_small = part.level == requested ? channels == 1 || channels * bytes <= most : bytes <= kPart * available;
     const std::string what = one_line(fmt::format("{}: {}", request.path, size_text(part.grid_size()) + " voxels"));
     const MemoryReservation slab(LevelReader(part).slab_bytes());
     found.fits = check_dense_memory(what, part.grid_size(), 1, false);
-    if ((found.fits && is_small) || part.level + 1 == stored->count()) return found;
+    if ((found.fits && found.is_small) || part.level + 1 == stored->count()) return found;
   }
 }
 
@@ -86,22 +102,26 @@ Result<LevelPart> find_or_make_part(const LoadRequest& request, const std::share
   const auto open = [&](std::shared_ptr<const CachedLevels> cached) {
     return std::make_shared<const StoredLevels>(store, grid, step, std::move(cached));
   };
-  CATENA_TRY(FittingPart found, find_part(request, open(find_cached_levels(*store, grid, step))));
+  const int channels = channels_of(store->description(), grid);
+  CATENA_TRY(FittingPart found, find_part(request, open(find_cached_levels(*store, grid, step)), channels));
+  if (found.fits && (found.is_small || found.part.level > 0)) return found.part;
+  const int own_levels = static_cast<int>(store->description().grids[static_cast<std::size_t>(grid)].levels.size());
+  const Index3& size = found.part.at().size;
+  std::optional<Error> failure;
+  if (found.part.stored->count() == own_levels && std::max({size.x, size.y, size.z}) > kBrickEdge) {
+    if (auto made = make_cached_levels(store, grid, step)) {
+      CATENA_TRY(found, find_part(request, open(std::move(*made)), channels));
+    } else {
+      failure = made.error();
+    }
+  }
   if (found.fits) return found.part;
   Error error = found.fits.error();
   error.message += "; the store has no coarser level, \"crop\" in a scene loads a part";
-  const StoredLevels& stored = *found.part.stored;
-  const Index3& size = found.part.at().size;
-  if (stored.count() > static_cast<int>(store->description().grids[static_cast<std::size_t>(grid)].levels.size())) return error;
-  if (std::max({size.x, size.y, size.z}) <= kBrickEdge) return error;
-  auto made = make_cached_levels(store, grid, step);
-  if (!made) {
-    error.message += "; coarser levels could not be made in the cache: " + made.error().message;
-    error.system_failure = error.system_failure || made.error().system_failure;
-    return error;
+  if (failure) {
+    error.message += "; coarser levels could not be made in the cache: " + failure->message;
+    error.system_failure = error.system_failure || failure->system_failure;
   }
-  CATENA_TRY(found, find_part(request, open(std::move(*made))));
-  if (found.fits) return found.part;
   return error;
 }
 
@@ -142,8 +162,9 @@ Result<AnyField> load_part(const LoadRequest& request, const StoreDescription& a
     file.notes.push_back(
         fmt::format("level {} of {}, {} of {} voxels{}", part.level, grid.levels.size(), size_text(part.box.size), size_text(full.size),
                     part.level == finest ? ""
-                    : request.level == 0 ? ": the memory limit allows no finer one (--memory MB); volumes, isosurfaces, slices and links read the finest"
-                                         : ": the memory limit allows no finer one (--memory MB allows more)"));
+                    : request.level == 0
+                        ? ": the memory limit allows no finer one (--memory MB); volumes, isosurfaces, slices and links read the finest"
+                        : ": the memory limit allows no finer one (--memory MB allows more)"));
   }
   if (!(part.grid_size() == part.box.size)) file.notes.push_back("flat data get a thickness of one voxel");
   CATENA_TRY(AnyField field, load_dense(file));
