@@ -48,7 +48,7 @@ Outcome PagedSurfaces::prepare(Frame& frame, const std::vector<const IsosurfaceI
   std::size_t sharers = levels.size() - pools_.size() + (has_volume_in_pages(frame.packet) ? 1 : 0);
   for (const IsosurfaceItem* item : items) {
     if (!levels.contains(item->paged.get()) || pools_.contains(item->paged.get())) continue;
-    if (const Outcome added = add_pool(frame, item->paged, sharers); !added) {
+    if (Outcome added = add_pool(frame, item->paged, sharers); !added) {
       if (frame.device.is_lost()) return added;
       warning_ = "isosurfaces of \"" + item->grid->name() + "\" are drawn from a coarser level: " + added.error().message;
       levels.erase(item->paged.get());

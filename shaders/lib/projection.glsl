@@ -74,18 +74,11 @@ float find_extremum(LocalRay ray, vec2 interval) {
   return best > -NO_DEPTH ? signed_value(best) : NO_DEPTH;
 }
 
-float find_average(LocalRay ray, vec2 interval, float h) {
-  const int count = max(1, int(ceil((interval.y - interval.x) / h - 1e-3)));
-  float sum = 0.0, measured = 0.0;
-  for (int k = 0; k < count; ++k) {
-    const float begin = interval.x + float(k) * h, extent = k == count - 1 ? interval.y - begin : h;
-    const vec3 p = clamp(ray.origin + (begin + 0.5 * extent) * ray.direction, frame.grids[0].lo, frame.grids[0].hi);
-    bool valid = true;
-    if (grid_is_masked(0)) valid = cell_is_valid(0, cell_of(0, p));
-    if (valid) {
-      sum += extent * sample_value(0, p);
-      measured += extent;
-    }
-  }
-  return measured > 0.0 ? sum / measured : NO_DEPTH;
+// Returns whether the value at a position is valid.
+bool value_at(vec3 p, out float value) {
+  bool valid = true;
+  value = 0.0;
+  if (grid_is_masked(0)) valid = cell_is_valid(0, cell_of(0, p));
+  if (valid) value = sample_value(0, p);
+  return valid;
 }

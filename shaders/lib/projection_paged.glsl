@@ -54,17 +54,9 @@ float find_extremum(LocalRay ray, vec2 interval) {
   return best > -NO_DEPTH ? signed_value(best) : NO_DEPTH;
 }
 
-// Returns the mean of the codes at the middles of segments of length h; NO_DEPTH: no value.
-float find_average(LocalRay ray, vec2 interval, float h) {
-  const int count = max(1, int(ceil((interval.y - interval.x) / h - 1e-3)));
-  float sum = 0.0, measured = 0.0;
-  for (int k = 0; k < count; ++k) {
-    const float begin = interval.x + float(k) * h, extent = k == count - 1 ? interval.y - begin : h;
-    const PackedSample s = sample_packed(clamp(ray.origin + (begin + 0.5 * extent) * ray.direction, frame.grids[0].lo, frame.grids[0].hi));
-    if (s.valid) {
-      sum += extent * s.code;
-      measured += extent;
-    }
-  }
-  return measured > 0.0 ? sum / measured : NO_DEPTH;
+// Returns whether the code at a position is valid.
+bool value_at(vec3 p, out float code) {
+  const PackedSample s = sample_packed(p);
+  code = s.code;
+  return s.valid;
 }
