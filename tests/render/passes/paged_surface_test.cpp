@@ -57,12 +57,14 @@ TEST_F(PagedSurfaces, AreThoseOfTheGridInMemory) {
 }
 
 TEST_F(PagedSurfaces, HaveNoHolesOnTheFaceBetweenBricks) {
-  const auto source = std::make_shared<const FormulaBricks>(kSize, 1, [](const Vec3& p) { return 20000 + 100 * p.z; });
-  FramePacket packet = make_packet({-145, -397, 226}, {75, 65, 64}, 20);
-  packet.isosurfaces = {surface(source->whole(0), nullptr, 26400, 1)};
+  const auto source = std::make_shared<const FormulaBricks>(kSize, 1, [](const Vec3& p) { return 257 * p.z; });
+  FramePacket packet = make_packet({-245.3, -397.3, 426.7}, {75, 65, 127.5}, 20);
+  packet.width = 320;
+  packet.height = 240;
+  packet.isosurfaces = {surface(source->whole(0), nullptr, 32896, 1)};
   draw(packet, complete());
   const std::vector<std::uint32_t> expected = ids();
-  packet.isosurfaces = {surface(source->whole(1), make_paged(source), 26400, 1)};
+  packet.isosurfaces = {surface(source->whole(1), make_paged(source), 32896, 1)};
   draw(packet, complete(), "face");
   const std::vector<std::uint32_t> shown = ids();
   std::size_t covered = 0, different = 0;
