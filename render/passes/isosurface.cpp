@@ -29,7 +29,7 @@ class IsosurfacePass final : public Pass {
     CATENA_TRY(self->linear_, vk::Sampler::create(device, vk::Filter::linear));
     return std::unique_ptr<Pass>(std::move(self));
   }
-  PassUse use(const Frame& frame) const override { return {0, target::opaque, frame.settings.reuse_rays || has_pages_}; }
+  PassUse use(const Frame& frame) const override { return {0, target::opaque, frame.settings.reuse_rays || !paged_.is_empty()}; }
   Outcome prepare(Frame& frame) override;
   Bounds bounds() const override;
   Outcome record(vk::Commands& commands, Frame& frame) override;
@@ -65,7 +65,6 @@ class IsosurfacePass final : public Pass {
   std::uint64_t version_ = 0;  ///< number of changes found by prepare()
   bool keeps_ = false;
   PagedSurfaces paged_;
-  bool has_pages_ = false;  ///< any surface
   CoarseGrids coarse_;
 };
 
@@ -117,9 +116,9 @@ Outcome IsosurfacePass::prepare(Frame& frame) {
   std::size_t count = 0;
   std::vector<const IsosurfaceItem*> paged;
   for (const IsosurfaceItem& item : frame.packet.isosurfaces)
-    if (is_opaque(item) && item.paged && item.grid->interpolation() == field::Interpolation::linear) paged.push_back(&item);
+    if (is_opaque(item) && item.paged && !item.color_by && item.grid->interpolation() == field::Interpolation::linear)
+      paged.push_back(&item);
   CATENA_CHECK(paged_.prepare(frame, paged));
-  has_pages_ = !paged_.pages().empty();
   coarse_.clear();
   for (const IsosurfaceItem& item : frame.packet.isosurfaces) {
     if (!is_opaque(item)) continue;

@@ -41,8 +41,7 @@ Outcome PagedSurfaces::add_pool(Frame& frame, const std::shared_ptr<const field:
 
 Outcome PagedSurfaces::prepare(Frame& frame, const std::vector<const IsosurfaceItem*>& items) {
   std::map<const field::PagedGrid*, std::set<double>> levels;
-  for (const IsosurfaceItem* item : items)
-    if (item->paged && !item->color_by) levels[item->paged.get()].insert(item->level);
+  for (const IsosurfaceItem* item : items) levels[item->paged.get()].insert(item->level);
   warning_.clear();
   version_ += std::erase_if(pools_, [&](const auto& pool) { return !levels.contains(pool.first); });
   std::size_t sharers = levels.size() - pools_.size() + (has_volume_in_pages(frame.packet) ? 1 : 0);
@@ -92,8 +91,8 @@ Result<const vk::Pipeline*> PagedSurfaces::pipeline(vk::Device& device, bool is_
     vk::GraphicsInfo info;
     info.vertex = kPagedSurfaceVertexShader;
     info.fragment = kPagedSurfaceFragmentShader;
-    info.layout_bindings = {{0, vk::DescriptorKind::uniform},  {3, vk::DescriptorKind::texture},  {5, vk::DescriptorKind::texture},
-                            {10, vk::DescriptorKind::texture}, {11, vk::DescriptorKind::uniform}, {12, vk::DescriptorKind::buffer}};
+    info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {3, vk::DescriptorKind::texture}, {5, vk::DescriptorKind::texture}};
+    add_page_layout(info.layout_bindings);
     info.constants.resize(7);
     info.constants[6] = is_masked;
     info.colors = opaque_formats();
@@ -107,12 +106,10 @@ Outcome PagedSurfaces::draw(vk::Commands& commands, Frame& frame, const Isosurfa
   PagedVolume& pages = pools_.at(item.paged.get()).pages;
   pages.begin_image(frame.rays, false);
   CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, pages.is_masked()));
-  const vk::Binding bindings[] = {{0, vk::DescriptorKind::uniform, &uniform, nullptr, nullptr},
-                                  {3, vk::DescriptorKind::texture, nullptr, &pages.words(), nullptr},
-                                  {5, vk::DescriptorKind::texture, nullptr, &pages.map(), nullptr},
-                                  {10, vk::DescriptorKind::texture, nullptr, &pages.sub_bricks(), nullptr},
-                                  {11, vk::DescriptorKind::uniform, &pages.levels(), nullptr, nullptr},
-                                  {12, vk::DescriptorKind::buffer, &pages.visits(), nullptr, nullptr}};
+  std::vector<vk::Binding> bindings{{0, vk::DescriptorKind::uniform, &uniform, nullptr, nullptr},
+                                    {3, vk::DescriptorKind::texture, nullptr, &pages.words(), nullptr},
+                                    {5, vk::DescriptorKind::texture, nullptr, &pages.map(), nullptr}};
+  pages.add_bindings(bindings);
   commands.bind(*pipe, bindings);
   commands.draw_triangle();
   return Done{};

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Opaque isosurfaces of volumes that do not fit into the device's memory: pages of 16-bit numbers (paged_volume.h), one pool per field.
-/// A number represents integers of 8 and 16 bits exactly (number_scale). Part of the
-/// isosurface pass. Frame thread.
+/// A number represents integers of 8 and 16 bits exactly (number_scale). Part of the isosurface pass. Frame thread.
 #pragma once
 #include <map>
 #include <memory>
@@ -17,11 +16,13 @@ namespace catena::render {
 /// Pools and pipelines of the isosurfaces that are drawn from pages.
 class PagedSurfaces {
  public:
-  /// Prepares the pools of the items' fields, drops others, and loads pages unless an image waits for them anyway. A field for whose pool
-  /// the memory does not suffice has none.
+  /// Prepares the pools of the items' fields, which are paged, drops others, and loads pages unless an image waits for them anyway. A field
+  /// for whose pool the memory does not suffice has none.
   Outcome prepare(Frame& frame, const std::vector<const IsosurfaceItem*>& items);
   /// Returns whether an item has pages. Its grid in memory is not needed then.
   bool has_pages(const IsosurfaceItem& item) const { return item.paged && !item.color_by && pools_.contains(item.paged.get()); }
+  /// Returns whether no item has pages.
+  bool is_empty() const { return pools_.empty(); }
   /// Returns the pools.
   std::vector<PagedVolume*> pages();
   /// Returns a message about fields without a pool; empty: there are none.

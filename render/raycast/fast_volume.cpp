@@ -172,9 +172,7 @@ Result<const vk::Pipeline*> FastVolumeRaycast::pipeline(const Constants& constan
                             {3, vk::DescriptorKind::texture}, {4, vk::DescriptorKind::texture}, {5, vk::DescriptorKind::texture},
                             {6, vk::DescriptorKind::texture}, {7, vk::DescriptorKind::texture}, {8, vk::DescriptorKind::sampled},
                             {9, vk::DescriptorKind::texture}};
-    if (is_paged)
-      info.layout_bindings.insert(info.layout_bindings.end(),
-                                  {{10, vk::DescriptorKind::texture}, {11, vk::DescriptorKind::uniform}, {12, vk::DescriptorKind::buffer}});
+    if (is_paged) add_page_layout(info.layout_bindings);
     info.constants.assign(constants.begin(), constants.end());
     // full resolution goes to the volume target, coarser ray grids to their own images
     info.colors = {constants[4] & 2u ? kVolumeFormat : kRayGridFormat};
@@ -252,11 +250,7 @@ Outcome FastVolumeRaycast::draw(vk::Commands& commands, RayGrid& level, const Dr
        draw.shading == 2 && !resources_.pages() ? &resources_.gradients() : &placeholder_gradients_, &linear_},
       {9, vk::DescriptorKind::texture, nullptr, draw.tiles == Tiles::dirty ? &eye_state().opaque_tiles->dirty_tiles() : &placeholder_tiles_,
        nullptr}};
-  if (const PagedVolume* pages = resources_.pages()) {
-    bindings.push_back({10, vk::DescriptorKind::texture, nullptr, &pages->sub_bricks(), nullptr});
-    bindings.push_back({11, vk::DescriptorKind::uniform, &pages->levels(), nullptr, nullptr});
-    bindings.push_back({12, vk::DescriptorKind::buffer, &pages->visits(), nullptr, nullptr});
-  }
+  if (const PagedVolume* pages = resources_.pages()) pages->add_bindings(bindings);
   commands.set_scissor(draw.area);
   commands.bind(*pipe, bindings);
   if (draw.tiles == Tiles::all) {

@@ -73,23 +73,24 @@ Outcome PagedProjection::record(vk::Commands& commands, const CameraRays& rays, 
     vk::GraphicsInfo info;
     info.vertex = kPagedProjectionVertexShader;
     info.fragment = kPagedProjectionFragmentShader;
-    info.layout_bindings = {{0, vk::DescriptorKind::uniform},  {1, vk::DescriptorKind::buffer},  {2, vk::DescriptorKind::texture},
-                            {3, vk::DescriptorKind::texture},  {5, vk::DescriptorKind::texture}, {10, vk::DescriptorKind::texture},
-                            {11, vk::DescriptorKind::uniform}, {12, vk::DescriptorKind::buffer}};
+    info.layout_bindings = {{0, vk::DescriptorKind::uniform},
+                            {1, vk::DescriptorKind::buffer},
+                            {2, vk::DescriptorKind::texture},
+                            {3, vk::DescriptorKind::texture},
+                            {5, vk::DescriptorKind::texture}};
+    add_page_layout(info.layout_bindings);
     info.constants = {0, scene.opaque_depth != nullptr, kind, 0, 0, 0, pages_->is_masked()};
     add_table_flags(info.constants, lut_);
     info.colors = {kVolumeFormat};
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   }
-  const vk::Binding bindings[] = {
+  std::vector<vk::Binding> bindings{
       {0, vk::DescriptorKind::uniform, &uniform_, nullptr, nullptr},
       {1, vk::DescriptorKind::buffer, &table_, nullptr, nullptr},
       {2, vk::DescriptorKind::texture, nullptr, scene.opaque_depth ? scene.opaque_depth : scene.placeholder, nullptr},
       {3, vk::DescriptorKind::texture, nullptr, &pages_->words(), nullptr},
-      {5, vk::DescriptorKind::texture, nullptr, &pages_->map(), nullptr},
-      {10, vk::DescriptorKind::texture, nullptr, &pages_->sub_bricks(), nullptr},
-      {11, vk::DescriptorKind::uniform, &pages_->levels(), nullptr, nullptr},
-      {12, vk::DescriptorKind::buffer, &pages_->visits(), nullptr, nullptr}};
+      {5, vk::DescriptorKind::texture, nullptr, &pages_->map(), nullptr}};
+  pages_->add_bindings(bindings);
   commands.set_scissor(area);
   commands.bind(pipeline, bindings);
   commands.draw_triangle();

@@ -26,6 +26,7 @@ using field::Index3;
 std::uint64_t slot_bytes(PageFormat format, std::size_t channels) {
   return page_words(format) * texel_words(channels) * sizeof(std::uint16_t) + std::uint64_t(kPageBricks) * kPageBricks * kPageBricks;
 }
+constexpr std::uint32_t kSubBricks = 10, kLevels = 11, kVisits = 12;  // bindings of shaders/lib/page_table.glsl
 constexpr std::size_t kPagesPerImage = 64, kPagesPerUpload = 8;       // pages uploaded between two images, and in one transfer
 constexpr std::uint64_t kMinHostPoolBytes = std::uint64_t{64} << 20;  // pools in the memory of the host, at least
 constexpr std::size_t kMaxKnownLooks = 1u << 16;  // entries up to which looks are found again whenever pages have been read
@@ -91,6 +92,17 @@ std::uint64_t page_pool_bytes(const vk::Device& device, std::uint64_t left, std:
   // a software renderer's device memory is that of the host
   if (device.info().is_cpu()) bytes = std::min(bytes, std::max(available_memory() / 2, kMinHostPoolBytes));
   return bytes / std::max<std::size_t>(1, sharers);
+}
+
+void add_page_layout(std::vector<vk::LayoutBinding>& slots) {
+  slots.insert(slots.end(),
+               {{kSubBricks, vk::DescriptorKind::texture}, {kLevels, vk::DescriptorKind::uniform}, {kVisits, vk::DescriptorKind::buffer}});
+}
+
+void PagedVolume::add_bindings(std::vector<vk::Binding>& bindings) const {
+  bindings.push_back({kSubBricks, vk::DescriptorKind::texture, nullptr, &sub_bricks_, nullptr});
+  bindings.push_back({kLevels, vk::DescriptorKind::uniform, &levels_, nullptr, nullptr});
+  bindings.push_back({kVisits, vk::DescriptorKind::buffer, &visits_, nullptr, nullptr});
 }
 
 bool have_same_pages(const field::PagedGrid& a, const field::PagedGrid& b) {

@@ -33,6 +33,10 @@ CodeScale number_scale(const field::PagedGrid& grid, const ValueInterval& needed
 /// Returns how many of `left` bytes of the device one of `sharers` pools may have.
 std::uint64_t page_pool_bytes(const vk::Device& device, std::uint64_t left, std::size_t sharers);
 
+/// Adds the bindings of the page table's data (shaders/lib/page_table.glsl), except its words and the image of codes, whose numbers other
+/// volumes use, too.
+void add_page_layout(std::vector<vk::LayoutBinding>& slots);
+
 /// Returns whether two grids have the same pages at the same positions.
 bool have_same_pages(const field::PagedGrid& a, const field::PagedGrid& b);
 
@@ -64,6 +68,8 @@ class PagedVolume {
     rays_ = rays;
     adds_visits_ = adds;
   }
+  /// Adds what add_page_layout() lists.
+  void add_bindings(std::vector<vk::Binding>& bindings) const;
   /// Makes the visits of rays visible to the host. Outside of a rendering scope.
   void finish_visits(vk::Commands& commands);
   /// Returns the plan of the last update.
@@ -78,8 +84,6 @@ class PagedVolume {
   const vk::Image& words() const { return words_; }
   const vk::Image& sub_bricks() const { return sub_bricks_; }
   const vk::Image& map() const { return map_; }
-  const vk::Buffer& levels() const { return levels_; }
-  const vk::Buffer& visits() const { return visits_; }
   std::uint64_t bytes() const { return words_.bytes() + sub_bricks_.bytes() + map_.bytes() + visits_.size(); }
   /// Returns the local coordinates, which are voxels of the source's finest level, as those of a resident grid without images.
   ResidentGrid local_geometry() const;
