@@ -34,6 +34,12 @@ Outcome check(const FramePacket& packet, const RenderSettings& settings, const v
   return Done{};
 }
 
+/// Returns whether rays of a single view march volumes in pages.
+bool marches_pages(const FramePacket& packet) {
+  return packet.eyes.empty() && packet.planes.empty() &&
+         std::ranges::any_of(packet.volumes, [](const VolumeItem& item) { return item.paged != nullptr; });
+}
+
 }  // namespace
 
 Renderer::Renderer() : impl_(std::make_unique<Impl>()) {
@@ -240,6 +246,10 @@ Outcome Renderer::draw(const FramePacket& packet, const RenderSettings& settings
   impl_->drawn_targets = 0;
   CATENA_CHECK(check(packet, settings, impl_->device->info()));
   return impl_->within_budget(packet, [&]() -> Outcome {
+    if (settings.waits_for_pages && marches_pages(packet)) {
+      CATENA_CHECK(load_sampled_pages(packet, settings));
+      if (settings.divides_for_pages && paging().finest_level > 0) return Done{};
+    }
     CATENA_CHECK(draw_once(packet, settings));
     for (int k = 0; settings.waits_for_pages && k < kMaxPageRounds; ++k) {
       CATENA_TRY(const bool loaded, impl_->load_pages(settings));
@@ -248,6 +258,17 @@ Outcome Renderer::draw(const FramePacket& packet, const RenderSettings& settings
     }
     return Done{};
   });
+}
+
+/// Loads the pages that sparse rays visit: most of those of the image, at a small part of its cost.
+Outcome Renderer::load_sampled_pages(const FramePacket& packet, const RenderSettings& settings) {
+  constexpr std::uint32_t kSpacing = 4;
+  for (int k = 0; k < kMaxPageRounds; ++k) {
+    CATENA_CHECK(sample_rays_once(packet, settings, kSpacing));
+    CATENA_TRY(const bool loaded, impl_->load_pages(settings));
+    if (!loaded) break;
+  }
+  return Done{};
 }
 
 Result<bool> Renderer::Impl::load_pages(const RenderSettings& settings) {

@@ -212,6 +212,7 @@ class CATENA_EXPORT Renderer {
  private:
   Renderer();
   Outcome draw_once(const FramePacket& packet, const RenderSettings& settings);
+  Outcome load_sampled_pages(const FramePacket& packet, const RenderSettings& settings);
   Result<Image8> sample_rays_once(const FramePacket& packet, const RenderSettings& settings, std::uint32_t spacing);
   struct Impl;
   std::unique_ptr<Impl> impl_;

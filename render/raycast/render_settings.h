@@ -72,7 +72,7 @@ struct RenderSettings {
   bool waits_for_pages = false;
   /// A complete image shows the finest level, however small its voxels are. False: levels whose voxels are not larger than a pixel.
   bool shows_finest_pages = false;
-  /// The caller divides an image whose pages do not fit (PagingStats::finest_level): no coarser ones are read for it.
+  /// The caller divides an image whose pages do not fit (PagingStats::finest_level): no coarser ones are read for it, and it is not drawn.
   bool divides_for_pages = false;
   /// > 0: the rays of every n-th pixel in each direction are marched a second time, after the image, for Renderer::ray_depth().
   std::uint32_t ray_depth_spacing = 0;
