@@ -91,13 +91,13 @@ else()
 endif()
 
 # What catena-read-chunks reads with: optional. HDF5 is the serial build, since a process must not hold two.
-pkg_check_modules(CHUNKS IMPORTED_TARGET blosc liblz4 libzstd zlib libtiff-4 hdf5-serial expat)
+pkg_check_modules(CHUNKS IMPORTED_TARGET blosc liblz4 libzstd libdeflate libtiff-4 hdf5-serial expat)
 set(CATENA_CHUNKS ${CHUNKS_FOUND})
 if(CATENA_CHUNKS)
   add_library(catena_chunks INTERFACE)
   target_link_libraries(catena_chunks INTERFACE PkgConfig::CHUNKS)
 else()
-  message(STATUS "Zarr, HDF5 and TIFF will not be read: libblosc-dev, liblz4-dev, libzstd-dev, libtiff-dev, libhdf5-dev or libexpat1-dev is missing")
+  message(STATUS "Zarr, HDF5 and TIFF will not be read: libblosc-dev, liblz4-dev, libzstd-dev, libdeflate-dev, libtiff-dev, libhdf5-dev or libexpat1-dev is missing")
 endif()
 
 # Headsets: the headers alone, since the loader is opened when one is asked for. Optional.

@@ -169,7 +169,8 @@ void Servo::run_tick(double t_s, const TickTiming& beat, HapticState& out) noexc
   const bool takes_up = wanted != sink_;
 
   const std::int64_t began = now_ns();
-  const DeviceInput input = device_.read();
+  const DeviceInput input = first_input_ ? *first_input_ : device_.read();
+  first_input_.reset();
   const std::int64_t has_read = now_ns();
 
   if (next_program_.acquire()) {
@@ -233,9 +234,22 @@ void Servo::release_priority_if_overloaded(bool missed, std::int64_t now_ns) noe
   counters_.released_fifo.store(true, std::memory_order_relaxed);
 }
 
+/// Reads the device for the first tick, and waits a moment for the bricks around the probe.
+void Servo::await_first_bricks() {
+  constexpr double kMaxWait_s = 0.3;
+  BrickPager* pager = active_pager_.load(std::memory_order_acquire);
+  if (pager == nullptr || !options_.paced) return;
+  first_input_ = device_.read();
+  HapticState at;
+  at.probe = make_probe_sample(*program_, *first_input_, 0).position;
+  pager->put(at);
+  pager->wait_until_idle(kMaxWait_s);
+}
+
 void Servo::loop() noexcept {
   const RealtimeThread realtime(realtime_options(options_), this, sizeof *this);
   realtime_ = realtime.report();
+  await_first_bricks();
   if (watchdog_) watchdog_->start(now_ns(), realtime_.fifo ? options_.realtime.priority + 1 : 0);
   HapticState out;
   device_.resume();

@@ -3,6 +3,7 @@
 #pragma once
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -103,6 +104,7 @@ class CATENA_EXPORT Servo {
 
  private:
   void loop() noexcept;
+  void await_first_bricks();
   void run_tick(double t_s, const TickTiming& beat, HapticState& out) noexcept;
   void page_bricks(const HapticProgram& program);
   void observe_bricks(TickSink* sink);
@@ -125,6 +127,7 @@ class CATENA_EXPORT Servo {
   ChainState state_;
   ChainScratch scratch_;
   StateHash hash_;
+  std::optional<DeviceInput> first_input_;  ///< of the next tick, if it has been read
   bool stopped_ = false;          ///< the watchdog has stopped the device
   bool stalled_in_tick_ = false;  ///< the last tick took longer than the watchdog's limit
   int misses_in_row_ = 0;

@@ -131,7 +131,8 @@ void CoarseGrids::add(const std::string& name) {
 std::string CoarseGrids::warning() const {
   std::string text;
   for (const std::string& name : names_)
-    text += (text.empty() ? "drawn from the level in memory, not from the finest one: " : ", ") + in_quotes(name);
+    text += (text.empty() ? "drawn from the level in memory, not from the finest one (--memory MB loads a finer one): " : ", ") +
+            in_quotes(name);
   return text;
 }
 

@@ -231,7 +231,7 @@ Outcome FastVolumeRaycast::draw(vk::Commands& commands, RayGrid& level, const Dr
   const bool leaps = draw.skips_empty && this->skips_empty_space();
   CATENA_TRY(const vk::Pipeline* pipe, pipeline({draw.shading, leaps, draw.opaque_depth != nullptr, draw.coarser != nullptr,
                                                  (draw.marches ? 1u : 0u) | (draw.target->info().format == kVolumeFormat ? 2u : 0u),
-                                                 resources_.is_bricked(), resources_.is_masked(), draw.half_opacity_depth,
+                                                 resources_.is_regular(), resources_.is_masked(), draw.half_opacity_depth,
                                                  std::uint32_t(resources_.items().size()), shaded_channels(), resources_.is_dithered()},
                                                 draw.tiles != Tiles::all));
   vk::ColorTarget color{draw.target, std::array<float, 4>{0, 0, 0, 0}};

@@ -36,6 +36,8 @@ class FastVolumeResources {
   /// Returns a counter of changes to the packed data or the appearance.
   std::uint64_t version() const { return appearance_version_; }
   bool is_bricked() const { return bricks_.has_value(); }
+  /// Returns the shaders' constant 5: of packed.glsl whether the volume is bricked, of page_table.glsl whether levels halve voxels.
+  bool is_regular() const { return pages_ ? pages_->halves_voxels() : is_bricked(); }
   /// Returns the pages; null: the volume is not paged.
   PagedVolume* pages() { return pages_ ? &*pages_ : nullptr; }
   const PagedVolume* pages() const { return pages_ ? &*pages_ : nullptr; }

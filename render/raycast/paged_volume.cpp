@@ -56,9 +56,10 @@ shared::PageLevels level_data(const std::vector<PageLevel>& levels) {
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const PageLevel& level = levels[i];
     const auto narrow = [](const Vec3& v) { return shared::vec3(float(v.x), float(v.y), float(v.z)); };
-    data.levels[i] = {narrow(level.scale), narrow(level.offset), narrow(Vec3(1 << level.shift.x, 1 << level.shift.y, 1 << level.shift.z)),
-                      narrow(Vec3(level.counts.x - 1, level.counts.y - 1, level.counts.z - 1)),
-                      float(1 << std::min({level.shift.x, level.shift.y, level.shift.z}))};
+    const auto bits = [](int value, int first) { return std::uint32_t(value) << first; };
+    const Index3& n = level.counts;
+    data.levels[i] = {narrow(level.scale), narrow(level.offset), bits(n.x - 1, 0) | bits(n.y - 1, 16),
+                      bits(n.z - 1, 0) | bits(level.shift.x, 16) | bits(level.shift.y, 21) | bits(level.shift.z, 26)};
   }
   return data;
 }
@@ -405,6 +406,13 @@ Outcome PagedVolume::upload_sub_bricks(std::span<const std::size_t> slots) {
 void PagedVolume::finish_visits(vk::Commands& commands) {
   constexpr vk::ResourceUse kVisit{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_WRITE_BIT};
   commands.barrier(visits_, kVisit, vk::kHostRead);
+}
+
+bool PagedVolume::halves_voxels() const {
+  return std::ranges::all_of(table_.levels(), [](const PageLevel& level) {
+    const Vec3 scale(std::exp2(-level.shift.x), std::exp2(-level.shift.y), std::exp2(-level.shift.z));
+    return level.scale == scale && level.offset == 0.5 * scale - Vec3(0.5);
+  });
 }
 
 ResidentGrid PagedVolume::local_geometry() const {

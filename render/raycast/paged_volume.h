@@ -85,6 +85,8 @@ class PagedVolume {
   const vk::Image& sub_bricks() const { return sub_bricks_; }
   const vk::Image& map() const { return map_; }
   std::uint64_t bytes() const { return words_.bytes() + sub_bricks_.bytes() + map_.bytes() + visits_.size(); }
+  /// Returns whether each level's voxels are exactly those that halving the finest ones makes.
+  bool halves_voxels() const;
   /// Returns the local coordinates, which are voxels of the source's finest level, as those of a resident grid without images.
   ResidentGrid local_geometry() const;
 

@@ -11,26 +11,18 @@ struct ChannelSample {
   vec4 codes;
   mat3x4 gradients;  // codes per finest voxel along x, y, z
   bvec4 valid;       // false in homogeneous entries of the page table
-  uint word;         // of the page table
-  ivec3 cell;        // cell in the page
+  PagePlace place;
 };
 
 ChannelSample sample_channels(vec3 p) {
   ChannelSample s;
-  const ivec3 entry = entry_of(p);
-  s.word = texelFetch(page_table, entry, 0).r;
+  s.place = find_place(p);
   s.codes = vec4(0.0);
   s.gradients = mat3x4(0.0);
   s.valid = bvec4(false);
-  s.cell = ivec3(0);
-  if (!is_stored(s.word)) return s;
-  count_visit(entry);
-  const uint level = page_level(s.word);
-  const vec3 scale = pages.levels[level].scale;
-  const vec3 at_page = clamp(scale * p + pages.levels[level].offset - first_of_page(level, vec3(entry)), vec3(0.0), vec3(PAGE_EDGE));
-  const vec3 base = min(floor(at_page), vec3(PAGE_EDGE - 1)), f = at_page - base;
-  s.cell = ivec3(base);
-  const ivec3 at = unpack_slot(s.word) * PAGE_TEXELS + s.cell;
+  if (!is_stored(s.place.word)) return s;
+  const vec3 base = cell_of(s.place.at), f = s.place.at - base, scale = s.place.scale;
+  const ivec3 at = unpack_slot(s.place.word) * PAGE_TEXELS + ivec3(base);
   // texels of two codes, of a node and of its neighbor along x, at (y, z) = (0,0) (1,0) (0,1) (1,1)
   const uvec4 t00 = texelFetch(packed_words, at, 0), t10 = texelFetch(packed_words, at + ivec3(0, 1, 0), 0),
               t01 = texelFetch(packed_words, at + ivec3(0, 0, 1), 0), t11 = texelFetch(packed_words, at + ivec3(0, 1, 1), 0);
@@ -48,7 +40,7 @@ ChannelSample sample_channels(vec3 p) {
 
 // Returns the central differences over a voxel of the page's level on either side, as smooth_gradient in paged.glsl.
 mat3x4 smooth_gradients(vec3 p, ChannelSample s) {
-  const float width = page_voxel_width(s.word);
+  const float width = s.place.width;
   mat3x4 gradients;
   for (int axis = 0; axis < 3; ++axis) {
     vec3 step = vec3(0.0);
@@ -111,8 +103,8 @@ vec4 march_packed(vec2 q, float end) {
   vec3 sum = vec3(0.0);
   RaySample s = sample_at(ray, interval.x);
   while (s.t < last && transmittance > frame.termination) {
-    const float step = h * page_voxel_width(s.s.word);
-    const float leave = SKIPS_EMPTY != 0u ? page_exit(s.s.word, s.s.cell, s.p, inverse, is_forward_axis) : 0.0;
+    const float step = h * s.s.place.width;
+    const float leave = SKIPS_EMPTY != 0u ? page_exit(s.s.place, s.p, inverse, is_forward_axis) : 0.0;
     const bool skips = leave > step;
     float next = s.t + (skips ? leave : step);
     if (next > last - 1e-3 * step) next = last;

@@ -25,7 +25,7 @@ EntryPart enter_entry(LocalRay ray, CellTraversal traversal, FlippedRay flipped,
   if (is_stored(word)) {
     count_visit(entry);
     const PageLevelData data = pages.levels[page_level(word)];
-    part.ray.origin = data.scale * ray.origin + data.offset - first_of_page(page_level(word), vec3(entry));
+    part.ray.origin = data.scale * ray.origin + data.offset - first_of_page(page_level(word), entry);
     part.ray.direction = data.scale * ray.direction;
     part.to = min(to, max(traversal.t, min_component(exits(flipped, min((traversal.cell | 63) + 1, flipped.end)))));
     part.entries = 1;

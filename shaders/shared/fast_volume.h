@@ -25,9 +25,8 @@ struct RayGridData {
 // Level of a paged volume (render/residency/page_table.h), voxels as seen from the finest level.
 struct PageLevelData {
   vec3 scale, offset;  // position in the level = scale * position in the finest level + offset
-  vec3 entries;        // page table entries per page
-  vec3 last;           // last page
-  float step;          // finest voxels per voxel, along the axis with the fewest
+  uint last_xy;        // last page: 16 bits of x, y
+  uint last_z_shifts;  // 16 bits of z; then, 5 bits for each axis, s: a page covers 2^s entries of the page table
 };
 struct PageLevels {
   PageLevelData levels[MAX_PAGE_LEVELS];

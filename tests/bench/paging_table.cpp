@@ -33,14 +33,24 @@ class Ball final : public field::BrickSource {
     std::this_thread::sleep_for(std::chrono::milliseconds(latency_ms_));
     const field::BrickLevel& at = levels()[static_cast<std::size_t>(of)];
     const field::Index3 n = brick_size(at, brick);
+    // as value(), without a sine for each voxel
+    std::vector<Vec3> along_x;
+    for (int x = 0; x < n.x; ++x) {
+      const double p = at.mapping.world_from_index(Vec3(brick.x * 64 + x, 0, 0)).x;
+      along_x.emplace_back((p - kMiddle) * (p - kMiddle), 60 * std::sin(0.21 * p), 0);
+    }
     std::size_t byte = 0;
     for (int z = 0; z < n.z; ++z)
-      for (int y = 0; y < n.y; ++y)
+      for (int y = 0; y < n.y; ++y) {
+        const Vec3 p = at.mapping.world_from_index(Vec3(0, brick.y * 64 + y, brick.z * 64 + z)), d = p - Vec3(kMiddle);
+        const double across = d.y * d.y + d.z * d.z, bump = std::sin(0.17 * p.y);
         for (int x = 0; x < n.x; ++x, byte += 2) {
-          const auto v = static_cast<std::uint16_t>(
-              std::lround(value(at.mapping.world_from_index(Vec3(brick.x * 64 + x, brick.y * 64 + y, brick.z * 64 + z)))));
-          std::memcpy(values.data() + byte, &v, 2);
+          const Vec3& here = along_x[static_cast<std::size_t>(x)];
+          const double v = kLevel + 40 * (kRadius - std::sqrt(here.x + across)) + here.y * bump + 0.5;
+          const auto rounded = static_cast<std::uint16_t>(std::clamp(v, 0.0, 65535.0));
+          std::memcpy(values.data() + byte, &rounded, 2);
         }
+      }
     return Done{};
   }
 

@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Reads mutated stores through catena: each ends with success, or with exit code 2 and one sentence, in bounded time and memory.
 
-CATENA=build/release/catena tests/stores/fuzz_stores.py [COUNT] [zarr] [ome] [tiff] [hdf5] [bdv] [imaris]
+CATENA=build/release/catena tests/stores/fuzz_stores.py [COUNT] [render] [zarr] [ome] [tiff] [hdf5] [bdv] [imaris]
+
+Stores are imported; with `render` they are drawn, with so little memory that some are drawn from bricks. SEED chooses other mutations.
 """
 import os
 import random
@@ -116,11 +118,14 @@ def main():
     """Mutates COUNT stores of each kind; prints a line per kind; returns 1 after any wrong end."""
     arguments = sys.argv[1:]
     count = int(arguments.pop(0)) if arguments and arguments[0].isdigit() else 300
+    draws = "render" in arguments
+    arguments = [kind for kind in arguments if kind != "render"]
     failed = False
     for kind in arguments or ["zarr", "ome", "tiff", "hdf5", "bdv", "imaris"]:
         with tempfile.TemporaryDirectory() as folder:
-            rng = random.Random(kind)
+            rng = random.Random(kind + os.environ.get("SEED", ""))
             stores = make_stores(folder, kind)
+            os.environ["XDG_CACHE_HOME"] = os.path.join(folder, "cache")
             numpy.random.seed(0)
             slowest, largest, ends, sentences = 0.0, 0, {}, set()
             for i in range(count):
@@ -133,8 +138,11 @@ def main():
                     if path is not None:
                         mutate(path, rng)
                 command = [compare.CATENA, "import", copy, "-o", os.path.join(folder, "out.nrrd"), "--memory", "200"]
+                if draws:
+                    command = [compare.CATENA, "render", copy, "-o", os.path.join(folder, "out.png"), "--size", "200x150", "--quality", "draft",
+                               "--memory", str(rng.choice([1, 2, 200]))]
                 if grid is not None:
-                    command += ["--grid", grid, "--step", str(step)]
+                    command += ["--grid", grid] + ([] if draws else ["--step", str(step)])
                 code, seconds, kilobytes = run(command, os.path.join(folder, "errors"))
                 with open(os.path.join(folder, "errors"), encoding="utf-8", errors="replace") as file:
                     lines = [line for line in file.read().splitlines() if not line.startswith("catena: note:")]

@@ -4,16 +4,16 @@
 #include <blosc.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <libdeflate.h>
 #include <lz4.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <zlib.h>
 #include <zstd.h>
 
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <limits>
+#include <memory>
 
 #include "engine/base/helper_process.h"
 #include "engine/base/system_failure.h"
@@ -25,24 +25,26 @@ Error wrong_size(std::size_t bytes, std::size_t expected) {
   return Error{fmt::format("has {} bytes when decompressed, expected {}", bytes, expected)};
 }
 
+struct FreeDecompressor {
+  void operator()(libdeflate_decompressor* d) const { ::libdeflate_free_decompressor(d); }
+};
+
 Outcome inflate_into(std::span<const std::byte> in, std::span<std::byte> out) {
-  constexpr int kAnyHeader = 15 + 32;
-  z_stream stream{};
-  if (in.size() > std::numeric_limits<uInt>::max() || out.size() > std::numeric_limits<uInt>::max()) return Error{"is too large"};
-  stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(in.data()));
-  stream.avail_in = static_cast<uInt>(in.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  if (::inflateInit2(&stream, kAnyHeader) != Z_OK) return Error{"cannot be decompressed: there is not enough memory"};
-  int status = ::inflate(&stream, Z_FINISH);
+  thread_local const std::unique_ptr<libdeflate_decompressor, FreeDecompressor> decompressor(::libdeflate_alloc_decompressor());
+  if (!decompressor) return Error{"cannot be decompressed: there is not enough memory"};
+  const bool is_gzip = in.size() > 1 && in[0] == std::byte{0x1f} && in[1] == std::byte{0x8b};
+  const auto inflate = is_gzip ? ::libdeflate_gzip_decompress_ex : ::libdeflate_zlib_decompress_ex;
+  std::size_t made = 0;
   // a gzip file may have several members
-  while (status == Z_STREAM_END && stream.avail_in > 0 && stream.avail_out > 0 && ::inflateReset(&stream) == Z_OK)
-    status = ::inflate(&stream, Z_FINISH);
-  const std::size_t made = out.size() - stream.avail_out;
-  ::inflateEnd(&stream);
-  if (status == Z_DATA_ERROR || status == Z_NEED_DICT) return Error{"is not a zlib or gzip stream, or is damaged"};
-  if (status != Z_STREAM_END && made == out.size()) return Error{fmt::format("has more than {} bytes when decompressed", out.size())};
-  if (status != Z_STREAM_END) return Error{"is truncated"};
+  do {
+    std::size_t used = 0, of_member = 0;
+    const std::span<std::byte> rest = out.subspan(made);
+    const libdeflate_result status = inflate(decompressor.get(), in.data(), in.size(), rest.data(), rest.size(), &used, &of_member);
+    if (status == LIBDEFLATE_INSUFFICIENT_SPACE) return Error{fmt::format("has more than {} bytes when decompressed", out.size())};
+    if (status != LIBDEFLATE_SUCCESS) return Error{"is not a zlib or gzip stream, is truncated or damaged"};
+    made += of_member;
+    in = in.subspan(used);
+  } while (is_gzip && !in.empty() && made < out.size());
   if (made != out.size()) return wrong_size(made, out.size());
   return Done{};
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Loads grids of stores of chunks: the finest level that fits into the memory budget, of it the box that is asked for.
+#include "engine/io/stores/load_store.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,6 +25,8 @@
 
 namespace catena::field {
 namespace {
+
+double max_whole_level = kNoMaxWholeLevel;
 
 std::string size_text(const Index3& n) { return fmt::format("{} x {} x {}", n.x, n.y, n.z); }
 
@@ -79,9 +83,9 @@ int channels_of(const StoreDescription& store, int grid) {
 
 /// Finds the finest level, from the requested one on, whose part fits into memory. All `channels` must fit into most of the limit together,
 /// so that either all or none are drawn from their finest level by bricks. A coarser level than the requested one takes at most a part of
-/// the memory: the rest is for bricks of the finest level.
+/// the memory: the rest is for bricks of the finest level. If bricks are preferred to a large level, it has at most half of the voxels.
 Result<FittingPart> find_part(const LoadRequest& request, const std::shared_ptr<const StoredLevels>& stored, int channels) {
-  constexpr double kPart = 0.25, kMost = 0.75;
+  constexpr double kPart = 0.25, kMost = 0.75, kPartOfLimit = 0.5;
   FittingPart found{{stored, static_cast<int>(level_for(stored->description(), request.level)), StoreBox{}}};
   const int requested = found.part.level;
   const double available = static_cast<double>(available_memory());
@@ -89,7 +93,9 @@ Result<FittingPart> find_part(const LoadRequest& request, const std::shared_ptr<
     CATENA_TRY(part.box, needed_box(request.path, stored->description(), part.at(), request.crop));
     const double bytes = part.box.voxels() * sizeof(float);
     const double most = kMost * static_cast<double>(memory_limit().value_or(available_memory()));
-    found.is_small = part.level == requested ? channels == 1 || channels * bytes <= most : bytes <= kPart * available;
+    const bool is_requested = part.level == requested;
+    found.is_small = is_requested ? channels == 1 || channels * bytes <= most : bytes <= kPart * available;
+    if (request.level == 0 && part.box.voxels() > (is_requested ? 1 : kPartOfLimit) * max_whole_level) found.is_small = false;
     const std::string what = one_line(fmt::format("{}: {}", request.path, size_text(part.grid_size()) + " voxels"));
     const MemoryReservation slab(LevelReader(part).slab_bytes());
     found.fits = check_dense_memory(what, part.grid_size(), 1, false);
@@ -159,12 +165,14 @@ Result<AnyField> load_part(const LoadRequest& request, const StoreDescription& a
   file.newest_mtime_ns = all.newest_mtime_ns;
   if (part.level != finest || part.level > 0) {
     CATENA_TRY(const StoreBox full, needed_box(request.path, grid, grid.levels.front(), request.crop));
-    file.notes.push_back(
-        fmt::format("level {} of {}, {} of {} voxels{}", part.level, grid.levels.size(), size_text(part.box.size), size_text(full.size),
-                    part.level == finest ? ""
-                    : request.level == 0
-                        ? ": the memory limit allows no finer one (--memory MB); volumes, isosurfaces, slices and links read the finest"
-                        : ": the memory limit allows no finer one (--memory MB allows more)"));
+    const char* const reason = part.level == finest                 ? ""
+                               : request.level > 0                  ? ": the memory limit allows no finer one (--memory MB allows more)"
+                               : max_whole_level < kNoMaxWholeLevel ? ": volumes, isosurfaces, slices and links read the finest in bricks "
+                                                                      "(--memory MB loads a finer one whole)"
+                                                                    : ": the memory limit allows no finer one (--memory MB); volumes, "
+                                                                      "isosurfaces, slices and links read the finest";
+    file.notes.push_back(fmt::format("level {} of {}, {} of {} voxels{}", part.level, grid.levels.size(), size_text(part.box.size),
+                                     size_text(full.size), reason));
   }
   if (!(part.grid_size() == part.box.size)) file.notes.push_back("flat data get a thickness of one voxel");
   CATENA_TRY(AnyField field, load_dense(file));
@@ -215,6 +223,9 @@ bool is_tiff_folder(const std::string& path) {
 }
 
 }  // namespace
+
+void set_max_whole_level(double voxels) { max_whole_level = voxels; }
+
 }  // namespace catena::field
 
 namespace catena::io {

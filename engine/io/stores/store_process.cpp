@@ -37,7 +37,7 @@ Result<std::string> reader_program(const std::string& path) {
   if (!std::filesystem::exists(program))
     return Error{path + ": cannot be read: " + program +
                      ", the program that reads this format, is missing: expected the package catena, or a build with the packages "
-                     "libblosc-dev, liblz4-dev, libzstd-dev, libtiff-dev, libhdf5-dev and libexpat1-dev",
+                     "libblosc-dev, liblz4-dev, libzstd-dev, libdeflate-dev, libtiff-dev, libhdf5-dev and libexpat1-dev",
                  true};
   return program;
 }

@@ -65,8 +65,8 @@ TEST(SharedStructs, FrameAndGridData) {
 }
 
 TEST(SharedStructs, PageLevels) {
-  Offsets level{MEMBER(PageLevelData, scale), MEMBER(PageLevelData, offset), MEMBER(PageLevelData, entries), MEMBER(PageLevelData, last),
-                MEMBER(PageLevelData, step)};
+  Offsets level{MEMBER(PageLevelData, scale), MEMBER(PageLevelData, offset), MEMBER(PageLevelData, last_xy),
+                MEMBER(PageLevelData, last_z_shifts)};
   level["[]"] = sizeof(PageLevelData);
   expect_offsets({"volume_paged.frag"}, "PageLevelData", level);
 }

@@ -3,15 +3,16 @@
 #pragma once
 #include <blosc.h>
 #include <hdf5.h>
+#include <libdeflate.h>
 #include <lz4.h>
 #include <tiffio.h>
-#include <zlib.h>
 #include <zstd.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -31,10 +32,13 @@ struct Volume {
 inline std::string compress(const std::string& codec, const std::string& in) {
   std::string out(2 * in.size() + 1000, '\0');
   std::size_t bytes = in.size();
-  if (codec == "zlib") {
-    uLongf size = out.size();
-    ::compress(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(in.data()), in.size());
-    bytes = size;
+  if (codec == "zlib" || codec == "gzip") {
+    const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> deflate(::libdeflate_alloc_compressor(1),
+                                                                                           ::libdeflate_free_compressor);
+    const std::size_t half = in.size() / 2;  // two members
+    if (codec == "zlib") return out.substr(0, ::libdeflate_zlib_compress(deflate.get(), in.data(), in.size(), out.data(), out.size()));
+    bytes = ::libdeflate_gzip_compress(deflate.get(), in.data(), half, out.data(), out.size());
+    bytes += ::libdeflate_gzip_compress(deflate.get(), in.data() + half, in.size() - half, out.data() + bytes, out.size() - bytes);
   } else if (codec == "zstd") {
     bytes = ::ZSTD_compress(out.data(), out.size(), in.data(), in.size(), 1);
   } else if (codec == "lz4") {

@@ -8,6 +8,7 @@
 
 #include "engine/base/memory_limit.h"
 #include "engine/io/client.h"
+#include "engine/io/stores/load_store.h"
 #include "engine/io/stores/store.h"
 #include "engine/io/stores/store_bricks.h"
 #include "engine/io/volume/units.h"
@@ -62,7 +63,7 @@ class Stores : public testing::Test {
 
 TEST_F(Stores, EveryVoxelOfZarr) {
   int number = 0;
-  for (const char* codec : {"none", "zlib", "blosc", "zstd", "lz4"})
+  for (const char* codec : {"none", "zlib", "gzip", "blosc", "zstd", "lz4"})
     for (const bool fortran : {false, true})
       for (const char* type : {"<u2", ">u2"}) {
         const std::string path = folder_ / fmt::format("{}.zarr", number++);
@@ -107,6 +108,13 @@ TEST_F(Stores, TheFinestLevelWithinTheMemoryLimitIsLoaded) {
     // the third level is the last in the store: it is reduced once more
     EXPECT_EQ(value_of(load_grid(path, 3)).get()->index_box().hi.x, 15);
   }
+  set_max_whole_level(128 * 128 * 128 - 1);
+  {
+    const AnyField in_bricks = value_of(load_grid(path));
+    EXPECT_TRUE(in_bricks.paged && has(in_bricks.notes.front(), "level 1 of 3, 64 x 64 x 64 of 128 x 128 x 128 voxels: volumes"));
+    EXPECT_FALSE(value_of(load_grid(path, 1)).paged);
+  }
+  set_max_whole_level(kNoMaxWholeLevel);
   set_memory_limit(5'000'000);
   {
     const AnyField less = value_of(load_grid(path));
