@@ -341,7 +341,7 @@ bool supports_fast_raycast(const vk::Device& device, const FramePacket& packet) 
            item.grid->interpolation() == field::Interpolation::linear && FastVolumeResources::can_pack(device, *item.grid) &&
            FastVolumeResources::can_quantize(item);
   };
-  return (packet.volumes.size() == 1 || are_channels(packet)) && packet.lights.empty() && !packet.fog && !needs_layers(packet) &&
+  return (packet.volumes.size() == 1 || are_channels(packet)) && !packet.fog && !needs_layers(packet) &&
          surfaces_of(packet) == 0 && std::ranges::all_of(packet.volumes, supports);
 }
 

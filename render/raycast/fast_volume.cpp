@@ -215,6 +215,7 @@ Result<shared::FrameData> FastVolumeRaycast::write_frame(const CameraRays& rays,
   frame.grids[0].is_clipped = resources_.items().front().is_clipped;
   frame.termination = float(settings.termination);
   frame.step_world = float(settings.step_voxels * mapping.min_voxel_edge());
+  has_lights_ = !rays.lights.empty();
   CATENA_CHECK(vk::write_uniform(*device_, frame_, frame));
   return frame;
 }
@@ -229,11 +230,12 @@ bool FastVolumeRaycast::skips_empty_space() const { return resources_.skippable_
 
 Outcome FastVolumeRaycast::draw(vk::Commands& commands, RayGrid& level, const DrawParams& draw) {
   const bool leaps = draw.skips_empty && this->skips_empty_space();
-  CATENA_TRY(const vk::Pipeline* pipe, pipeline({draw.shading, leaps, draw.opaque_depth != nullptr, draw.coarser != nullptr,
-                                                 (draw.marches ? 1u : 0u) | (draw.target->info().format == kVolumeFormat ? 2u : 0u),
-                                                 resources_.is_regular(), resources_.is_masked(), draw.half_opacity_depth,
-                                                 std::uint32_t(resources_.items().size()), shaded_channels(), resources_.is_dithered()},
-                                                draw.tiles != Tiles::all));
+  CATENA_TRY(const vk::Pipeline* pipe,
+             pipeline({draw.shading, leaps, draw.opaque_depth != nullptr, draw.coarser != nullptr,
+                       (draw.marches ? 1u : 0u) | (draw.target->info().format == kVolumeFormat ? 2u : 0u), resources_.is_regular(),
+                       resources_.is_masked(), draw.half_opacity_depth, std::uint32_t(resources_.items().size()), shaded_channels(),
+                       resources_.is_dithered(), has_lights_},
+                      draw.tiles != Tiles::all));
   vk::ColorTarget color{draw.target, std::array<float, 4>{0, 0, 0, 0}};
   if (draw.tiles != Tiles::all) color.clear.reset();
   commands.begin_pass({&color, 1}, {});

@@ -85,7 +85,7 @@ class FastVolumeRaycast {
   Outcome ensure(RayGrid& level, std::uint32_t spacing, const VkExtent3D& target);
   /// Tiles of a ray grid that are rendered; the others keep their content.
   enum class Tiles { all, marked, dirty };
-  using Constants = std::array<std::uint32_t, 11>;
+  using Constants = std::array<std::uint32_t, 12>;
   Result<const vk::Pipeline*> pipeline(const Constants& constants, bool tiles);
   std::uint32_t shading(const FastSettings& settings) const { return shaded_channels() == 0 ? 0 : settings.smooth_gradients ? 2 : 1; }
   std::uint32_t shaded_channels() const;  ///< one bit per volume
@@ -133,6 +133,7 @@ class FastVolumeRaycast {
   std::array<vk::Pipeline, 2> interpolate_pipelines_;  // all pixels, dirty tiles only
   vk::Buffer interpolate_data_;
   vk::Image placeholder_tiles_;
+  bool has_lights_ = false;  ///< of the image's rays
   bool reused_previous_ = false;
   bool marched_half_ = false, marched_full_ = false;  ///< blocks were marched in the last call
 };

@@ -79,12 +79,13 @@ mat3x4 shading_gradients(RaySample a, RaySample b, vec4 middle) {
   return smooth_gradients(0.5 * (a.p + b.p), s);
 }
 
-// Returns the shading of a channel by its gradient: x * color + y. `along_ray`: unit vector, world axes.
-vec2 light_of_channel(int channel, mat3x4 gradients, vec3 along_ray) {
-  if ((SHADED_CHANNELS >> channel & 1u) == 0u) return vec2(1.0, 0.0);
+// Returns the light on a channel by its gradient. `along_ray`: unit vector, world axes.
+Lighting light_of_channel(int channel, mat3x4 gradients, vec3 along_ray) {
+  if ((SHADED_CHANNELS >> channel & 1u) == 0u) return Lighting(vec3(1.0), vec3(0.0));
   const vec3 normal = frame.grids[0].world_gradient * vec3(gradients[0][channel], gradients[1][channel], gradients[2][channel]);
+  if (HAS_LIGHTS != 0u) return lighting_of(normal, -along_ray);
   const float along = dot(normal, along_ray), length2 = dot(normal, normal);
-  return length2 > 0.0 ? light_at(abs(along) * inversesqrt(length2), along * along / length2) : vec2(0.2, 0.0);
+  return length2 > 0.0 ? headlight_at(abs(along) * inversesqrt(length2), along * along / length2) : kOnlyAmbient;
 }
 
 // Returns the premultiplied color along the ray of pixel coordinate q, up to depth `end`; with HALF_OPACITY_DEPTH that depth, and alpha 1
@@ -126,9 +127,9 @@ vec4 march_packed(vec2 q, float end) {
       if (SHADED != 0u && sigma.x + sigma.y > 0.0) gradients = shading_gradients(s, e, middle);
       vec3 first = vec3(0.0), second = vec3(0.0);
       for (int channel = 0; channel < CHANNEL_COUNT; ++channel) {
-        const vec2 light = light_of_channel(channel, gradients, along_ray);
-        first += a[channel].x * (a[channel].yzw * light.x + light.y);
-        second += b[channel].x * (b[channel].yzw * light.x + light.y);
+        const Lighting light = light_of_channel(channel, gradients, along_ray);
+        first += a[channel].x * lit(a[channel].yzw, light);
+        second += b[channel].x * lit(b[channel].yzw, light);
       }
       const float half_length = -0.5 * 1.44269504 * extent * world_per_depth;
       const float half_way = transmittance * exp2(sigma.x * half_length), after = half_way * exp2(sigma.y * half_length);

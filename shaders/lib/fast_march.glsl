@@ -29,12 +29,12 @@ vec3 normal_at(RaySample at) {
   return frame.grids[0].world_gradient * (SHADED == 2u ? smooth_gradient(at.p, at.s) : at.s.gradient);
 }
 
-// Returns the mean shading over half a segment, along which the derivative goes from a to b. `across2`: squared length of the gradient's
+// Returns the mean light of a headlight over half a segment, along which the derivative goes from a to b. `across2`: squared length of the gradient's
 // component across the ray. The derivative is known better than the gradient's direction; both sides are shaded alike.
-vec2 light_between(float a, float b, float across2) {
+Lighting headlight_between(float a, float b, float across2) {
   const float squares = (a * a + a * b + b * b) * (1.0 / 3.0), length2 = across2 + squares;
   const float sizes = a * b >= 0.0 ? 0.5 * abs(a + b) : 0.5 * (a * a + b * b) / abs(b - a);
-  return length2 > 0.0 ? light_at(min(1.0, sizes * inversesqrt(length2)), squares / length2) : vec2(0.2, 0.0);
+  return length2 > 0.0 ? headlight_at(min(1.0, sizes * inversesqrt(length2)), squares / length2) : kOnlyAmbient;
 }
 
 // Constant data of a march.
@@ -128,13 +128,15 @@ vec4 march_packed(vec2 q, float end) {
   vec3 sum = vec3(0.0);
   RaySample s = sample_at(m, interval.x);
   if (FROM_VISIBLE) s = find_first_visible(m, s);
-  // shading: the gradient, its component along the ray, and the squared length of the rest
+  // shading: the gradient, its component along the ray, the squared length of the rest, and what lights of the scene add there
   vec3 normal = vec3(0.0);
   float along = 0.0, across2 = 0.0;
+  Lighting light = kOnlyAmbient;
   if (SHADED != 0u) {
     normal = normal_at(s);
     along = dot(normal, along_ray);
     across2 = dot(normal, normal) - along * along;
+    if (HAS_LIGHTS != 0u) light = lighting_of(normal, -along_ray);
   }
   vec3 last = vec3(0.0);
   const float begin = s.t, longest = m.h, voxels = length(m.ray.direction);
@@ -176,13 +178,23 @@ vec4 march_packed(vec2 q, float end) {
       // it shows the kinks between cells
       const float by_rise = clamp(0.5 * (extent * voxels - 1.0), 0.0, 1.0);
       const float along_middle = SHADED == 1u ? 1.5 * rise - 0.25 * end_sum : mix(0.5 * end_sum, 0.75 * rise + 0.125 * end_sum, by_rise);
-      const vec2 l0 = light_between(along, along_middle, max(0.0, 0.5625 * across2 + 0.375 * both + 0.0625 * across2_end));
-      const vec2 l1 = light_between(along_middle, along_end, max(0.0, 0.0625 * across2 + 0.375 * both + 0.5625 * across2_end));
+      Lighting l0, l1;
+      if (HAS_LIGHTS != 0u) {
+        const Lighting light_end = lighting_of(normal_end, -along_ray);
+        if (MASKED != 0u && !s.s.valid) light = light_end;
+        const Lighting light_middle = lighting_of(0.5 * (normal + normal_end) + (along_middle - 0.5 * end_sum) * along_ray, -along_ray);
+        l0 = mean_light(light, light_middle);
+        l1 = mean_light(light_middle, light_end);
+        light = light_end;
+      } else {
+        l0 = headlight_between(along, along_middle, max(0.0, 0.5625 * across2 + 0.375 * both + 0.0625 * across2_end));
+        l1 = headlight_between(along_middle, along_end, max(0.0, 0.0625 * across2 + 0.375 * both + 0.5625 * across2_end));
+      }
       normal = normal_end;
       along = along_end;
       across2 = across2_end;
-      sum += (transmittance - half_way) * (first.yzw * l0.x + l0.y) + (half_way - after) * (second.yzw * l1.x + l1.y);
-      last = second.yzw * l1.x + l1.y;
+      last = lit(second.yzw, l1);
+      sum += (transmittance - half_way) * lit(first.yzw, l0) + (half_way - after) * last;
     } else {
       sum += (transmittance - half_way) * first.yzw + (half_way - after) * second.yzw;
       last = second.yzw;

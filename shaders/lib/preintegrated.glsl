@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Constants and the transfer function of the fast raycast, pre-integrated over pairs of codes (render/raycast/preintegrated.h), and the
 // light of a segment.
+#include "shaders/lib/lighting.glsl"
 layout(constant_id = 0) const uint SHADED = 0;  // 1: by the gradient of the cell, 2: by precomputed gradients
 layout(constant_id = 1) const uint SKIPS_EMPTY = 0;
 layout(constant_id = 2) const uint HAS_OPAQUE = 0;
 layout(constant_id = 10) const uint INTERPOLATES_TABLE = 0;  // between codes
+layout(constant_id = 11) const uint HAS_LIGHTS = 0;  // lights of the scene; 0: a headlight
 layout(constant_id = 7) const uint HALF_OPACITY_DEPTH = 0;  // output: depth of half transmittance instead of a color
 
 layout(binding = 4) uniform utexture2D preintegrated;  // 256 x 256 for each channel
@@ -31,12 +33,15 @@ vec4 lookup_preintegrated(int channel, float a, float b) {
 
 vec4 lookup_preintegrated(float a, float b) { return lookup_preintegrated(0, a, b); }
 
-// Returns the shading of a headlight as in `lit` (lighting.glsl), from the cosine n of normal and ray: x * color + y.
-vec2 light_at(float n, float n2) {
+// Returns the light of a headlight as in lighting.glsl, from the cosine n of normal and ray.
+Lighting headlight_at(float n, float n2) {
   const float m = max(0.0, 2.0 * n2 - 1.0);
   const float m2 = m * m, m4 = m2 * m2, m8 = m4 * m4;
-  return vec2(0.2 + 0.7 * n, 0.2 * m8 * m8 * m4);
+  return Lighting(vec3(0.2 + 0.7 * n), vec3(0.2 * m8 * m8 * m4));
 }
+
+Lighting mean_light(Lighting a, Lighting b) { return Lighting(0.5 * (a.diffuse + b.diffuse), 0.5 * (a.specular + b.specular)); }
+vec3 lit(vec3 color, Lighting light) { return color * light.diffuse + light.specular; }
 
 // Returns the position where transmittance falls to 0.5 in a segment of constant sigma, as a share of its length; before > 0.5 >= after.
 float half_transmittance_position(float before, float after) { return clamp(log(2.0 * before) / log(before / max(after, 1e-30)), 0.0, 1.0); }

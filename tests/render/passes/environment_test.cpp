@@ -98,13 +98,12 @@ TEST_F(EnvironmentPass, BoundingBoxAndGroundAreAtTheirPositions) {
   EXPECT_NEAR(depths()[40 * 60 + 30], 10, 1e-4);
 }
 
-TEST_F(EnvironmentPass, FogAndLightsAreDrawnByExactRays) {
+TEST_F(EnvironmentPass, FogIsDrawnByExactRays) {
   FramePacket packet = make_packet({10, -40, 10}, {10, 10, 10});
   packet.volumes.push_back(volume_item(make_grid({21, 21, 21}, [](const Vec3& p) { return p.x; }), {{0, 0.1}, {20, 0.1}}));
   EXPECT_TRUE(renderer_->can_draw_fast(packet));
   packet.lights = {{{1, 0, 0}, {1, 1, 1}, false}};
-  EXPECT_FALSE(renderer_->can_draw_fast(packet));
-  packet.lights.clear();
+  EXPECT_TRUE(renderer_->can_draw_fast(packet));
   packet.fog = FogItem{};
   EXPECT_FALSE(renderer_->can_draw_fast(packet));
 }

@@ -149,17 +149,24 @@ TEST_F(FastVolume, MatchesTheExactRaycast) {
   }
 }
 
+/// A headlight, and lights of the scene, of which one follows the camera.
+const std::vector<LightItem> kLights[] = {{}, {{{1, 0.2, 0.7}, {0.9f, 0.8f, 0.7f}, false}, {{-1, 0.3, 0.2}, {0.1f, 0.3f, 0.6f}, true}}};
+
 TEST_F(FastVolume, SmoothGradientsMatchTheExactShading) {
   FramePacket packet = make_packet({130, -100, 90}, {23.5, 19.5, 21.5});
   packet.background = {0, 0, 0, 1};
-  packet.volumes = {coloured(waves(), true)};
-  const Image8 exact = draw(packet, reference_settings());
   RenderSettings settings = fast(1, 1);
-  const double by_cell = rmse(draw(packet, settings), exact);
-  settings.fast->smooth_gradients = true;
-  const double smooth = rmse(draw(packet, settings, "smooth"), exact);
-  EXPECT_LT(smooth, 0.5);
-  EXPECT_LT(smooth, 0.7 * by_cell);
+  for (const auto& lights : kLights) {
+    packet.lights = lights;
+    packet.volumes = {coloured(waves(), true)};
+    const Image8 exact = draw(packet, reference_settings());
+    settings.fast->smooth_gradients = false;
+    const double by_cell = rmse(draw(packet, settings), exact);
+    settings.fast->smooth_gradients = true;
+    const double smooth = rmse(draw(packet, settings, lights.empty() ? "smooth" : "smooth-lights"), exact);
+    EXPECT_LT(smooth, 0.5);
+    EXPECT_LT(smooth, 0.7 * by_cell);
+  }
   // in homogeneous regions only the ambient light remains
   packet.volumes = {volume_item(even_grid({16, 16, 16}), {{0, 0.5}, {1, 0.5}})};
   packet.volumes[0].is_shaded = true;
@@ -178,8 +185,9 @@ TEST_F(FastVolume, ShadingOfOpaqueVolumesConvergesToTheExactRaycast) {
     const double a = std::hypot(p.x - 15, p.y - 20), b = std::hypot(p.y - 30, p.z - 22);
     return std::exp(-a * a / 3) + std::exp(-b * b / 3) + 0.04 * grain(p);
   });
-  for (const auto& grid : {head, tubes}) {
+  for (const auto& [grid, lights] : {std::pair{head, kLights[0]}, {tubes, kLights[0]}, {head, kLights[1]}, {tubes, kLights[1]}}) {
     FramePacket packet = make_packet({110, -80, 70}, {23.5, 23.5, 23.5}, 28);
+    packet.lights = lights;
     VolumeItem item = volume_item(grid, {{0, 0}, {0.35, 0}, {0.6, 0.8}});
     item.transfer.colors = {{0, 0.5, 0.3, 0.2}, {1, 1, 0.9, 0.8}};
     item.is_shaded = true;
@@ -191,8 +199,9 @@ TEST_F(FastVolume, ShadingOfOpaqueVolumesConvergesToTheExactRaycast) {
       return measure_error(draw(packet, settings), truth).rmse;
     };
     // long steps are refined at the first visible surface
-    EXPECT_LT(error_at(0.25), 0.4);
-    EXPECT_LT(error_at(1), 0.5);
+    const double most = lights.empty() ? 0.4 : 0.8;  // gradients of faint noise have coarse directions
+    EXPECT_LT(error_at(0.25), most);
+    EXPECT_LT(error_at(1), 1.25 * most);
     EXPECT_LT(error_at(0.5), 0.75 * error_at(4));
   }
 }
