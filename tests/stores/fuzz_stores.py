@@ -86,7 +86,7 @@ def mutate(path, rng):
         at = rng.randrange(len(data) + 1)
         data[at:at] = rng.randbytes(rng.randrange(1, 64))
     elif is_text and way < 7:
-        places = [m.span() for m in re.finditer(rb'-?\d+\.?\d*|"[^"]*"|null', data)]
+        places = [m.span() for m in re.finditer(rb'-?\d+\.?\d*|"[^"]*"|null', data)] or [(0, 0)]
         for _ in range(rng.randrange(1, 3)):
             begin, end = rng.choice(places)
             data[begin:end] = rng.choice(TOKENS)
@@ -140,7 +140,7 @@ def main():
                 command = [compare.CATENA, "import", copy, "-o", os.path.join(folder, "out.nrrd"), "--memory", "200"]
                 if draws:
                     command = [compare.CATENA, "render", copy, "-o", os.path.join(folder, "out.png"), "--size", "200x150", "--quality", "draft",
-                               "--memory", str(rng.choice([1, 2, 200]))]
+                               "--memory", str(rng.choice([3, 200]))]
                 if grid is not None:
                     command += ["--grid", grid] + ([] if draws else ["--step", str(step)])
                 code, seconds, kilobytes = run(command, os.path.join(folder, "errors"))

@@ -36,7 +36,7 @@ void draw_values(PanelContext& context) {
   const std::array<const PointSamples*, 3> places{&state.pointer_samples, &state.probe_samples, &state.proxy_samples};
   constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV;
   if (!ImGui::BeginTable("##values", 4, kFlags)) return;
-  const float width = 0.2f * kSidePanelWidth;
+  const float width = 0.2f * side_panel_width();
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
   for (const char* title : {"pointer", "probe", "proxy"}) ImGui::TableSetupColumn(title, ImGuiTableColumnFlags_WidthFixed, width);
   ImGui::TableHeadersRow();

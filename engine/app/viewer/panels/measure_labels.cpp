@@ -69,7 +69,7 @@ void draw_header(AppearanceState::Measure& shown, const std::vector<std::string>
   constexpr float kWidths[] = {0, 0.14f, 0.145f, 0.125f, 0.105f};  // of the panel
   for (std::size_t c = 0; c < titles.size(); ++c)
     ImGui::TableSetupColumn(titles[c].c_str(), c == 0 ? ImGuiTableColumnFlags_WidthStretch : ImGuiTableColumnFlags_WidthFixed,
-                            kWidths[c] * kSidePanelWidth);
+                            kWidths[c] * side_panel_width());
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (std::size_t c = 0; c < titles.size(); ++c) {
     ImGui::TableNextColumn();

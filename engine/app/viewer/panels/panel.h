@@ -144,8 +144,9 @@ struct PanelContext {
   void push_command(Command command) { commands.push_back(std::move(command)); }
 };
 
-/// Width of the side panel and insets of the GUI while panels are shown, window coordinates (valid after the first Gui::begin).
-inline constexpr float kSidePanelWidth = 320;
+/// Width of the side panel, of which the user drags the edge, and insets of the GUI while panels are shown, window coordinates (valid after
+/// the first Gui::begin).
+float side_panel_width();
 Insets interface_insets();
 
 /// One section of the side window.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <imgui.h>
 
+#include <algorithm>
+
 #include "engine/app/viewer/panels/panel.h"
 #include "engine/base/clock.h"
 
@@ -22,14 +24,20 @@ const std::vector<Panel>& panels_in_order() {
   return panels;
 }
 
+float side_width = 320;  // of the only window
+
 void draw_side(PanelContext& context) {
   const ImGuiViewport& view = *ImGui::GetMainViewport();
+  const float height = view.WorkSize.y - ImGui::GetFrameHeightWithSpacing();
+  constexpr float kMinWidth = 240, kMostOfWindow = 0.7f;
   ImGui::SetNextWindowPos(view.WorkPos);
-  ImGui::SetNextWindowSize({kSidePanelWidth, view.WorkSize.y - ImGui::GetFrameHeightWithSpacing()});
-  constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
-                                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNavFocus;
+  ImGui::SetNextWindowSize({side_width, height}, ImGuiCond_Once);
+  ImGui::SetNextWindowSizeConstraints({kMinWidth, height}, {std::max(kMinWidth, kMostOfWindow * view.WorkSize.x), height});
+  constexpr ImGuiWindowFlags kFixed =
+      ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNavFocus;
   if (ImGui::Begin("##side", nullptr, kFixed)) {
-    ImGui::PushItemWidth(0.55f * kSidePanelWidth);
+    side_width = ImGui::GetWindowWidth();
+    ImGui::PushItemWidth(0.55f * side_width);
     for (const Panel& panel : panels_in_order()) {
       if (panel.is_relevant != nullptr && !panel.is_relevant(context)) continue;
       ImGui::SetNextItemOpen(panel.is_initially_open, ImGuiCond_Once);
@@ -50,7 +58,9 @@ void ViewState::show_message(std::string text, bool is_error) {
   while (messages.size() > kMaxMessages) messages.pop_front();
 }
 
-Insets interface_insets() { return {kSidePanelWidth, ImGui::GetFrameHeight(), ImGui::GetFrameHeightWithSpacing()}; }
+float side_panel_width() { return side_width; }
+
+Insets interface_insets() { return {side_width, ImGui::GetFrameHeight(), ImGui::GetFrameHeightWithSpacing()}; }
 
 void draw_interface(PanelContext& context) {
   ViewState& state = context.state;
