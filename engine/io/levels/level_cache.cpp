@@ -18,6 +18,7 @@
 #include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "engine/base/folder_lock.h"
 #include "engine/base/hash.h"
@@ -120,6 +121,8 @@ Cached open_cached(const CachePlace& place, const std::vector<StoreLevel>& own) 
   }
   Cached levels = CachedLevels::open(place.folder, place.identity, own);
   if (!levels) return nullptr;
+  std::error_code code;
+  fs::last_write_time(place.source(), fs::file_time_type::clock::now(), code);  // trim_level_cache()
   opened.remove_if([&](const Opened& o) { return o.place.folder == place.folder; });
   opened.push_front({place, modified_ns(about), levels});
   if (opened.size() > kMaxOpen) opened.pop_back();
@@ -201,9 +204,44 @@ Result<Cached> make_cached_levels(const std::shared_ptr<Store>& store, int grid,
     empty_folder(place.folder);
     return Error{one_line(place.folder) + ": cannot write: " + describe_errno(ENOSPC), true};
   }
+  constexpr std::uintmax_t kPartOfDisk = 10;
+  std::error_code code;
+  if (const fs::space_info disk = fs::space(place.folder, code); !code) trim_level_cache(disk.capacity / kPartOfDisk);
   Cached levels = open_cached(place, own);
   if (!levels) return Error{one_line(place.folder) + ": the levels were made but cannot be read"};
   return levels;
+}
+
+int trim_level_cache(std::uint64_t max_bytes) {
+  struct Entry {
+    std::string folder;
+    std::uint64_t bytes = 0;
+    fs::file_time_type used;
+  };
+  std::vector<Entry> entries;
+  std::uint64_t all = 0;
+  std::error_code code;
+  for (fs::directory_iterator at(*cache_folder, code), end; !code && at != end; at.increment(code)) {
+    std::error_code of_source;
+    Entry entry{at->path().string(), 0, fs::last_write_time(at->path() / "source", of_source)};
+    if (of_source) continue;  // not ours
+    entry.bytes = folder_bytes(entry.folder);
+    all += entry.bytes;
+    entries.push_back(std::move(entry));
+  }
+  std::ranges::sort(entries, {}, &Entry::used);
+  const auto recent = fs::file_time_type::clock::now() - std::chrono::hours(1);
+  int removed = 0;
+  for (const Entry& entry : entries) {
+    if (all <= max_bytes || entry.used > recent) break;
+    const auto lock = FolderLock::acquire(entry.folder);
+    if (!lock) continue;
+    empty_folder(entry.folder);
+    fs::remove(entry.folder, code);
+    all -= entry.bytes;
+    ++removed;
+  }
+  return removed;
 }
 
 void cache_index(const std::string& path, const BrickIndex& index) {

@@ -32,6 +32,10 @@ Result<std::shared_ptr<const CachedLevels>> make_cached_levels(const std::shared
 /// index.
 void cache_index(const std::string& path, const BrickIndex& index);
 
+/// Removes the entries that were used longest ago, at least an hour ago, until the cache has at most `max_bytes`. Those that a program
+/// makes stay. Returns how many were removed. make_cached_levels() calls it with a tenth of the disk.
+int trim_level_cache(std::uint64_t max_bytes);
+
 /// Returns the size of a folder's files, bytes.
 std::uint64_t folder_bytes(const std::string& folder);
 

@@ -87,6 +87,24 @@ TEST_F(LevelCache, LevelsAreThoseOfAnImportAndTheIndexKnowsEveryRange) {
   set_level_cache({}, {});
 }
 
+TEST_F(LevelCache, EntriesThatWereUsedLongestAgoAreRemoved) {
+  test::expect_run(words());
+  set_level_cache(folder_ / "cache/catena/levels", {});
+  EXPECT_EQ(trim_level_cache(0), 0);  // it has just been used
+  const auto set_age = [&](int hours) {
+    fs::last_write_time(entry() + "/source", fs::file_time_type::clock::now() - std::chrono::hours(hours));
+  };
+  set_age(2);
+  EXPECT_EQ(trim_level_cache(folder_bytes(entry())), 0);
+  test::expect_run(words());  // uses it
+  EXPECT_EQ(trim_level_cache(0), 0);
+  set_age(2);
+  fs::create_directories(folder_ / "cache/catena/levels/of another program");
+  EXPECT_EQ(trim_level_cache(0), 1);
+  EXPECT_EQ(entry(), folder_ / "cache/catena/levels/of another program");
+  set_level_cache({}, {});
+}
+
 TEST_F(LevelCache, AKilledProgramIsContinuedAndChangedDataAreRead) {
   int kills = 0;
   for (std::uintmax_t records = 1; records < 9; records += 2) {
