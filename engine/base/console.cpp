@@ -10,7 +10,9 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <mutex>
 #include <string>
+#include <utility>
 
 #include "engine/base/system_failure.h"
 #include "engine/base/text.h"
@@ -75,6 +77,21 @@ void print_nonblocking(int descriptor, std::string_view text, int wait_ms) noexc
     break;
   }
   if (own_descriptor >= 0) ::close(own_descriptor);
+}
+
+namespace {
+std::mutex activity_mutex;
+std::string activity_text;
+}  // namespace
+
+void set_activity(std::string text) {
+  const std::scoped_lock lock(activity_mutex);
+  activity_text = std::move(text);
+}
+
+std::string activity() {
+  const std::scoped_lock lock(activity_mutex);
+  return activity_text;
 }
 
 int stdout_errno() noexcept { return output_error; }

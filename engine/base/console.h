@@ -4,6 +4,7 @@
 /// must not wait. Output that is not accepted in time, or not at all (a closed descriptor, a full disk), is dropped; it changes neither the
 /// work nor its exit code. Any thread.
 #pragma once
+#include <string>
 #include <string_view>
 
 namespace catena {
@@ -18,6 +19,10 @@ void print_message(std::string_view line) noexcept;
 /// not ready, waits at most `wait_ms` milliseconds. Files accept all of it. An error of a write to standard output (for example a full
 /// disk; not a write that would block) is retained for stdout_errno().
 void print_nonblocking(int descriptor, std::string_view text, int wait_ms = 0) noexcept;
+
+/// Sets and returns the long work that is being done, such as "reading a.nii: 3 s", for a window that waits for it; empty: none.
+void set_activity(std::string text);
+std::string activity();
 
 /// Returns true when a failed CATENA_ASSERT has printed why the program aborts.
 bool assertion_was_reported() noexcept;

@@ -139,6 +139,7 @@ void print_reading_progress(const std::string& path, double seconds, bool ended)
   static double next_s = 1e-9 * kQuietElsewhereNs;
   const std::scoped_lock lock(mutex);
   const bool terminal = isatty(STDERR_FILENO) != 0;
+  set_activity(ended ? std::string() : fmt::format("reading {}: {:.0f} s", path, seconds));
   if (ended) {
     if (std::exchange(shown, false) && terminal) print_nonblocking(STDERR_FILENO, "\r\033[K");
     next_s = 1e-9 * kQuietElsewhereNs;
@@ -190,6 +191,7 @@ void print_level_progress(const std::string& path, double part) {
   static std::mutex mutex;
   static std::map<std::string, ProgressLine> shown;
   const std::scoped_lock lock(mutex);
+  set_activity(part < 0 ? std::string() : fmt::format("coarser levels of {}: {:.0f} %", path, 100 * part));
   if (part < 0) {
     shown.erase(path);
     return;

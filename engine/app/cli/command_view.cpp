@@ -69,9 +69,11 @@ Outcome open_window(const ViewArguments& given, int& exit_code) {
     if (o.source.empty() && options.colors.is_given())
       return Error{"the options of colours: a SOURCE was expected: the data file that they apply to"};
     if (o.source.empty() && o.follow) return Error{"--follow: a SOURCE was expected: a scene or data file to follow"};
-    CATENA_TRY(scene::Scene scene, o.source.empty() ? Result<scene::Scene>(scene::Scene())
-                                   : o.follow       ? open_followed_scene(o.source, o.fields, o.grid, o.seconds)
-                                                    : open_scene(o.source, o.fields, options.colors, o.grid));
+    options.early = {size.width, size.height, static_cast<std::uint64_t>(1e6 * o.gpu_memory_mb), o.headset ? "" : o.source, nullptr};
+    CATENA_TRY(scene::Scene scene, options.early.show_during([&]() -> Result<scene::Scene> {
+      if (o.source.empty()) return scene::Scene();
+      return o.follow ? open_followed_scene(o.source, o.fields, o.grid, o.seconds) : open_scene(o.source, o.fields, options.colors, o.grid);
+    }));
     options.source = o.source;
     options.follow_time_steps = o.follow;
     if (!o.source.empty()) CATENA_CHECK(options.apply_overrides(scene));

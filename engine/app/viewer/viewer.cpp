@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "engine/app/viewer/window/loading_screen.h"
 #include "engine/app/viewer/window/session.h"
 #include "engine/base/console.h"
 #include "render/extract/extract.h"
@@ -59,9 +60,10 @@ std::optional<Failure> plan_hand(LiveTuning& live, SceneModel& scene, const Hapt
   return std::nullopt;
 }
 
-/// Opens the viewer; errors in the scene, the device or the shaders are reported before any window opens.
+/// Opens the viewer. Errors in the scene, the device or the shaders are reported before a window opens, unless data take long to be read.
 std::optional<Failure> show(const ViewOptions& options) {
-  auto scene = read_scene(options);
+  EarlyWindow early = options.early;
+  auto scene = early.show_during([&] { return read_scene(options); });
   if (!scene) return to_failure(scene.error());
   std::optional<InterruptHandler> interrupt;
   HapticSession hand(options.haptic_options);
@@ -81,9 +83,12 @@ std::optional<Failure> show(const ViewOptions& options) {
     if (!opened) return to_failure(opened.error());
     head = std::move(*opened);
   }
-  auto window = Window::create(options.width, options.height, "catena");
-  if (!window) return draw_without_window(options, *scene, hand, head.get(), window.error().message);
-  Session session(planned, *scene, hand, **window, std::move(reload), std::move(head), interrupt);
+  if (!early.window) {
+    auto window = Window::create(options.width, options.height, "catena");
+    if (!window) return draw_without_window(options, *scene, hand, head.get(), window.error().message);
+    early.window = std::move(*window);
+  }
+  Session session(planned, *scene, hand, *early.window, std::move(reload), std::move(head), interrupt);
   if (auto failure = session.open()) return failure;
   return session.run();
 }

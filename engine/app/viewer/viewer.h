@@ -11,6 +11,7 @@
 #include "engine/app/render/render_options.h"
 #include "engine/app/viewer/input/haptic_session.h"
 #include "engine/app/viewer/window/live_tuning.h"
+#include "engine/app/viewer/window/loading_screen.h"
 #include "engine/scene/document.h"
 #include "render/vk/device.h"
 
@@ -25,6 +26,7 @@ struct ViewOptions {
   std::function<Outcome(scene::Scene&)> apply_overrides;  ///< Applies overrides of the command line; called whenever the scene is read.
   HapticSession::Options haptic_options;
   std::uint32_t width = 1024, height = 768;
+  EarlyWindow early;                  ///< Window that the program has opened while it read the scene.
   Quality quality;                    ///< Quality of a refined frame (progressive_scheduler.h).
   bool has_explicit_quality = false;  ///< Set on the command line; a quality stated by the scene does not count.
   LiveTuning tuning{};                ///< Targets. The tick tuning is made before the window opens, the image tuning with the first frame.

@@ -172,6 +172,8 @@ void draw_dialogs(PanelContext& context);
 void draw_status(PanelContext& context);
 void draw_file_dialogs(PanelContext& context);
 void draw_welcome(PanelContext& context);
+/// Draws what is being done while the first scene is loaded, in the middle of the window.
+void draw_loading(const std::string& source);
 /// Draws the recent files as a list to choose from; returns false if there are none.
 bool draw_recent_files(PanelContext& context);
 

@@ -7,6 +7,7 @@
 
 #include "engine/app/viewer/panels/panel.h"
 #include "engine/base/clock.h"
+#include "engine/base/console.h"
 
 namespace catena::app {
 
@@ -30,7 +31,9 @@ ImVec4 force_color(double share) {
 
 std::string loading_words(const ViewState& state) {
   const char* dots[] = {".  ", ".. ", "..."};
-  return "loading " + state.loading_path + " " + dots[static_cast<std::size_t>(now_ns() / 400'000'000 % 3)];
+  const std::string now = activity();
+  return "loading " + state.loading_path + " " + dots[static_cast<std::size_t>(now_ns() / 400'000'000 % 3)] + (now.empty() ? "" : " ") +
+         now;
 }
 
 void draw_force(const PanelContext& context) {

@@ -7,6 +7,7 @@
 
 #include "engine/app/viewer/panels/panel.h"
 #include "engine/app/viewer/scene/file_browser.h"
+#include "engine/base/console.h"
 #include "engine/base/text.h"
 
 namespace catena::app {
@@ -25,6 +26,16 @@ bool draw_recent_files(PanelContext& context) {
     ImGui::PopID();
   }
   return any;
+}
+
+void draw_loading(const std::string& source) {
+  const ImGuiViewport& view = *ImGui::GetMainViewport();
+  ImGui::SetNextWindowPos(view.GetWorkCenter(), 0, {0.5f, 0.5f});
+  if (ImGui::Begin("##loading", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs)) {
+    ImGui::TextUnformatted(("Loading " + std::filesystem::path(source).filename().string()).c_str());
+    ImGui::TextDisabled("%s", activity().c_str());
+  }
+  ImGui::End();
 }
 
 void draw_welcome(PanelContext& context) {

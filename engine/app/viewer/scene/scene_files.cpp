@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <filesystem>
+#include <future>
 #include <utility>
 
 #include "engine/app/cli/command.h"
@@ -38,8 +40,13 @@ RecordedScene make_recorded_scene(const SceneModel& scene, const HapticSession& 
   return {scene.document().path(), scene.recording_text(), hand.field_options(), files.inputs()};
 }
 
-Result<LoadedScene> load_initial_scene(SceneModel& scene, HapticSession& hand, std::uint32_t width, std::uint32_t height) {
-  CATENA_TRY(LoadedScene loaded, load_scene(std::move(scene), width, height));
+Result<LoadedScene> load_initial_scene(SceneModel& scene, HapticSession& hand, std::uint32_t width, std::uint32_t height,
+                                       const std::function<void(const LoadWait&)>& meanwhile) {
+  auto loading =
+      std::async(meanwhile ? std::launch::async : std::launch::deferred, [&] { return load_scene(std::move(scene), width, height); });
+  if (meanwhile)
+    meanwhile([&](double wait_s) { return loading.wait_for(std::chrono::duration<double>(wait_s)) == std::future_status::ready; });
+  CATENA_TRY(LoadedScene loaded, loading.get());
   scene = std::move(loaded.model);
   print_scene_notes(scene.scene());
   CATENA_CHECK(hand.prepare(scene.scene(), loaded.bounds, make_recorded_scene(scene, hand)));

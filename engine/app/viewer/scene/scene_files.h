@@ -2,6 +2,7 @@
 /// File operations of the window: opening, adding, saving and closing the scene, and autosave. Loading runs in the background; a failure is
 /// reported in one line and leaves everything unchanged. Frame thread.
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -17,8 +18,10 @@ namespace catena::app {
 /// Returns the description of the scene for a recording: path, text, field options and input files.
 RecordedScene make_recorded_scene(const SceneModel& scene, const HapticSession& hand);
 /// Loads the first scene and prepares the haptic session for it. `scene` is replaced by the loaded model, which is moved out of the result.
-/// An Error if loading or preparing fails.
-Result<LoadedScene> load_initial_scene(SceneModel& scene, HapticSession& hand, std::uint32_t width, std::uint32_t height);
+/// `meanwhile`: called while the scene is loaded on another thread, and must not use `scene`; empty: loads on this thread. An Error if
+/// loading or preparing fails.
+Result<LoadedScene> load_initial_scene(SceneModel& scene, HapticSession& hand, std::uint32_t width, std::uint32_t height,
+                                       const std::function<void(const LoadWait&)>& meanwhile = {});
 
 /// Executes the file commands; holds the state of pending loads, saves and dialogs.
 class SceneFiles {

@@ -90,6 +90,9 @@ struct LoadedScene {
   Bounds bounds;               ///< Bounds of everything visible and haptic, world units.
 };
 
+/// Waits for at most a time, in seconds; returns whether the scene has been loaded.
+using LoadWait = std::function<bool(double wait_s)>;
+
 /// Loads a scene synchronously; any thread, since it owns its scene. Size in pixels. An Error, one line, if something cannot be loaded.
 Result<LoadedScene> load_scene(SceneModel host, std::uint32_t width, std::uint32_t height);
 

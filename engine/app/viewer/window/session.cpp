@@ -57,8 +57,11 @@ std::optional<Failure> Session::open() {
   gui_.end();
   state.image_area = compute_image_area(options.width, options.height, edges);
 
+  std::optional<Failure> not_shown;
   const auto loaded = load_initial_scene(context_.scene, hand, static_cast<std::uint32_t>(state.image_area.width),
-                                         static_cast<std::uint32_t>(state.image_area.height));
+                                         static_cast<std::uint32_t>(state.image_area.height),
+                                         [&](const LoadWait& is_loaded) { not_shown = viewport_.show_loading(is_loaded); });
+  if (not_shown) return not_shown;
   if (!loaded) return to_failure(loaded.error());
   files_.adopt_scene(*loaded);
   find_animated_bands();

@@ -8,6 +8,7 @@
 
 #include "engine/app/haptics/device_file.h"
 #include "engine/app/viewer/scene/file_browser.h"
+#include "engine/app/viewer/window/loading_screen.h"
 #include "engine/base/clock.h"
 #include "engine/base/console.h"
 #include "engine/scene/to_json.h"
@@ -39,7 +40,15 @@ Viewport::~Viewport() {
   if (headset_session_) headset_session_->request_exit();
 }
 
+std::optional<Failure> Viewport::show_loading(const LoadWait& is_loaded) {
+  if (is_loaded(kQuietLoadS) || context_.options.use_headset) return std::nullopt;
+  if (auto failure = open()) return failure;
+  const Outcome shown = app::show_loading(context_.window, context_.gui, *presenter_, context_.options.source, is_loaded);
+  return shown ? std::nullopt : std::optional(Failure{1, shown.error().message});
+}
+
 std::optional<Failure> Viewport::open() {
+  if (presenter_) return std::nullopt;
   Presenter::Options options{context_.options.gpu_memory, context_.options.inject_failure};
   if (context_.options.use_headset) {
     if (context_.scene.scene().stretch != Vec3(1.0))

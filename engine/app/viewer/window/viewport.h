@@ -11,6 +11,7 @@
 
 #include "engine/app/viewer/input/plane_views.h"
 #include "engine/app/viewer/input/widget_drag.h"
+#include "engine/app/viewer/scene/scene_model.h"
 #include "engine/app/viewer/window/frame_builder.h"
 #include "engine/app/viewer/window/shader_reload.h"
 #include "engine/app/viewer/window/viewer_context.h"
@@ -27,6 +28,8 @@ class Viewport {
 
   /// Creates the presenter, and the headset session if requested. Call before the first frame. Returns the failure, if any.
   std::optional<Failure> open();
+  /// Shows what is being read until the first scene is loaded; opens the presenter after a second. Does not use the scene.
+  std::optional<Failure> show_loading(const LoadWait& is_loaded);
   /// Processes the events of the headset. Returns true if it needs a frame at every turn of the loop. An Error if the graphics device
   /// cannot be recreated.
   Result<bool> poll_headset();
