@@ -181,7 +181,8 @@ Result<const H5Data*> H5File::data(const std::string& path) {
   // the cache of decoded chunks
   const H5Id access(::H5Pcreate(H5P_DATASET_ACCESS));
   constexpr std::size_t kSlots = 12421, kCacheBytes = 64 << 20;
-  ::H5Pset_chunk_cache(access.get(), kSlots, kCacheBytes, 1);
+  constexpr double kFullyReadFirst = 0.75;  // with 1, chunks that were read in part would never leave
+  ::H5Pset_chunk_cache(access.get(), kSlots, kCacheBytes, kFullyReadFirst);
   data.id = H5Id(::H5Dopen2(file_.get(), path.c_str(), access.get()));
   if (!data.id) return Error{"cannot be opened: it is missing or damaged"};
   const H5Id space(::H5Dget_space(data.id.get()));
@@ -215,6 +216,18 @@ std::vector<double> H5File::values(const std::string& path) {
   return values;
 }
 
+/// Returns whether the last call of HDF5 failed for lack of memory.
+static bool lacks_memory() {
+  bool found = false;
+  const auto inspect = [](unsigned, const H5E_error2_t* error, void* out) -> herr_t {
+    if (error->maj_num == H5E_RESOURCE && (error->min_num == H5E_NOSPACE || error->min_num == H5E_CANTALLOC))
+      *static_cast<bool*>(out) = true;
+    return 0;
+  };
+  ::H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, inspect, &found);
+  return found;
+}
+
 Outcome H5File::read(const std::string& path, const std::vector<std::int64_t>& first, const std::vector<std::int64_t>& count,
                      std::span<std::byte> out) {
   CATENA_TRY(const H5Data* data, this->data(path));
@@ -230,7 +243,8 @@ Outcome H5File::read(const std::string& path, const std::vector<std::int64_t>& f
   const H5Id memory(::H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr));
   if (::H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr) < 0 ||
       ::H5Dread(data->id.get(), data->memory_type, memory.get(), space.get(), H5P_DEFAULT, out.data()) < 0)
-    return Error{"cannot be read: a chunk is damaged or truncated, or the file is"};
+    return Error{lacks_memory() ? "cannot be read: there is not enough memory (--memory MB allows more)"
+                                : "cannot be read: a chunk is damaged or truncated, or the file is"};
   return Done{};
 }
 
