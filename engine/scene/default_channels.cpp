@@ -81,7 +81,9 @@ std::string channel_volumes(const std::vector<Channel>& channels) {
 }
 
 std::string channels_note(const std::vector<Channel>& channels, std::size_t count) {
-  std::string text = fmt::format("{}{} channels", count > channels.size() ? fmt::format("{} of ", channels.size()) : "", count);
+  std::string text = count == 1                ? std::string("channel")
+                     : count > channels.size() ? fmt::format("{} of {} channels", channels.size(), count)
+                                               : fmt::format("{} channels", count);
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const Color color = color_of(*channels[i].grid, i);
     const auto byte = [](float component) { return int(std::lround(255 * component)); };

@@ -141,10 +141,13 @@ void show_fibres(DataFile& file, DefaultScene& default_scene, DefaultVisualizati
   }
 }
 
-/// Shows the channels of a microscope's image. Returns whether the file has several.
-bool show_channels(DataFile& file, DefaultScene& default_scene, DefaultVisualization& visualization) {
+/// Shows the channels of a microscope's image, or only the requested grid if it is one with a color in the file. Returns whether there are
+/// several, or this one.
+bool show_channels(DataFile& file, DefaultScene& default_scene, DefaultVisualization& visualization, bool only_requested) {
   if (default_scene.request.grid.empty() || !default_scene.field.scalar || !file.grids()) return false;
   std::vector<const field::GridInfo*> found = find_channels(*file.grids());
+  if (only_requested)
+    std::erase_if(found, [&](const field::GridInfo* grid) { return grid->name != default_scene.request.grid || grid->color < 0; });
   std::erase_if(found, [&](const field::GridInfo* grid) { return field::read_units(file.path, grid->name).is_label_map; });
   std::vector<Channel> channels;
   for (const field::GridInfo* grid : found) {
@@ -158,7 +161,7 @@ bool show_channels(DataFile& file, DefaultScene& default_scene, DefaultVisualiza
     if (!is_first) default_scene.more_grids.emplace_back(grid->name, *loaded);
   }
   const auto has_name = [&](const Channel& channel) { return std::ranges::count(channels, channel.field_name, &Channel::field_name) == 1; };
-  if (channels.size() < 2 || !std::ranges::all_of(channels, has_name)) return false;
+  if (channels.size() < (only_requested ? 1 : 2) || !std::ranges::all_of(channels, has_name)) return false;
   visualization = {};
   visualization.scene_members = channel_volumes(channels);
   visualization.note = channels_note(channels, found.size());
@@ -242,10 +245,8 @@ Result<DefaultScene> scene_of_one_file(const std::string& path, const std::strin
                          : choose_default_visualization(name, *shown_field.vector->grid(), colors.named);
   if (later) visualization.note += fmt::format(" (at step {}; at step {} all values are equal)", later->step, step);
   bool has_channels = false;
-  if (grid.empty() && colors.is_default()) {
-    show_fibres(data_file, result, visualization);
-    has_channels = !visualization.is_label_map && show_channels(data_file, result, visualization);
-  }
+  if (grid.empty() && colors.is_default()) show_fibres(data_file, result, visualization);
+  if (colors.is_default() && !visualization.is_label_map) has_channels = show_channels(data_file, result, visualization, !grid.empty());
   result.note = (has_channels ? "" : name + " ") + visualization.note;
   result.text = "{\n  \"fields\": {" + name + ": {\"file\": " + file;
   if (!result.request.grid.empty()) result.text += ", \"grid\": " + json::serialize_string(result.request.grid);

@@ -164,6 +164,9 @@ Result<field::AnyField> resolve_rendered_field(Scene& scene, Entity field, const
         if (volume.transfer.extinctions.empty() && volume.transfer.opacities.empty()) volume.transfer.opacities = {{0.4, 0}, {0.6, 0.9}};
         return;
       }
+      // a projection shows the color of its value
+      if (volume.projection != Volume::Projection::composite && volume.transfer.extinctions.empty() && volume.transfer.opacities.empty())
+        volume.transfer.opacities = {{0, TransferFunction::OpacityPoint::kMaxAlpha}};
       if (!scene.cache.has<SortedValues>(field)) scene.cache.emplace<SortedValues>(field);
       SortedValues& sample = scene.cache.get<SortedValues>(field);
       if (sample.grid != source.rendered.get()) sample = {source.rendered.get(), sorted_values(grid)};

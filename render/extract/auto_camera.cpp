@@ -338,7 +338,17 @@ View make_auto_view(const scene::Scene& scene, const FramePacket& packet) {
   // a box or axes around everything drawn must be visible, too
   if (scene.bounding_box || scene.axes) clouds.push_back({corners_of(packet_bounds(packet))});
   const Room left = room(scene, packet);
-  View view = fit_view(clouds, static_cast<double>(packet.width) / packet.height, left.share.x, left.share.y, to_camera, kFovy, up);
+  const auto fit = [&] {
+    return fit_view(clouds, static_cast<double>(packet.width) / packet.height, left.share.x, left.share.y, to_camera, kFovy, up);
+  };
+  View view = fit();
+  // of several volumes, such as channels, nothing is left outside if the rest stays almost as large
+  if (packet.volumes.size() > 1) {
+    constexpr double kMostDistance = 1.25;
+    for (FitPoints& cloud : clouds) cloud.outlier_share = 0;
+    const View whole = fit();
+    if (norm(whole.position - whole.target) <= kMostDistance * norm(view.position - view.target)) view = whole;
+  }
   if (left.shift != 0) {
     const Vec3 shift = left.shift * view.height * make_camera(view, packet.width, packet.height, {}).right;
     view.position += shift;

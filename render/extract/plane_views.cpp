@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/text.h"
 #include "engine/io/volume/units.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/units.h"
@@ -91,8 +92,15 @@ const scene::Volume* volume_of(const scene::Scene& scene, scene::Entity field) {
   return nullptr;
 }
 
-/// The field in the plane: with the colors of its slice in the scene, else of its labels, else gray over the window; over the base also
-/// with the colors and the threshold of its volume.
+/// Returns whether a volume shows a channel: in one color, whatever the value (engine/scene/default_channels.h).
+bool shows_channel(const scene::Volume* volume) {
+  return volume != nullptr && volume->transfer.colors.size() > 1 && std::ranges::all_of(volume->transfer.colors, [&](const auto& point) {
+           return point.color == volume->transfer.colors.front().color;
+         });
+}
+
+/// The field in the plane: a channel from black to its color; others with the colors of its slice in the scene, else of its labels, else
+/// gray over the window; over the base also with the colors and the threshold of its volume.
 SliceItem make_plane_slice(const scene::Scene& scene, scene::Entity field, bool is_base,
                            const std::optional<std::array<double, 2>>& window) {
   const field::AnyField& any = scene::rendered_field(scene, field);
@@ -104,13 +112,21 @@ SliceItem make_plane_slice(const scene::Scene& scene, scene::Entity field, bool 
   const scene::Slice* own = slice_of(scene, field);
   scene::ColorBy colors = own != nullptr ? own->color_by : scene::ColorBy{};
   if (own == nullptr && !labels) colors.named.map = "grey";
-  if (const scene::Volume* volume = own == nullptr && !is_base && !labels ? volume_of(scene, field) : nullptr) {
+  const scene::Volume* volume = volume_of(scene, field);
+  if (volume != nullptr && own == nullptr && !is_base && !labels) {
     colors.colors = volume->transfer.colors;
     colors.named = volume->transfer.named;
   }
   if (is_base && window) colors.named.range = *window;
-  for (const auto& row : scene::make_display_color_table(scene, field, colors.colors, colors.named, range.lo, range.hi))
-    item.colors.push_back({row.value, row.color.r, row.color.g, row.color.b});
+  if (own == nullptr && !labels && shows_channel(volume)) {
+    const auto& points = volume->transfer.colors;
+    const auto [lo, hi] = window.value_or(std::array{points.front().value, points.back().value});
+    const Color& color = points.front().color;
+    item.colors = {{lo, 0, 0, 0}, {hi, color.r, color.g, color.b}};
+  } else {
+    for (const auto& row : scene::make_display_color_table(scene, field, colors.colors, colors.named, range.lo, range.hi))
+      item.colors.push_back({row.value, row.color.r, row.color.g, row.color.b});
+  }
   if (labels) item.hidden_label = 0;
   item.threshold = colors.named.threshold;
   item.opacity = is_base ? 1.0f : own != nullptr ? static_cast<float>(own->opacity) : static_cast<float>(kOverlayOpacity);
@@ -183,6 +199,10 @@ void add_marks(const OrthoPlanes& planes, std::size_t plane, const Vec3& focus, 
                                   kPlaneColors[plane]});
 }
 
+void add_note(scene::Scene& scene, std::string note) {
+  if (std::ranges::find(scene.notes, note) == scene.notes.end()) scene.notes.push_back(std::move(note));
+}
+
 }  // namespace
 
 Result<OrthoPlanes> find_ortho_planes(scene::Scene& scene) {
@@ -204,9 +224,19 @@ Result<OrthoPlanes> find_ortho_planes(scene::Scene& scene) {
   };
   const auto first = std::ranges::find_if_not(fields, lies_over);
   planes.base = first != fields.end() ? *first : fields.front();
-  for (const scene::Entity field : fields)
+  const bool has_channels = shows_channel(volume_of(scene, planes.base));
+  bool leaves_out = false;
+  for (const scene::Entity field : fields) {
+    const bool is_other_channel =
+        has_channels && field != planes.base && slice_of(scene, field) == nullptr && shows_channel(volume_of(scene, field));
+    leaves_out = leaves_out || is_other_channel;
+    if (is_other_channel) continue;
     if (field != planes.base && (is_map(field) || slice_of(scene, field) != nullptr || volume_of(scene, field) != nullptr))
       planes.overlays.push_back(field);
+  }
+  if (leaves_out)
+    add_note(scene, fmt::format("the orthogonal views show the channel {} only (--grid NAME shows another)",
+                                in_quotes(scene.entities.get<scene::Name>(planes.base).value)));
   const field::Field& field = *scene::rendered_field(scene, planes.base).get();
   Bounds box;
   box.extend(field.index_box().lo);

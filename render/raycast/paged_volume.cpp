@@ -50,6 +50,12 @@ std::uint64_t morton_code(const Index3& brick) {
 }
 
 /// Returns the levels as shaders read them.
+PageProgress page_progress;
+
+void report_pages(std::size_t done, std::size_t of) {
+  if (page_progress && of > 0) page_progress(done, of);
+}
+
 shared::PageLevels level_data(const std::vector<PageLevel>& levels) {
   static_assert(kMaxPageLevels == MAX_PAGE_LEVELS);
   shared::PageLevels data{};
@@ -94,6 +100,8 @@ std::uint64_t page_pool_bytes(const vk::Device& device, std::uint64_t left, std:
   if (device.info().is_cpu()) bytes = std::min(bytes, std::max(available_memory() / 2, kMinHostPoolBytes));
   return bytes / std::max<std::size_t>(1, sharers);
 }
+
+void set_page_progress(PageProgress progress) { page_progress = std::move(progress); }
 
 void add_page_layout(std::vector<vk::LayoutBinding>& slots) {
   slots.insert(slots.end(),
@@ -327,7 +335,15 @@ Outcome PagedVolume::finish(bool finest, bool only_if_they_fit) {
   // pages that are near each other need the same bricks
   std::ranges::sort(plan_.loads, {}, [](const PageId& id) { return std::pair(id.level, morton_code(id.brick)); });
   loader_->set_wanted(plan_.loads, codes_);
-  while (loader_->wait()) CATENA_CHECK(upload(loader_->take(kPagesPerUpload)));
+  std::size_t done = 0;
+  const std::size_t all = plan_.loads.size();
+  while (loader_->wait()) {
+    std::vector<EncodedPage> pages = loader_->take(kPagesPerUpload);
+    done += pages.size();
+    report_pages(done, all);
+    CATENA_CHECK(upload(std::move(pages)));
+  }
+  report_pages(all, all);
   make_plan(finest, false);
   return upload_map();
 }

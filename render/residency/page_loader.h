@@ -8,7 +8,9 @@
 /// Any thread may call the functions.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -52,6 +54,11 @@ using ChannelCodes = std::vector<CodeScale>;
 /// Reads a page and encodes it, as numbers if the codes have 16 bits. Blocks. The Error is a complete message.
 Result<EncodedPage> encode_page(const ChannelGrids& grids, const std::vector<PageLevel>& levels, const PageId& id,
                                 const ChannelCodes& codes);
+
+/// Called while an image waits for pages, with the number that have been read, of all that it waits for; the last time both are equal.
+using PageProgress = std::function<void(std::size_t done, std::size_t of)>;
+/// Sets the callback; before the first image.
+void set_page_progress(PageProgress progress);
 
 /// Reader threads of one volume.
 class PageLoader {

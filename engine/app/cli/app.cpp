@@ -26,6 +26,7 @@
 #include "engine/io/stores/load_store.h"
 #include "engine/scene/streamlines.h"
 #include "engine/schema/renames.h"
+#include "render/residency/page_loader.h"
 
 namespace catena::app {
 
@@ -192,6 +193,7 @@ int run(int argc, char** argv) {
   const std::string cache = user_folder("XDG_CACHE_HOME", ".cache");
   field::set_level_cache(cache.empty() ? cache : cache + "/levels", print_level_progress);
   scene::set_trace_progress(print_tracing_progress);
+  render::set_page_progress(print_brick_progress);
   reserve_standard_descriptors();
   return flush_output(guarded(argc, argv));
 }

@@ -199,4 +199,11 @@ void print_level_progress(const std::string& path, double part) {
   shown.try_emplace(path, "coarser levels of " + path, 1).first->second.update(part);
 }
 
+void print_brick_progress(std::size_t done, std::size_t of) {
+  static std::optional<ProgressLine> shown;
+  if (!shown) shown.emplace("bricks of the image", 1);
+  shown->update(static_cast<double>(done) / static_cast<double>(of), fmt::format("{} of {}", done, of));
+  if (done == of) shown.reset();
+}
+
 }  // namespace catena::app

@@ -87,6 +87,9 @@ void print_tracing_progress(const std::string& field, std::size_t seeds, std::si
 /// Progress callback for field::set_level_cache: the part of the work that is done for a store; negative: the work is over.
 void print_level_progress(const std::string& path, double part);
 
+/// Progress callback for render::set_page_progress: bricks of an image that have been read.
+void print_brick_progress(std::size_t done, std::size_t of);
+
 /// Progress of long work, on stderr: a line rewritten in place on a terminal, after the first second; elsewhere at most ten lines, after
 /// the first ten seconds.
 class ProgressLine {

@@ -97,6 +97,39 @@ Result<TiffFile*> TiffStore::file(int number) {
 }
 
 /// Finds the slices of a folder.
+/// Returns a note if numbers are missing in the names of files, which are in the order of their numbers; empty: none, or the names are of
+/// another kind.
+static std::string note_missing_numbers(const std::vector<std::string>& names) {
+  constexpr std::size_t kMaxDigits = 15, kMinFiles = 4;
+  std::vector<std::int64_t> numbers;
+  std::string prefix;
+  std::size_t digits = 1;  // of padded numbers
+  for (const std::string& name : names) {
+    const std::size_t last = name.find_last_of("0123456789", name.rfind('.'));
+    if (last == std::string::npos) return {};
+    const std::size_t before = name.find_last_not_of("0123456789", last);
+    const std::size_t first = before == std::string::npos ? 0 : before + 1;
+    if (last + 1 - first > kMaxDigits || (!numbers.empty() && name.substr(0, first) != prefix)) return {};
+    prefix = name.substr(0, first);
+    if (name[first] == '0') digits = last + 1 - first;
+    numbers.push_back(std::stoll(name.substr(first, last + 1 - first)));
+  }
+  if (numbers.size() < kMinFiles) return {};
+  std::int64_t step = numbers.back() - numbers.front();
+  for (std::size_t i = 1; i < numbers.size(); ++i) step = std::min(step, numbers[i] - numbers[i - 1]);
+  if (step < 1) return {};
+  std::int64_t missing = 0, first = -1;
+  for (std::size_t i = 1; i < numbers.size(); ++i) {
+    const std::int64_t gap = numbers[i] - numbers[i - 1];
+    if (gap % step != 0) return {};
+    if (gap > step && first < 0) first = numbers[i - 1] + step;
+    missing += gap / step - 1;
+  }
+  if (missing == 0 || missing >= static_cast<std::int64_t>(numbers.size())) return {};
+  return fmt::format("files with {} numbers are missing, the first is {}{:0{}}: the slices behind them have moved", missing, prefix, first,
+                     digits);
+}
+
 Outcome TiffStore::open_folder() {
   constexpr std::size_t kMaxFiles = 1'000'000;
   std::error_code code;
@@ -108,6 +141,7 @@ Outcome TiffStore::open_folder() {
   if (code) return Error{fmt::format("{}: the folder cannot be listed ({})", path_.shown, code.message())};
   if (files_.empty()) return Error{path_.shown + ": there is no TIFF file in this folder"};
   natural_sort(files_);
+  if (const std::string note = note_missing_numbers(files_); !note.empty()) description_.notes.push_back(note);
   TiffImage& image = images_.emplace_back();
   image.slices = static_cast<int>(files_.size());
   for (int i = 0; i < image.slices; ++i) image.pages.push_back({i, 0});
