@@ -16,6 +16,7 @@
 #include "engine/field/bricks/paged_grid.h"
 #include "engine/field/field_display_range.h"
 #include "engine/io/formats.h"
+#include "engine/io/stores/load_store.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/default_channels.h"
 #include "engine/scene/default_points.h"
@@ -347,8 +348,10 @@ Result<DefaultScene> make_default_scene(const std::string& path, const std::stri
 
 FileSummary summarize_file(const std::string& path, const std::string& grid, int step) {
   FileSummary summary;
-  const std::string file = request_at(path, step).path;
-  if (const io::Format* format = io::find_reader(file, io::DataKind::volume); format != nullptr && format->volume.reads_parts) {
+  const field::LoadRequest request = request_at(path, step);
+  const std::string& file = request.path;
+  if (const io::Format* format = io::find_reader(file, io::DataKind::volume);
+      format != nullptr && (format->volume.reads_parts || (format->volume.is_array && field::is_read_in_bricks(request)))) {
     if (format->volume.notes != nullptr) summary.lines = format->volume.notes(file);
     summary.steps = list_time_steps(path, {});
     return summary;

@@ -186,10 +186,7 @@ Group command_rows() {
            voxels_beyond_pictures},
           {"NoTolerance", "`trace` with `--tolerance 1e-300`", "done", [] { return trace("0.5,0,0", "--tolerance"); }},
           {"FullUnderTheHand", "`replay` on 512^3 voxels of noise, with 700000 KB of address space", "done", full_under_the_hand},
-          {"FullWithoutRoom", "`render` of these voxels with `--memory 300`",
-           exit + "s.json:1: field \"d\": d.raw: the grid of 512 x 512 x 512 voxels needs 576 MB of memory, expected at most 300 MB "
-                  "(--memory MB allows more)",
-           [] { return full_under_the_eye("300"); }},
+          {"FullInBricks", "`render` of these voxels with `--memory 300`", "done", [] { return full_under_the_eye("300"); }},
           {"FullUnderTheEye", "The same with `--memory 700`", "done", [] { return full_under_the_eye("700"); }},
       }};
 }

@@ -93,11 +93,11 @@ void add_memory_limit(CLI::App& program) {
   }
 }
 
-// Shows large levels of stores in bricks, unless --memory says how much memory data may take
-void prefer_bricks_for_images(const CLI::App& program) {
-  const bool draws = std::ranges::any_of(std::initializer_list<const char*>{"render", "serve", "view"},
-                                         [&](const char* name) { return program.got_subcommand(name); });
-  if (draws && !memory_limit()) field::set_max_whole_level(field::kMaxDrawnWholeLevel);
+// Reads large levels of stores in bricks, unless --memory says how much memory data may take
+void prefer_bricks(const CLI::App& program) {
+  const bool prefers = std::ranges::any_of(std::initializer_list<const char*>{"info", "render", "serve", "view"},
+                                           [&](const char* name) { return program.got_subcommand(name); });
+  if (prefers && !memory_limit()) field::set_max_whole_level(field::kMaxDrawnWholeLevel);
 }
 
 // Adds --plugin FILE to every visible command
@@ -131,7 +131,7 @@ int parse_and_work(int argc, char** argv) {
     const std::string unknown = unknown_word(program, argc, argv);
     return bad_input(unknown.empty() ? usage_message(program, error) : unknown);
   }
-  prefer_bricks_for_images(program);
+  prefer_bricks(program);
   const Outcome loaded = load_plugins(plugins);
   const Outcome done = loaded ? chosen() : loaded;
   if (!done) return to_exit_code(done.error()) == 1 ? machine_failed(done.error().message) : bad_input(done.error().message);

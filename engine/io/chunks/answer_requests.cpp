@@ -66,7 +66,7 @@ class Answers {
     if (const auto confined = sandbox::enter_sandbox(limits, &root_changed); !confined)
       return Error{path + ": cannot be read safely: " + confined.error().message, true};
     const fs::path seen = root_changed ? fs::path("/") : folder;
-    CATENA_TRY(store_, open_store({path, (is_folder ? seen : seen / full.filename()).string()}));
+    CATENA_TRY(store_, open_store({path, (is_folder ? seen : seen / full.filename()).string()}, request.layout));
     const std::string text = encode(store_->description());
     if (text.size() > memory_.size()) return Error{path + ": its description is too large"};
     std::memcpy(memory_.data(), text.data(), text.size());

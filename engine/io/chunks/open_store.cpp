@@ -22,11 +22,12 @@ void OpenStore::record_file(const struct stat& about) {
   description_.newest_mtime_ns = std::max(description_.newest_mtime_ns, modified_ns(about));
 }
 
-Result<std::unique_ptr<OpenStore>> open_store(const StorePath& path) {
+Result<std::unique_ptr<OpenStore>> open_store(const StorePath& path, const field::ArrayLayout& layout) {
   const auto is_tiff = [](const std::string& name) {
     return std::ranges::any_of(std::initializer_list<std::string_view>{".tif", ".tiff", ".btf", ".tf8", ".tf2"},
                                [&](std::string_view extension) { return has_extension(name, extension); });
   };
+  if (layout.is_raw != 0 || has_extension(path.real, ".npy")) return open_array(path, layout);
   std::error_code code;
   if (!std::filesystem::is_directory(path.real, code)) return is_tiff(path.real) ? open_tiff(path) : open_hdf5(path);
   for (const char* name : {"/.zarray", "/.zgroup", "/.zattrs", "/zarr.json"})

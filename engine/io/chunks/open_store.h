@@ -41,7 +41,9 @@ Result<std::unique_ptr<OpenStore>> open_zarr(const StorePath& path);
 Result<std::unique_ptr<OpenStore>> open_tiff(const StorePath& path);
 /// Opens an HDF5 file, or the .xml of BigDataViewer that names one.
 Result<std::unique_ptr<OpenStore>> open_hdf5(const StorePath& path);
+/// Opens a .raw or .npy file, whose numbers are read where they lie.
+Result<std::unique_ptr<OpenStore>> open_array(const StorePath& path, const field::ArrayLayout& layout);
 /// Opens any store by the kind of its path.
-Result<std::unique_ptr<OpenStore>> open_store(const StorePath& path);
+Result<std::unique_ptr<OpenStore>> open_store(const StorePath& path, const field::ArrayLayout& layout);
 
 }  // namespace catena::chunks

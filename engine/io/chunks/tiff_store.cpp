@@ -96,7 +96,6 @@ Result<TiffFile*> TiffStore::file(int number) {
   return opened_.front().file.get();
 }
 
-/// Finds the slices of a folder.
 /// Returns a note if numbers are missing in the names of files, which are in the order of their numbers; empty: none, or the names are of
 /// another kind.
 static std::string note_missing_numbers(const std::vector<std::string>& names) {
@@ -130,6 +129,7 @@ static std::string note_missing_numbers(const std::vector<std::string>& names) {
                      digits);
 }
 
+/// Finds the slices of a folder.
 Outcome TiffStore::open_folder() {
   constexpr std::size_t kMaxFiles = 1'000'000;
   std::error_code code;

@@ -183,20 +183,6 @@ Result<AnyField> load_part(const LoadRequest& request, const StoreDescription& a
   return downsample_to_level(request.path, std::move(field), remaining);
 }
 
-Result<AnyField> load_stored(const LoadRequest& request) {
-  CATENA_TRY(const std::shared_ptr<Store> store, find_store(request.path));
-  CATENA_TRY(const int grid, find_grid(*store, request.grid));
-  if (request.mask_required) return Error{request.path + ": a store of chunks has no mask"};
-  CATENA_TRY(const int step, find_step(*store, grid, request.step));
-  constexpr int kTries = 2;  // damaged levels in the cache are made again
-  for (int attempt = 1;; ++attempt) {
-    CATENA_TRY(const LevelPart part, find_or_make_part(request, store, grid, step));
-    Result<AnyField> field = load_part(request, store->description(), part);
-    const CachedLevels* cached = part.stored->cached();
-    if (field || cached == nullptr || !cached->is_damaged() || attempt == kTries) return field;
-  }
-}
-
 constexpr VolumeReader kStoredVolume{.load = load_stored,
                                      .describe = describe_stored,
                                      .units = stored_units,
@@ -225,6 +211,32 @@ bool is_tiff_folder(const std::string& path) {
 }  // namespace
 
 void set_max_whole_level(double voxels) { max_whole_level = voxels; }
+
+Result<AnyField> load_stored(const LoadRequest& request) {
+  CATENA_TRY(const std::shared_ptr<Store> store, find_store(request));
+  CATENA_TRY(const int grid, find_grid(*store, request.grid));
+  if (request.mask_required) return Error{request.path + ": a store of chunks has no mask"};
+  CATENA_TRY(const int step, find_step(*store, grid, request.step));
+  constexpr int kTries = 2;  // damaged levels in the cache are made again
+  for (int attempt = 1;; ++attempt) {
+    CATENA_TRY(const LevelPart part, find_or_make_part(request, store, grid, step));
+    Result<AnyField> field = load_part(request, store->description(), part);
+    const CachedLevels* cached = part.stored->cached();
+    if (field || cached == nullptr || !cached->is_damaged() || attempt == kTries) return field;
+  }
+}
+
+bool is_read_in_bricks(const LoadRequest& request) {
+  constexpr double kCopies = 2;  // the values that are read, and the grid
+  const double available = static_cast<double>(available_memory());
+  const auto bytes = readable_file_size(request.path);
+  const auto is_large = [&](double voxels) {
+    return (request.level == 0 && voxels > max_whole_level) || kCopies * sizeof(float) * voxels > available;
+  };
+  if (!bytes || request.mask_required || !is_large(static_cast<double>(*bytes))) return false;
+  const auto store = find_store(request);
+  return store && is_large(StoreBox{{}, (*store)->description().grids.front().levels.front().size}.voxels());
+}
 
 }  // namespace catena::field
 

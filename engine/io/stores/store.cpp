@@ -14,6 +14,7 @@
 #include "engine/base/input_files.h"
 #include "engine/base/text.h"
 #include "engine/field/bricks/brick_source.h"
+#include "engine/io/formats.h"
 
 namespace catena::field {
 namespace {
@@ -31,15 +32,15 @@ std::string state_of(const std::string& path) {
 
 }  // namespace
 
-Store::Store(StoreProcess first, std::string path)
-    : path_(std::move(path)), description_(first.description()), identity_(encode(description_)) {
+Store::Store(StoreProcess first, std::string path, const ArrayLayout& layout)
+    : path_(std::move(path)), layout_(layout), description_(first.description()), identity_(encode(description_)) {
   idle_.push_back(std::move(first));
 }
 
-Result<std::shared_ptr<Store>> Store::open(const std::string& path, bool is_input) {
-  CATENA_TRY(StoreProcess first, StoreProcess::start(path));
+Result<std::shared_ptr<Store>> Store::open(const std::string& path, bool is_input, const ArrayLayout& layout) {
+  CATENA_TRY(StoreProcess first, StoreProcess::start(path, layout));
   if (is_input) register_inputs(first.description().opened_files);
-  return std::shared_ptr<Store>(new Store(std::move(first), path));
+  return std::shared_ptr<Store>(new Store(std::move(first), path, layout));
 }
 
 /// Takes an idle reader; empty: a new one is to be started.
@@ -71,7 +72,7 @@ Outcome Store::ask(const StoreRequest& request, std::span<std::byte> out) {
   constexpr int kTries = 2;
   for (int attempt = 0; attempt < kTries; ++attempt) {
     if (reader.empty()) {
-      auto started = StoreProcess::start(path_);
+      auto started = StoreProcess::start(path_, layout_);
       if (!started) {
         result = started.error();
         break;
@@ -124,7 +125,7 @@ Result<std::vector<std::uint8_t>> Store::list(int grid, int level, int step) {
   return present;
 }
 
-Result<std::shared_ptr<Store>> find_store(const std::string& path) {
+Result<std::shared_ptr<Store>> find_store(const std::string& path, const ArrayLayout& layout) {
   struct Opened {
     std::string path, state;
     std::shared_ptr<Store> store;
@@ -134,22 +135,38 @@ Result<std::shared_ptr<Store>> find_store(const std::string& path) {
   constexpr std::size_t kMaxOpen = 4;
   const std::scoped_lock lock(mutex);
   const std::string state = state_of(path);
-  const auto found = std::ranges::find(opened, path, &Opened::path);
+  const auto found = std::ranges::find_if(opened, [&](const Opened& o) { return o.path == path && o.store->layout() == layout; });
   if (found != opened.end() && found->state == state) {
     opened.splice(opened.begin(), opened, found);
     return opened.front().store;
   }
   if (found != opened.end()) opened.erase(found);
-  CATENA_TRY(std::shared_ptr<Store> store, Store::open(path));
+  CATENA_TRY(std::shared_ptr<Store> store, Store::open(path, /*is_input=*/true, layout));
   opened.push_front({path, state, store});
   if (opened.size() > kMaxOpen) opened.pop_back();
   return store;
+}
+
+Result<std::shared_ptr<Store>> find_store(const LoadRequest& request) {
+  ArrayLayout layout;
+  if (request.raw || io::is_numpy_file(request.path)) {
+    const Vec3 spacing = request.raw ? request.raw->spacing : request.spacing, origin = request.raw ? request.raw->origin : request.origin;
+    for (int a = 0; a < 3; ++a) layout.spacing[a] = spacing[a], layout.origin[a] = origin[a];
+    layout.axes_xyz = request.axes_xyz ? 1 : 0;
+  }
+  if (request.raw) {
+    layout.is_raw = 1;
+    layout.shape = request.raw->shape;
+    request.raw->type.copy(layout.type, ArrayLayout::kMaxType - 1);
+  }
+  return find_store(request.path, layout);
 }
 
 Result<int> find_grid(const Store& store, const std::string& name) {
   const std::vector<StoreGrid>& grids = store.description().grids;
   if (name.empty() && grids.size() == 1) return 0;
   std::vector<std::string_view> names;
+  names.reserve(grids.size());
   for (const StoreGrid& grid : grids) names.push_back(grid.name);
   if (name.empty())
     return Error{

@@ -22,10 +22,12 @@ class Store {
 
   /// Starts a reader and opens the store, whose files become inputs of this process (engine/base/input_files.h) unless `is_input` is false.
   /// The Error is a complete message.
-  static Result<std::shared_ptr<Store>> open(const std::string& path, bool is_input = true);
+  static Result<std::shared_ptr<Store>> open(const std::string& path, bool is_input = true, const ArrayLayout& layout = {});
 
   /// Returns the path as it was given.
   const std::string& path() const { return path_; }
+  /// Returns the layout with which it was opened.
+  const ArrayLayout& layout() const { return layout_; }
   /// Returns the contents.
   const StoreDescription& description() const { return description_; }
   /// Reads a box of a grid at a level and a time step, which must exist, in the stored type; `values` has exactly its bytes, at most
@@ -35,12 +37,13 @@ class Store {
   Result<std::vector<std::uint8_t>> list(int grid, int level, int step);
 
  private:
-  Store(StoreProcess first, std::string path);
+  Store(StoreProcess first, std::string path, const ArrayLayout& layout);
   Result<std::vector<StoreProcess>> take_reader();
   void give_back(std::vector<StoreProcess> reader);
   Outcome ask(const StoreRequest& request, std::span<std::byte> out);
 
   const std::string path_;
+  const ArrayLayout layout_;
   const StoreDescription description_;
   const std::string identity_;  ///< The encoded description: another reader must find the same.
   std::mutex mutex_;
@@ -50,7 +53,9 @@ class Store {
 };
 
 /// Returns the open store of a path; opens it unless it is open and its metadata files are unchanged. A few stores stay open.
-Result<std::shared_ptr<Store>> find_store(const std::string& path);
+Result<std::shared_ptr<Store>> find_store(const std::string& path, const ArrayLayout& layout = {});
+/// The same for the file of a request.
+Result<std::shared_ptr<Store>> find_store(const LoadRequest& request);
 
 /// Returns the index of the grid with a name; empty: of the only one. The Error is a complete message.
 Result<int> find_grid(const Store& store, const std::string& name);

@@ -67,7 +67,7 @@ StoreProcess::~StoreProcess() {
   if (!memory_.empty()) ::munmap(const_cast<std::byte*>(memory_.data()), memory_.size());
 }
 
-Result<StoreProcess> StoreProcess::start(const std::string& path) {
+Result<StoreProcess> StoreProcess::start(const std::string& path, const ArrayLayout& layout) {
   std::error_code code;
   if (!std::filesystem::is_directory(path, code)) CATENA_CHECK(readable_file_size(path));
   CATENA_TRY(const std::string program, reader_program(path));
@@ -89,6 +89,7 @@ Result<StoreProcess> StoreProcess::start(const std::string& path) {
   other.close();
   StoreProcess reader(path, std::move(*process), std::move(own), mapped);
   StoreRequest request;
+  request.layout = layout;
   const ReaderSettings& settings = reader_settings();
   request.memory_bytes = settings.memory_bytes > 0 ? settings.memory_bytes : std::min(kMaxReaderBytes, available_memory());
   CATENA_TRY(const std::uint64_t bytes, reader.exchange(request, path));

@@ -15,7 +15,7 @@ namespace catena::field {
 class StoreProcess {
  public:
   /// Starts a reader and opens the store; the description is that of the reader, validated. The Error is a complete message.
-  static Result<StoreProcess> start(const std::string& path);
+  static Result<StoreProcess> start(const std::string& path, const ArrayLayout& layout);
   StoreProcess(StoreProcess&& other) noexcept;
   StoreProcess& operator=(StoreProcess&&) = delete;
   ~StoreProcess();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Protocol between catena and the reader process of stores, catena-read-chunks: OME-Zarr and Zarr, HDF5, TIFF. Private to this module and
-/// to engine/io/chunks. The process lives as long as the store is open and answers one request at a time:
+/// Protocol between catena and the reader process of stores, catena-read-chunks: OME-Zarr and Zarr, HDF5, TIFF, arrays. Private to this
+/// module and to engine/io/chunks. The process lives as long as the store is open and answers one request at a time:
 ///   catena sends        a StoreRequest, followed by the path when a store is opened, as one packet of the socket
 ///   the reader writes   the description, or the voxels of a box, to the start of the shared memory
 ///   the reader sends    a StoreAnswer, followed by a message when it failed
@@ -18,7 +18,7 @@
 
 namespace catena::field {
 
-inline constexpr std::uint32_t kStoreProtocolVersion = 1;
+inline constexpr std::uint32_t kStoreProtocolVersion = 2;
 /// Descriptors in the reader: shared memory, socket.
 inline constexpr int kStoreMemoryFd = 3, kStoreSocketFd = 4;
 /// Size of the shared memory, and so the largest box of one request, bytes.
@@ -38,6 +38,18 @@ struct StoreBox {
 /// Kind of request. open: the description. read: the voxels of a box. list: one byte per brick of a level, 0: nothing is stored for it.
 enum class StoreAction : std::uint32_t { open, read, list };
 
+/// What the file of an array does not state itself: of a .raw file everything, of a .npy file the position. Plain bytes.
+struct ArrayLayout {
+  static constexpr std::size_t kMaxType = 16;
+  std::int32_t is_raw = 0;        ///< 1: a .raw file.
+  std::int32_t axes_xyz = 0;      ///< 1: the first index of a .npy file is x, not z.
+  Index3 shape{0, 0, 0};          ///< Voxels of a .raw file, x fastest.
+  char type[kMaxType] = {};       ///< Number type of a .raw file (engine/field/number_type.h), little-endian.
+  double spacing[3] = {1, 1, 1};  ///< World units per voxel.
+  double origin[3] = {0, 0, 0};   ///< World position of voxel (0, 0, 0).
+  bool operator==(const ArrayLayout&) const = default;
+};
+
 /// A request, plain bytes.
 struct StoreRequest {
   std::uint32_t version = kStoreProtocolVersion;
@@ -48,6 +60,7 @@ struct StoreRequest {
   StoreBox box;                      ///< For read.
   std::uint64_t memory_bytes = 0;    ///< Only for open: memory limit of the reader.
   std::uint64_t cpu_s = 0;           ///< CPU time that this request may take, seconds.
+  ArrayLayout layout;                ///< Only for open.
 };
 
 /// An answer, plain bytes.

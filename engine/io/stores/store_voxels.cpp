@@ -91,6 +91,13 @@ std::string state_of_files(const std::string& path) {
   return count == 0 || count == kMaxFiles ? std::string() : fmt::format("{} entries, {:016x}\n", count, sum);
 }
 
+/// Returns a line that changes with the layout of an array; empty: a store that describes itself.
+std::string layout_text(const ArrayLayout& layout) {
+  if (layout == ArrayLayout{}) return {};
+  return fmt::format("{} {} {} {} {} {:a} {:a}\n", layout.axes_xyz, layout.shape.x, layout.shape.y, layout.shape.z, layout.type,
+                     fmt::join(layout.spacing, " "), fmt::join(layout.origin, " "));
+}
+
 }  // namespace
 
 Index3 bricks_that_share_chunks(const Index3& size, const Index3& chunk, std::size_t voxel_bytes, double max_bytes) {
@@ -130,7 +137,7 @@ std::string identify_stored_grid(const Store& store, int grid, int step) {
   return identify_file(path_of_store(store)) +
          fmt::format("grid {}, step {}, newest file {}, {} files\n", all.grids[static_cast<std::size_t>(grid)].name, step,
                      all.newest_mtime_ns, all.opened_files.size()) +
-         state_of_files(store.path());
+         layout_text(store.layout()) + state_of_files(store.path());
 }
 
 VoxelSource voxels_of_level(const std::shared_ptr<Store>& store, int chosen, int at, int step) {
@@ -159,7 +166,7 @@ VoxelSource voxels_of_level(const std::shared_ptr<Store>& store, int chosen, int
 }
 
 Result<VoxelSource> open_stored_voxels(const LoadRequest& request) {
-  CATENA_TRY(const std::shared_ptr<Store> store, find_store(request.path));
+  CATENA_TRY(const std::shared_ptr<Store> store, find_store(request));
   CATENA_TRY(const int grid, find_grid(*store, request.grid));
   CATENA_TRY(const int step, find_step(*store, grid, request.step));
   return voxels_of_level(store, grid, 0, step);

@@ -19,6 +19,7 @@
 #include "engine/field/bricks/paged_grid.h"
 #include "engine/field/field_display_range.h"
 #include "engine/io/formats.h"
+#include "engine/io/stores/load_store.h"
 #include "engine/io/volume/crop.h"
 #include "engine/io/volume/downsample.h"
 #include "engine/io/volume/transform.h"
@@ -191,12 +192,13 @@ Result<AnyField> load(const LoadRequest& request) {
       return unknown_kind(request.path);
     }
     Result<AnyField> field = Error{};
+    const bool in_bricks = reader->is_array && is_read_in_bricks(request), reads_parts = in_bricks || reader->reads_parts;
     // a .vdb and a store are cropped by their readers, unless it is transformed first
-    const bool crops = request.crop && (request.transform || !(has_extension(request.path, ".vdb") || reader->reads_parts));
-    if (reader->load != nullptr) {
+    const bool crops = request.crop && (request.transform || !(has_extension(request.path, ".vdb") || reads_parts));
+    if (in_bricks || reader->load != nullptr) {
       LoadRequest whole = request;
       if (crops) whole.crop.reset();
-      field = reader->load(whole);
+      field = in_bricks ? load_stored(whole) : reader->load(whole);
     } else {
       CATENA_TRY(const DenseFile file, reader->open(request));
       field = load_dense(file);
@@ -219,7 +221,7 @@ Result<AnyField> load(const LoadRequest& request) {
       return Error{fmt::format("{}: the grid \"{}\" contains vectors, expected scalars for the interpolation \"nearest\"", request.path,
                                field->get()->name())};
     if (nearest && field->scalar->grid() != nullptr) field = with_interpolation(std::move(*field), request.interpolation);
-    if (request.level > 0 && !reader->reads_parts)
+    if (request.level > 0 && !reads_parts)
       return downsample_to_level(request.path, std::move(*field), request.level, request.interpolation == Interpolation::cubic);
     if (request.interpolation == Interpolation::cubic) return with_cubic_interpolation(std::move(*field), request.path);
     return field;

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Loads raw numbers, x fastest, little-endian, slice by slice; the layout comes from the scene. Voxel (0, 0, 0) is at `origin`.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <fstream>
 #include <vector>
 
-#include "engine/base/helper_process.h"
-#include "engine/base/system_failure.h"
-#include "engine/field/bricks/brick_source.h"
 #include "engine/field/number_type.h"
 #include "engine/io/formats.h"
+#include "engine/io/stores/store_voxels.h"
 #include "engine/io/volume/voxel_source.h"
 
 namespace catena::field {
@@ -124,39 +119,8 @@ static Result<DenseFile> open_raw(const LoadRequest& request) {
 /// Reads boxes of the file.
 static Result<VoxelSource> open_raw_voxels(const LoadRequest& request) {
   CATENA_TRY(const RawFile raw, check_raw(request));
-  const std::string& path = request.path;
-  const RawLayout& layout = *request.raw;
-  const Index3& n = layout.shape;
-  if (raw.components > 1) return Error{path + ": these are vectors, expected scalars for OME-Zarr"};
-  VoxelSource source{raw.name, raw.type, n, raw.mapping};
-  source.identity = identify_file(path) + fmt::format("{} x {} x {} {}\n", n.x, n.y, n.z, layout.type);
-  // whole rows: their voxels lie one after the other
-  constexpr std::size_t kMaxBytes = 16 << 20, kRowBytes = std::size_t{kBrickEdge} * kBrickEdge * kBrickEdge;
-  source.bricks_at_once.x = std::min((n.x - 1) / kBrickEdge + 1, static_cast<int>(kMaxBytes / (kRowBytes * raw.type.bytes)));
-  const auto file = std::make_shared<FileDescriptor>(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file->get() < 0) return system_error(path + ": cannot be opened", errno);
-  source.read = [file, path, n, bytes = raw.type.bytes](const Index3& lo, const Index3& size, std::span<std::byte> values) -> Outcome {
-    // the voxels of a piece follow each other in the file
-    const int rows = size.x == n.x ? size.y : 1;
-    const std::size_t piece = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(rows) * bytes;
-    std::byte* to = values.data();
-    for (int z = 0; z < size.z; ++z)
-      for (int y = 0; y < size.y; y += rows, to += piece) {
-        const std::uint64_t voxel =
-            (static_cast<std::uint64_t>(lo.z + z) * static_cast<std::uint64_t>(n.y) + static_cast<std::uint64_t>(lo.y + y)) *
-                static_cast<std::uint64_t>(n.x) +
-            static_cast<std::uint64_t>(lo.x);
-        for (std::size_t done = 0; done < piece;) {
-          const ssize_t got = ::pread(file->get(), to + done, piece - done, static_cast<off_t>(voxel * bytes + done));
-          if (got < 0 && errno == EINTR) continue;
-          if (got < 0) return system_error(path + ": cannot be read", errno);
-          if (got == 0) return Error{path + ": cannot be read to the end"};
-          done += static_cast<std::size_t>(got);
-        }
-      }
-    return Done{};
-  };
-  return source;
+  if (raw.components > 1) return Error{request.path + ": these are vectors, expected scalars for OME-Zarr"};
+  return open_stored_voxels(request);
 }
 
 static Result<std::vector<GridInfo>> describe_raw(const std::string& path, int) {
@@ -171,10 +135,13 @@ static Result<std::vector<GridInfo>> describe_raw(const std::string& path, int) 
 namespace catena::io {
 
 Format raw_format() {
-  return {
-      .name = "Raw numbers",
-      .extensions = {".raw"},
-      .volume = {.open = field::open_raw, .describe = field::describe_raw, .open_voxels = field::open_raw_voxels, .needs_layout = true}};
+  return {.name = "Raw numbers",
+          .extensions = {".raw"},
+          .volume = {.open = field::open_raw,
+                     .describe = field::describe_raw,
+                     .open_voxels = field::open_raw_voxels,
+                     .is_array = true,
+                     .needs_layout = true}};
 }
 
 }  // namespace catena::io

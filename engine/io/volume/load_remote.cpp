@@ -15,6 +15,10 @@
 #include "engine/io/formats.h"
 #include "engine/io/mesh/load_mesh.h"
 #include "engine/io/mesh/write_mesh.h"
+#include "engine/io/stores/describe_store.h"
+#include "engine/io/stores/load_store.h"
+#include "engine/io/stores/store.h"
+#include "engine/io/stores/store_voxels.h"
 #include "engine/io/volume/data_files.h"
 #include "engine/io/volume/write_box.h"
 
@@ -95,6 +99,17 @@ std::vector<double> times_answered(const std::string& path) {
   return file ? file->times : std::vector<double>();
 }
 
+/// Reads boxes of a .npy file of scalars of a type that stores have; another one is loaded.
+Result<VoxelSource> open_npy_voxels(const LoadRequest& request) {
+  return find_store(request) ? open_stored_voxels(request) : load_voxels(request);
+}
+
+Result<std::vector<GridInfo>> describe_npy(const std::string& path, int step) {
+  LoadRequest request;
+  request.path = path;
+  return is_read_in_bricks(request) ? describe_stored(path, step) : describe_by_loading(path, step);
+}
+
 constexpr VolumeReader kRemoteVolume{
     .load = load_answered, .describe = describe_with_reader, .units = units_answered, .times = times_answered};
 
@@ -116,7 +131,10 @@ std::vector<double> read_times(const std::string& path) {
 namespace catena::io {
 
 Format npy_format() {
-  return {.name = "NumPy array", .extensions = {".npy"}, .volume = {.load = field::load_answered, .describe = field::describe_by_loading}};
+  return {
+      .name = "NumPy array",
+      .extensions = {".npy"},
+      .volume = {.load = field::load_answered, .describe = field::describe_npy, .open_voxels = field::open_npy_voxels, .is_array = true}};
 }
 
 std::vector<Format> remote_formats() {

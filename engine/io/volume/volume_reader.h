@@ -45,6 +45,7 @@ struct VolumeReader {
   /// Opens a scalar grid that is read in boxes, at full resolution, whatever its size; null: the grid is loaded.
   Result<VoxelSource> (*open_voxels)(const LoadRequest& request) = nullptr;
   bool (*recognizes_folder)(const std::string& path) = nullptr;  ///< By its contents, whatever its name.
+  bool is_array = false;                                         ///< One array in rows: a large file is read in bricks, as a store.
   bool needs_layout = false;                                     ///< The file does not describe itself: LoadRequest::raw is required.
   bool reads_folders = false;  ///< Reads folders that no format recognizes, and DICOM files without an extension, too.
   bool reads_parts = false;    ///< `load` applies level and crop itself; `describe` does not read all values.

@@ -105,6 +105,10 @@ Result<VoxelSource> voxels_of_formula(const AnyField& formula, int resolution, d
 Result<VoxelSource> open_voxels(const LoadRequest& request) {
   const io::Format* format = io::find_reader(request.path, io::DataKind::volume);
   if (format != nullptr && format->volume.open_voxels != nullptr) return format->volume.open_voxels(request);
+  return load_voxels(request);
+}
+
+Result<VoxelSource> load_voxels(const LoadRequest& request) {
   CATENA_TRY(const AnyField field, load(request));
   const std::string own_name = field.get()->name();
   CATENA_TRY(VoxelSource source, voxels_of_grid(request.path, field, own_name.empty() ? io::file_stem(request.path) : own_name,

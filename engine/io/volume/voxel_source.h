@@ -40,8 +40,11 @@ struct VoxelSource {
   std::function<bool(const Index3& brick)> is_empty{};
 };
 
-/// Opens the grid that a request names, at its time step. Data in a store or a .raw file are read in boxes; other files are loaded.
+/// Opens the grid that a request names, at its time step. Data in a store, a .raw or .npy file are read in boxes; other files
+/// are loaded.
 Result<VoxelSource> open_voxels(const LoadRequest& request);
+/// Loads the grid that a request names, and makes the source of it.
+Result<VoxelSource> load_voxels(const LoadRequest& request);
 /// Makes the source of a loaded scalar grid: 32-bit floats with NaN where a voxel is invalid, or 32-bit integers of a label map. Error: the
 /// field is a vector field.
 Result<VoxelSource> voxels_of_grid(const std::string& path, const AnyField& field, const std::string& name, const Units& units);

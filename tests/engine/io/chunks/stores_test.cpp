@@ -8,6 +8,7 @@
 
 #include "engine/base/memory_limit.h"
 #include "engine/io/client.h"
+#include "engine/io/levels/level_cache.h"
 #include "engine/io/stores/load_store.h"
 #include "engine/io/stores/store.h"
 #include "engine/io/stores/store_bricks.h"
@@ -27,6 +28,8 @@ class Stores : public testing::Test {
  protected:
   ~Stores() override {
     set_memory_limit(std::nullopt);
+    set_max_whole_level(kNoMaxWholeLevel);
+    set_level_cache({}, {});
     reader_settings() = {};
   }
 
@@ -47,6 +50,22 @@ class Stores : public testing::Test {
           wrong += values[at++] != (is_missing ? fill : Volume::value(i, j, k));
         }
     return wrong;
+  }
+
+  /// Writes the volume as .npy: order F (a[z][y][x] with z fastest) or C, swapped or not.
+  static void write_npy(const std::string& path, const Volume& v, bool fortran, bool swapped) {
+    std::string head = fmt::format("{{'descr': '{}u2', 'fortran_order': {}, 'shape': ({}, {}, {}), }}", swapped ? '>' : '<',
+                                   fortran ? "True" : "False", v.z, v.y, v.x);
+    head.resize(118, ' ');
+    std::ofstream out(path, std::ios::binary);
+    out << std::string("\x93NUMPY\x01\x00\x76\x00", 10) << head;
+    for (int a = 0; a < (fortran ? v.x : v.z); ++a)
+      for (int j = 0; j < v.y; ++j)
+        for (int c = 0; c < (fortran ? v.z : v.x); ++c) {
+          const std::uint16_t value = fortran ? Volume::value(a, j, c) : Volume::value(c, j, a);
+          const char bytes[] = {static_cast<char>(value & 0xff), static_cast<char>(value >> 8)};
+          out << bytes[swapped ? 1 : 0] << bytes[swapped ? 0 : 1];
+        }
   }
 
   static Result<AnyField> load_grid(const std::string& path, int level = 0, std::optional<Box> crop = {}, const std::string& grid = {}) {
@@ -71,6 +90,44 @@ TEST_F(Stores, EveryVoxelOfZarr) {
                                         {codec, type, number % 2 != 0 ? "." : "/", fortran, 32, number % 2 != 0 ? "0.1.1" : "0/1/1"});
         EXPECT_EQ(count_wrong(path, {}, {{32, 32, 0}, {32, 32, 32}}), 0) << codec << fortran << type;
       }
+}
+
+TEST_F(Stores, EveryVoxelOfArrays) {
+  const Volume v;
+  for (const bool fortran : {false, true})
+    for (const bool swapped : {false, true}) {
+      write_npy(folder_ / "a.npy", v, fortran, swapped);
+      EXPECT_EQ(count_wrong(folder_ / "a.npy", v), 0) << fortran << swapped;
+    }
+  // the same voxels from a box in the middle, from the index of another order, and from numbers without a header
+  LoadRequest request;
+  request.path = folder_ / "a.npy";
+  request.axes_xyz = true;
+  std::vector<std::uint16_t> box(6);
+  EXPECT_TRUE(value_of(find_store(request))->read(0, 0, 0, {{5, 6, 7}, {1, 2, 3}}, std::as_writable_bytes(std::span(box))));
+  EXPECT_EQ(box[3], Volume::value(8, 7, 5));
+  std::ofstream(folder_ / "a.raw", std::ios::binary) << test::read_file(folder_ / "a.npy").substr(128);
+  request = {};
+  request.path = folder_ / "a.raw";
+  request.raw = RawLayout{{v.z, v.y, v.x}, Vec3(2.0), Vec3(1.0), "uint16"};
+  const auto raw = value_of(find_store(request));
+  EXPECT_TRUE(raw->read(0, 0, 0, {{7, 6, 5}, {1, 1, 1}}, std::as_writable_bytes(std::span(box).first(1))));
+  EXPECT_EQ(box[0] >> 8 | (box[0] & 0xff) << 8, Volume::value(5, 6, 7));
+  EXPECT_EQ(raw->description().grids[0].levels[0].mapping.world_from_index(Vec3(1, 0, 0)), Vec3(3, 1, 1));
+}
+
+TEST_F(Stores, LargeArraysAreReadInBricks) {
+  const Volume v;
+  write_npy(folder_ / "a.npy", v, false, false);
+  EXPECT_EQ(value_of(load_grid(folder_ / "a.npy")).paged, nullptr);
+  set_level_cache(folder_ / "cache", {});
+  set_max_whole_level(100'000);
+  const AnyField field = value_of(load_grid(folder_ / "a.npy"));
+  const auto crop = load_grid(folder_ / "a.npy", 1, Box{Vec3(30, 20, 10), Vec3(34, 24, 14)});
+  EXPECT_TRUE(field.paged && has(field.notes.front(), "level 1 of 2, 35 x 25 x 20 of 70 x 50 x 40 voxels: volumes"));
+  EXPECT_TRUE(crop) << test::message_of(crop);
+  std::filesystem::resize_file(folder_ / "a.npy", 1000);
+  EXPECT_TRUE(fails(load_grid(folder_ / "a.npy"), "expected 280000"));
 }
 
 TEST_F(Stores, EveryVoxelOfTiffAndHdf5) {
