@@ -144,7 +144,7 @@ Result<field::AnyField> resolve_label_surface(Scene& scene, Entity field) {
   if (!made) return with_cause(json::error_at(where, made.error().message), made.error());
   field::AnyField surface{*made, nullptr};
   if (of.paged)
-    scene.notes.push_back(fmt::format("field {}: links feel the level of {} that is loaded, not the finest one", in_quotes(name),
+    scene.notes.push_back(fmt::format("field {}: the surfaces of labels are made of the level of {} that is loaded, not of the finest one", in_quotes(name),
                                       in_quotes(label.label_map)));
   return surface;
 }

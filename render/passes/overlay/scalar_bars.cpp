@@ -81,9 +81,12 @@ std::vector<BarLayout> layout_scalar_bars(const Canvas& canvas, const Overlay& o
     if (bar.band_count > 0) length = std::min(length, std::round(canvas.px(kStepPt)) * bar.band_count);
     const double middle = std::round(0.5 * ((layout.upright ? size.y : size.x) - length));
     const double mark = tick + (layout.upright ? values.width : values.height + values.descent);
+    // the text below a legend may be wider than the legend
+    const double below = layout.upright ? canvas.measure(bar.overflow_text, kValueStyle).width : 0;
+    const double wider = std::max(0.0, below - thickness - mark - title);
     switch (bar.side) {
       case Side::right: {  // order: color ramp, values, title
-        const double x = std::floor(size.x - edge - title - mark - thickness);
+        const double x = std::floor(size.x - edge - title - mark - thickness - wider);
         layout.ramp = {x, middle, thickness, length};
         layout.title = {x + thickness + mark + canvas.px(kTitleGapPt), middle + 0.5 * length};
         layout.title_anchor = Anchor::left;
@@ -109,7 +112,7 @@ std::vector<BarLayout> layout_scalar_bars(const Canvas& canvas, const Overlay& o
         break;
       }
     }
-    edge += title + mark + thickness + canvas.px(kBetweenPt);
+    edge += title + mark + thickness + wider + canvas.px(kBetweenPt);
     places.push_back(layout);
   }
   return places;
