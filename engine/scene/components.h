@@ -489,6 +489,17 @@ struct Fog {
   double max_opacity = 0.8;         ///< Share of the fog color at `far`, 0 to 1
 };
 
+/// Light from all sides.
+struct EnvironmentLight {
+  Color sky{0.2f, 0.2f, 0.2f}, ground{0.2f, 0.2f, 0.2f};  ///< From above (+z) and from below; in between they are mixed
+};
+
+/// Occlusion of the environment's light.
+struct AmbientOcclusion {
+  double reach = 0;     ///< Distance at which an occluder counts by 1/e, world units; 0: a tenth of the diagonal
+  double strength = 1;  ///< Share of the occlusion that is applied, 0 to 1
+};
+
 /// A directional light. Without any light the scene has a headlight.
 struct Light {
   Vec3 direction{0.0, 0.0, 1.0};  ///< Toward the light, world axes; with follows_camera: right, up, toward the camera

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Reads the spatial references "bounding_box", "axes", "ground", "fog" (each true, false or an object), and the list "lights".
+/// Reads the spatial references "bounding_box", "axes", "ground", "fog" (each true, false or an object).
 #include "engine/base/camera_limits.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
@@ -94,32 +94,6 @@ const Table<Fog>& fog_table() {
   return table;
 }
 
-const Table<Light>& light_table() {
-  static const auto table = [] {
-    Table<Light> t;
-    t.bind(schema::direction("direction", "Direction towards the light; with `\"fixed_to\": \"camera\"` as right, up, towards the camera.")
-               .required(),
-           &Light::direction);
-    t.bind(schema::color("color", "Colour of the light."), &Light::color);
-    t.bind(schema::number("intensity", "", "Factor on the colour of the light.").non_negative(), &Light::intensity);
-    const Key fixed = schema::choice("fixed_to", {"scene", "camera"}, "Frame in which the direction of the light is fixed.");
-    t.bind(fixed, &Light::follows_camera);
-    return t;
-  }();
-  return table;
-}
-
-Outcome read_lights(Scene& scene, const json::Node& node) {
-  return each_item(node, [&](const json::Node& item) -> Outcome {
-    if (scene.lights.size() == kMaxLights)
-      return json::error_at(item, "there are more than " + std::to_string(kMaxLights) + " lights; that many at most were expected");
-    Light light;
-    CATENA_CHECK(light_table().read(scene, item, light));
-    scene.lights.push_back(light);
-    return Done{};
-  });
-}
-
 }  // namespace
 
 Part bounding_box_part() {
@@ -143,12 +117,5 @@ Part fog_part() {
            fog_table().keys()},
           [](Scene& scene, const json::Node& node) { return read_on_off(scene, node, fog_table(), scene.fog); }};
 }
-
-Part lights_part() {
-  return {make_list_component("lights", "Directional lights. Default: a headlight.", light_table(), static_cast<int>(kMaxLights)),
-          read_lights};
-}
-
-std::string to_json(const Light& light) { return light_table().write({}, light); }
 
 }  // namespace catena::scene

@@ -167,6 +167,38 @@ FogItem fog_of(const scene::Fog& fog, const Bounds& drawn, const FramePacket& pa
   return item;
 }
 
+/// Lights, environment, occlusion and shadows. An image without any light has a black one.
+void extract_light(const scene::Scene& scene, FramePacket& packet) {
+  for (const scene::Light& light : scene.lights) {
+    const auto i = static_cast<float>(light.intensity);
+    packet.lights.push_back({light.direction, {i * light.color.r, i * light.color.g, i * light.color.b}, light.follows_camera});
+  }
+  // those that cast shadows come first
+  if (scene.shadows) std::ranges::stable_partition(packet.lights, [](const LightItem& light) { return !light.camera_relative; });
+  IlluminationItem& item = packet.illumination;
+  item.shadows = scene.shadows;
+  item.bounds = drawn_bounds(packet);
+  if (scene.ambient_occlusion) {
+    constexpr double kReachShare = 0.1;
+    const double own = packet.size_scale * scene.ambient_occlusion->reach;
+    item.occlusion_reach = own > 0 ? own : item.bounds.empty() ? 0 : kReachShare * item.bounds.diagonal();
+    item.occlusion_strength = scene.ambient_occlusion->strength;
+  }
+  // occlusion is seen by the environment's share of the light
+  constexpr float kOccludedShare = 0.5f, kHeadlightBeside = 0.6f;
+  if (scene.environment_light) {
+    item.sky = scene.environment_light->sky;
+    item.ground = scene.environment_light->ground;
+  } else if (scene.ambient_occlusion) {
+    item.sky = item.ground = {kOccludedShare, kOccludedShare, kOccludedShare};
+  }
+  if (!scene.lights.empty()) return;
+  if (!scene.has_headlight)
+    packet.lights.push_back({{0, 0, 1}, {0, 0, 0}, true});
+  else if (scene.ambient_occlusion && !scene.environment_light)
+    packet.lights.push_back({{0, 0, 1}, {kHeadlightBeside, kHeadlightBeside, kHeadlightBeside}, true});
+}
+
 }  // namespace
 
 void update_fog(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
@@ -188,10 +220,7 @@ void extract_environment(const scene::Scene& scene, const Bounds& drawn, FramePa
   update_box_lines(scene, drawn, packet);
   if (scene.ground) add_ground(scene, drawn, packet);
   update_fog(scene, drawn, packet);
-  for (const scene::Light& light : scene.lights) {
-    const auto i = static_cast<float>(light.intensity);
-    packet.lights.push_back({light.direction, {i * light.color.r, i * light.color.g, i * light.color.b}, light.follows_camera});
-  }
+  extract_light(scene, packet);
 }
 
 }  // namespace catena::render

@@ -52,6 +52,26 @@ struct LightItem {
   bool operator==(const LightItem&) const = default;
 };
 
+/// Light from all sides, and what `lights` cast.
+struct IlluminationItem {
+  Color sky{0.2f, 0.2f, 0.2f}, ground{0.2f, 0.2f, 0.2f};  ///< light from above (+z) and from below; in between they are mixed
+  double occlusion_reach = 0;                             ///< an occluder at this distance counts by 1/e, display units; 0: no occlusion
+  double occlusion_strength = 1;                          ///< share of the occlusion that is applied
+  bool shadows = false;                                   ///< the first kMaxShadows lights cast shadows, if they are fixed in the world
+  Bounds bounds{};                                        ///< of what casts shadows, display units
+  /// Returns whether the environment is the default one.
+  bool is_default() const { return sky == IlluminationItem{}.sky && ground == IlluminationItem{}.ground; }
+  /// Returns whether items darken each other.
+  bool is_cast() const { return occlusion_reach > 0 || shadows; }
+  bool operator==(const IlluminationItem& other) const {
+    return sky == other.sky && ground == other.ground && occlusion_reach == other.occlusion_reach &&
+           occlusion_strength == other.occlusion_strength && shadows == other.shadows && bounds.lo == other.bounds.lo &&
+           bounds.hi == other.bounds.hi;
+  }
+};
+/// Largest number of lights that cast shadows.
+inline constexpr std::size_t kMaxShadows = 3;
+
 /// Depth fog: its opacity is 0 up to the view depth `near` and max_opacity from `far` on.
 struct FogItem {
   Color color;                                  ///< fog color
@@ -310,6 +330,7 @@ struct FramePacket {
   Overlay overlay;                              ///< text and marks over the image
   std::vector<Plane> clip_planes;               ///< a point is visible if it is inside all of them; at most kMaxClipPlanes
   std::vector<LightItem> lights;                ///< empty: a headlight; at most kMaxLights
+  IlluminationItem illumination;                ///< environment's light, occlusion, shadows
   std::optional<FogItem> fog;                   ///< none: no fog
   double vignette = 0;  ///< strength of the vignette that reduces the peripheral view while the view moves around the user, 0..1; 0: off
   EnvironmentItems environment;     ///< bounding boxes, axes, the ground

@@ -74,7 +74,8 @@ Result<const vk::Pipeline*> IsosurfacePass::pipeline(vk::Device& device, std::ui
     vk::GraphicsInfo info;
     info.vertex = kIsosurfaceVertexShader;
     info.fragment = kIsosurfaceFragmentShader;
-    info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::texture}};
+    info.layout_bindings = {
+        {0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::texture}, {vk::kSharedBinding, vk::DescriptorKind::sampled}};
     add_grid_layout(info.layout_bindings, 1);
     info.constants = {flags, has_cells ? 1u : 0u};
     info.colors = opaque_formats();

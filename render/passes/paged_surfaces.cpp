@@ -91,7 +91,10 @@ Result<const vk::Pipeline*> PagedSurfaces::pipeline(vk::Device& device, bool is_
     vk::GraphicsInfo info;
     info.vertex = kPagedSurfaceVertexShader;
     info.fragment = kPagedSurfaceFragmentShader;
-    info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {3, vk::DescriptorKind::texture}, {5, vk::DescriptorKind::texture}};
+    info.layout_bindings = {{0, vk::DescriptorKind::uniform},
+                            {3, vk::DescriptorKind::texture},
+                            {5, vk::DescriptorKind::texture},
+                            {vk::kSharedBinding, vk::DescriptorKind::sampled}};
     add_page_layout(info.layout_bindings);
     info.constants.resize(7);
     info.constants[6] = is_masked;

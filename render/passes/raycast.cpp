@@ -341,8 +341,8 @@ bool supports_fast_raycast(const vk::Device& device, const FramePacket& packet) 
            item.grid->interpolation() == field::Interpolation::linear && FastVolumeResources::can_pack(device, *item.grid) &&
            FastVolumeResources::can_quantize(item);
   };
-  return (packet.volumes.size() == 1 || are_channels(packet)) && !packet.fog && !needs_layers(packet) &&
-         surfaces_of(packet) == 0 && std::ranges::all_of(packet.volumes, supports);
+  return (packet.volumes.size() == 1 || are_channels(packet)) && !packet.fog && !needs_layers(packet) && surfaces_of(packet) == 0 &&
+         std::ranges::all_of(packet.volumes, supports);
 }
 
 bool uses_raycast(const FramePacket& packet) { return !packet.volumes.empty() || needs_layers(packet) || surfaces_of(packet) > 0; }
@@ -354,7 +354,7 @@ bool rays_match(const FramePacket& a, const FramePacket& b) {
   };
   return a.view == b.view && a.eyes == b.eyes && a.packing == b.packing && a.width == b.width && a.height == b.height &&
          a.volumes == b.volumes && same(a.isosurfaces, b.isosurfaces) && same(a.meshes, b.meshes) && same(a.slices, b.slices) &&
-         a.clip_planes == b.clip_planes && a.lights == b.lights && a.fog == b.fog;
+         a.clip_planes == b.clip_planes && a.lights == b.lights && a.illumination == b.illumination && a.fog == b.fog;
 }
 
 const PassEntry kRaycastPass{"raycast", [](const Frame& frame) { return uses_raycast(frame.packet) || !frame.layers.empty(); },

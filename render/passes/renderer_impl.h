@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "render/light/light_grid.h"
 #include "render/passes/pass.h"
 #include "render/passes/renderer.h"
 #include "render/passes/stereo_compose.h"
@@ -16,6 +17,7 @@ namespace catena::render {
 struct Renderer::Impl {
   std::unique_ptr<vk::Device> device;  // declared first, destroyed last
   std::optional<ResidencyManager> residency;
+  std::optional<LightGrid> light;
   Targets targets;
   std::vector<vk::Image>
       /// target::volume of the eyes that are not being rendered; the first eye's volume is in `targets` at the end of a frame.

@@ -32,7 +32,8 @@ class SpherePass final : public Pass {
     vk::GraphicsInfo info;
     info.vertex = kSphereVertexShader;
     info.fragment = kSphereFragmentShader;
-    info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::buffer}};
+    info.layout_bindings = {
+        {0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::buffer}, {vk::kSharedBinding, vk::DescriptorKind::sampled}};
     info.colors = opaque_formats();
     info.has_depth = true;
     CATENA_TRY(self->pipeline_, vk::Pipeline::create(device, info));

@@ -54,7 +54,8 @@ Result<const vk::Pipeline*> SurfaceColorPass::pipeline(vk::Device& device, std::
     info.layout_bindings = {{0, vk::DescriptorKind::uniform},
                             {1, vk::DescriptorKind::buffer},
                             {2, vk::DescriptorKind::texture},
-                            {kIds, vk::DescriptorKind::texture}};
+                            {kIds, vk::DescriptorKind::texture},
+                            {vk::kSharedBinding, vk::DescriptorKind::sampled}};
     add_grid_layout(info.layout_bindings, 2);
     info.constants = {flags};
     add_table_flags(info.constants, lut);

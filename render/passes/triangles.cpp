@@ -49,6 +49,7 @@ Result<vk::Binding> Triangles::frame_binding(vk::Device& device, const CameraRay
 void set_triangle_stage(vk::GraphicsInfo& info) {
   info.vertex = kTrianglesVertexShader;
   info.layout_bindings.push_back({0, vk::DescriptorKind::uniform});
+  info.layout_bindings.push_back({vk::kSharedBinding, vk::DescriptorKind::sampled});
   info.vertex_stride = sizeof(Vertex);
   info.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
                      {1, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},

@@ -165,7 +165,8 @@ Result<const vk::Pipeline*> TubeDrawer::pipeline(std::uint32_t sides) {
   std::optional<vk::Pipeline>& made = sides > 0 ? tubes_ : ribbons_;
   if (made) return &*made;
   vk::GraphicsInfo info;
-  info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::buffer}};
+  info.layout_bindings = {
+      {0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::buffer}, {vk::kSharedBinding, vk::DescriptorKind::sampled}};
   info.colors = opaque_formats();
   info.has_depth = true;
   info.vertex = sides > 0 ? std::span<const std::uint32_t>(kTubesVertexShader) : kRibbonsVertexShader;

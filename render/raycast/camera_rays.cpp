@@ -26,6 +26,47 @@ shared::FogData fog_of(const CameraRays& rays) {
   return fog;
 }
 
+/// Coordinates along the rays of pixels, in a space that is an affine map of the world.
+struct AlongRays {
+  glm::vec3 origin{}, origin_x{}, origin_y{}, direction{}, direction_x{}, direction_y{};
+};
+
+/// `from_world`: the linear part of the map. `at_reference`: coordinates of the point of the view axis at the reference depth.
+AlongRays along_rays(const CameraRays& rays, const Mat3& from_world, const Vec3& at_reference) {
+  const Camera& camera = rays.camera;
+  // steps of one pixel to the right and down: at depth 1 (perspective) or at any depth (orthographic)
+  const Vec3 x = from_world * (camera.right * (camera.half_width / (0.5 * camera.width)));
+  const Vec3 y = from_world * (camera.up * (-camera.half_height / (0.5 * camera.height)));
+  AlongRays along;
+  along.origin = narrow(at_reference);
+  along.direction = narrow(from_world * rays.forward);
+  if (camera.orthographic) {
+    along.origin_x = narrow(x);
+    along.origin_y = narrow(y);
+  } else {
+    along.origin_x = narrow(rays.reference_depth * x);
+    along.origin_y = narrow(rays.reference_depth * y);
+    along.direction_x = narrow(x);
+    along.direction_y = narrow(y);
+  }
+  return along;
+}
+
+/// Returns the part of the light grid's data that rays and triangles share.
+shared::LightGridData light_grid_of(const LightPlace& place) {
+  shared::LightGridData data{};
+  data.is_on = place.version > 0 ? 1 : 0;
+  data.open_gain = float(1 / place.open_share);
+  data.version = place.version;
+  return data;
+}
+
+Mat3 light_from_world(const LightPlace& place) {
+  Mat3 scale(0.0);
+  for (int a = 0; a < 3; ++a) scale[a][a] = 1 / place.size[a];
+  return scale;
+}
+
 }  // namespace
 
 CameraRays CameraRays::make(const FramePacket& packet, const Bounds& bounds, const Bounds& of_rays) {
@@ -34,6 +75,7 @@ CameraRays CameraRays::make(const FramePacket& packet, const Bounds& bounds, con
   rays.forward = -rays.camera.back;
   rays.clip_planes = packet.clip_planes;
   rays.lights = packet.lights;
+  rays.illumination = packet.illumination;
   rays.fog = packet.fog;
   if (bounds.empty()) return rays;
   rays.reference_depth = std::max(0.0, rays.view_depth((of_rays.empty() ? bounds : of_rays).center()));
@@ -66,6 +108,18 @@ shared::FrameData CameraRays::frame_data() const {
   for (std::size_t i = 0; i < clip_planes.size(); ++i) f.clips[i] = clip_data(clip_planes[i]);
   f.light_count = std::uint32_t(lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) f.lights[i] = {narrow(towards(camera, lights[i])), color_of(lights[i].color)};
+  f.sky = color_of(illumination.sky);
+  f.ground = color_of(illumination.ground);
+  f.zenith = {0, 0, 1};
+  f.light_grid = light_grid_of(light_place);
+  if (light_place.version > 0) {
+    const Mat3 scale = light_from_world(light_place);
+    const AlongRays along = along_rays(*this, scale, scale * (camera.position + forward * reference_depth - light_place.lo));
+    shared::LightGridData& grid = f.light_grid;
+    grid.origin = along.origin, grid.origin_x = along.origin_x, grid.origin_y = along.origin_y;
+    grid.direction = along.direction, grid.direction_x = along.direction_x, grid.direction_y = along.direction_y;
+    grid.from_normal = glm::mat3(light_place.surface_offset * scale);
+  }
   f.fog = fog_of(*this);
   return f;
 }
@@ -74,23 +128,10 @@ shared::GridData CameraRays::grid_data(const ResidentGrid& resident, const field
   const field::Mapping& mapping = resident.downsampled ? resident.downsampled->mapping() : whole;
   const Mat3& inverse = mapping.index_from_world_linear;
   const Vec3 origin(resident.origin.x, resident.origin.y, resident.origin.z);
-  // steps of one pixel to the right and down, in index space: at depth 1 (perspective) or at any depth (orthographic)
-  const Vec3 x = inverse * (camera.right * (camera.half_width / (0.5 * camera.width)));
-  const Vec3 y = inverse * (camera.up * (-camera.half_height / (0.5 * camera.height)));
-  const Vec3 z = inverse * forward;
-  const Vec3 at_reference = mapping.index_from_world(camera.position + forward * reference_depth) - origin;
+  const AlongRays along = along_rays(*this, inverse, mapping.index_from_world(camera.position + forward * reference_depth) - origin);
   shared::GridData g{};
-  g.origin = narrow(at_reference);
-  g.direction = narrow(z);
-  if (camera.orthographic) {
-    g.origin_x = narrow(x);
-    g.origin_y = narrow(y);
-  } else {
-    g.origin_x = narrow(reference_depth * x);
-    g.origin_y = narrow(reference_depth * y);
-    g.direction_x = narrow(x);
-    g.direction_y = narrow(y);
-  }
+  g.origin = along.origin, g.origin_x = along.origin_x, g.origin_y = along.origin_y;
+  g.direction = along.direction, g.direction_x = along.direction_x, g.direction_y = along.direction_y;
   g.lo = narrow(resident.box_lo);
   g.hi = narrow(resident.box_hi);
   g.domain_lo = resident.downsampled ? narrow(resident.domain_lo) : g.lo;
@@ -121,6 +162,17 @@ shared::MeshFrameData CameraRays::mesh_frame_data(const Vec3& origin) const {
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const Vec3 l = towards(camera, lights[i]);
     m.lights[i] = {{float(dot(l, camera.right)), float(dot(l, camera.up)), float(dot(l, forward))}, color_of(lights[i].color)};
+  }
+  const glm::dmat3 world_from_view(camera.right, camera.up, forward);
+  m.sky = color_of(illumination.sky);
+  m.ground = color_of(illumination.ground);
+  m.zenith = {float(camera.right.z), float(camera.up.z), float(forward.z)};
+  m.light_grid = light_grid_of(light_place);
+  if (light_place.version > 0) {
+    const Mat3 scale = light_from_world(light_place);
+    m.light_grid.from_view = glm::mat3(scale * world_from_view);
+    m.light_grid.origin = narrow(scale * (camera.position - light_place.lo));
+    m.light_grid.from_normal = glm::mat3(light_place.surface_offset * scale * world_from_view);
   }
   m.fog = fog_of(*this);
   m.clip_count = std::uint32_t(clip_planes.size());

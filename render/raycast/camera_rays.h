@@ -13,6 +13,14 @@
 
 namespace catena::render {
 
+/// Place of the light that arrives in the scene (render/light): a box along the world's axes.
+struct LightPlace {
+  Vec3 lo{0.0}, size{0.0};    ///< display units
+  double surface_offset = 0;  ///< distance from a surface, along its normal, at which light is looked up
+  double open_share = 1;      ///< share of the environment that arrives there, if the surface is even and nothing else is near
+  std::uint32_t version = 0;  ///< changes with the light; 0: nothing is cast
+};
+
 /// Camera, clip planes, lights and fog of one image, and the depth range of its rays.
 struct CameraRays {
   Camera camera;
@@ -24,6 +32,8 @@ struct CameraRays {
   double depth_near = 1, depth_far = 2;
   std::vector<Plane> clip_planes;
   std::vector<LightItem> lights;
+  IlluminationItem illumination;
+  LightPlace light_place;
   std::optional<FogItem> fog;
   std::uint32_t spacing = 1;  ///< fragment (i, j) is the ray of pixel (spacing i, spacing j)
 

@@ -168,10 +168,17 @@ Result<const vk::Pipeline*> FastVolumeRaycast::pipeline(const Constants& constan
     info.fragment = has_channels ? vk::Spirv(kPagedChannelsFragmentShader)
                     : is_paged   ? vk::Spirv(kPagedVolumeFragmentShader)
                                  : vk::Spirv(kFastVolumeFragmentShader);
-    info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::uniform}, {2, vk::DescriptorKind::texture},
-                            {3, vk::DescriptorKind::texture}, {4, vk::DescriptorKind::texture}, {5, vk::DescriptorKind::texture},
-                            {6, vk::DescriptorKind::texture}, {7, vk::DescriptorKind::texture}, {8, vk::DescriptorKind::sampled},
-                            {9, vk::DescriptorKind::texture}};
+    info.layout_bindings = {{0, vk::DescriptorKind::uniform},
+                            {1, vk::DescriptorKind::uniform},
+                            {2, vk::DescriptorKind::texture},
+                            {3, vk::DescriptorKind::texture},
+                            {4, vk::DescriptorKind::texture},
+                            {5, vk::DescriptorKind::texture},
+                            {6, vk::DescriptorKind::texture},
+                            {7, vk::DescriptorKind::texture},
+                            {8, vk::DescriptorKind::sampled},
+                            {9, vk::DescriptorKind::texture},
+                            {vk::kSharedBinding, vk::DescriptorKind::sampled}};
     if (is_paged) add_page_layout(info.layout_bindings);
     info.constants.assign(constants.begin(), constants.end());
     // full resolution goes to the volume target, coarser ray grids to their own images
@@ -215,7 +222,7 @@ Result<shared::FrameData> FastVolumeRaycast::write_frame(const CameraRays& rays,
   frame.grids[0].is_clipped = resources_.items().front().is_clipped;
   frame.termination = float(settings.termination);
   frame.step_world = float(settings.step_voxels * mapping.min_voxel_edge());
-  has_lights_ = !rays.lights.empty();
+  lights_ = rays.light_place.version > 0 ? 2 : !rays.lights.empty() || !rays.illumination.is_default() ? 1 : 0;
   CATENA_CHECK(vk::write_uniform(*device_, frame_, frame));
   return frame;
 }
@@ -234,7 +241,7 @@ Outcome FastVolumeRaycast::draw(vk::Commands& commands, RayGrid& level, const Dr
              pipeline({draw.shading, leaps, draw.opaque_depth != nullptr, draw.coarser != nullptr,
                        (draw.marches ? 1u : 0u) | (draw.target->info().format == kVolumeFormat ? 2u : 0u), resources_.is_regular(),
                        resources_.is_masked(), draw.half_opacity_depth, std::uint32_t(resources_.items().size()), shaded_channels(),
-                       resources_.is_dithered(), has_lights_},
+                       resources_.is_dithered(), lights_},
                       draw.tiles != Tiles::all));
   vk::ColorTarget color{draw.target, std::array<float, 4>{0, 0, 0, 0}};
   if (draw.tiles != Tiles::all) color.clear.reset();

@@ -133,7 +133,7 @@ class FastVolumeRaycast {
   std::array<vk::Pipeline, 2> interpolate_pipelines_;  // all pixels, dirty tiles only
   vk::Buffer interpolate_data_;
   vk::Image placeholder_tiles_;
-  bool has_lights_ = false;  ///< of the image's rays
+  std::uint32_t lights_ = 0;  ///< constant HAS_LIGHTS of the image's rays
   bool reused_previous_ = false;
   bool marched_half_ = false, marched_full_ = false;  ///< blocks were marched in the last call
 };

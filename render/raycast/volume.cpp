@@ -63,7 +63,7 @@ Result<const vk::Pipeline*> VolumeRaycast::pipeline(const PipelineKey& kind) {
   if (pipeline) return &pipeline;
   vk::GraphicsInfo info;
   info.vertex = kind.dirty_only ? vk::Spirv(kVolumeTilesShader) : vk::Spirv(kVolumeVertexShader);
-  info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {2, vk::DescriptorKind::texture}};
+  info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {2, vk::DescriptorKind::texture}, {vk::kSharedBinding, vk::DescriptorKind::sampled}};
   if (kind.dirty_only) info.layout_bindings.push_back({kChanged, vk::DescriptorKind::texture});
   if (!kind.is_layers_only()) info.layout_bindings.push_back({1, vk::DescriptorKind::buffer});
   add_grid_layout(info.layout_bindings, kind.grid_slots());

@@ -150,8 +150,11 @@ void Commands::begin_pass(std::span<const ColorTarget> colors, const DepthTarget
 void Commands::end_pass() { vkCmdEndRendering(buffer_); }
 void Commands::set_scissor(const VkRect2D& area) { vkCmdSetScissor(buffer_, 0, 1, &area); }
 
-void Commands::bind(const Pipeline& pipeline, std::span<const Binding> bindings) {
+void Commands::bind(const Pipeline& pipeline, std::span<const Binding> own) {
   vkCmdBindPipeline(buffer_, pipeline.bind_point(), pipeline.handle());
+  std::vector<Binding> bindings(own.begin(), own.end());
+  if (pipeline.uses_shared_image())
+    bindings.push_back({kSharedBinding, DescriptorKind::sampled, nullptr, device_->shared_image(), device_->shared_sampler()});
   std::vector<VkDescriptorBufferInfo> buffers(bindings.size());
   std::vector<VkDescriptorImageInfo> images(bindings.size());
   std::vector<VkWriteDescriptorSet> writes;

@@ -100,7 +100,7 @@ class Commands {
   void end_pass();
   void set_scissor(const VkRect2D& area);
   /// Binds a pipeline and pushes its descriptors.
-  void bind(const Pipeline& pipeline, std::span<const Binding> bindings);
+  void bind(const Pipeline& pipeline, std::span<const Binding> own);
   void draw_triangle();                                        ///< one triangle that covers the image
   void draw(std::uint32_t vertices, std::uint32_t instances);  ///< without buffers
   void draw_indexed(const Buffer& vertices, const Buffer& indices, std::uint32_t index_count);

@@ -23,6 +23,8 @@
 
 namespace catena::render::vk {
 
+class Image;             ///< resources.h
+class Sampler;           ///< resources.h
 class TimestampQueries;  ///< timestamp_query.h
 
 /// SPIR-V words of a shader.
@@ -139,6 +141,13 @@ class CATENA_EXPORT Device {
   /// Returns vkCmdPushDescriptorSetKHR of this device.
   PFN_vkCmdPushDescriptorSetKHR push_descriptors() const { return push_descriptors_; }
 
+  /// Sets the image that Commands::bind() adds to the bindings of every pipeline which has kSharedBinding; both must outlive its use.
+  void share(const Image& image, const Sampler& sampler) { shared_image_ = &image, shared_sampler_ = &sampler; }
+  /// Returns the image; null: none.
+  const Image* shared_image() const { return shared_image_; }
+  /// Returns its sampler.
+  const Sampler* shared_sampler() const { return shared_sampler_; }
+
   /// Returns the timeline semaphore.
   VkSemaphore timeline() const { return timeline_; }
   /// Returns the timeline value that the last submission signals.
@@ -187,6 +196,8 @@ class CATENA_EXPORT Device {
   std::function<VkResult(DriverCall)> inject_failure_;
   bool is_lost_ = false;
   PFN_vkCmdPushDescriptorSetKHR push_descriptors_ = nullptr;
+  const Image* shared_image_ = nullptr;
+  const Sampler* shared_sampler_ = nullptr;
 };
 
 /// Returns one line per device: name, type, Vulkan version, driver.

@@ -99,6 +99,7 @@ VkDescriptorType descriptor_type(DescriptorKind resource) {
 Outcome Pipeline::create_layout(std::span<const LayoutBinding> slots, VkShaderStageFlags stages) {
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (const LayoutBinding& slot : slots) bindings.push_back({slot.binding, descriptor_type(slot.kind), 1, stages, nullptr});
+  uses_shared_image_ = std::ranges::any_of(slots, [](const LayoutBinding& slot) { return slot.binding == kSharedBinding; });
   VkDescriptorSetLayoutCreateInfo set{};
   set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
   set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
@@ -213,6 +214,7 @@ void Pipeline::swap(Pipeline& other) noexcept {
   std::swap(layout_, other.layout_);
   std::swap(pipeline_, other.pipeline_);
   std::swap(bind_point_, other.bind_point_);
+  std::swap(uses_shared_image_, other.uses_shared_image_);
 }
 
 Pipeline::~Pipeline() {

@@ -21,6 +21,8 @@ enum class DescriptorKind {
 };  ///< sampled: image with a sampler; texture: texel fetches only
 /// Returns the Vulkan descriptor type.
 VkDescriptorType descriptor_type(DescriptorKind resource);
+/// Binding of the image that all pipelines share (Device::share), with a sampler.
+inline constexpr std::uint32_t kSharedBinding = 63;
 /// Binding number and kind in a pipeline layout.
 struct LayoutBinding {
   std::uint32_t binding = 0;
@@ -80,6 +82,8 @@ class Pipeline {
   VkPipeline handle() const { return pipeline_; }
   VkPipelineLayout layout() const { return layout_; }
   VkPipelineBindPoint bind_point() const { return bind_point_; }
+  /// Returns whether its layout has kSharedBinding.
+  bool uses_shared_image() const { return uses_shared_image_; }
   explicit operator bool() const { return pipeline_ != VK_NULL_HANDLE; }
 
  private:
@@ -90,6 +94,7 @@ class Pipeline {
   VkPipelineLayout layout_ = VK_NULL_HANDLE;
   VkPipeline pipeline_ = VK_NULL_HANDLE;
   VkPipelineBindPoint bind_point_ = VK_PIPELINE_BIND_POINT_GRAPHICS;
+  bool uses_shared_image_ = false;
 };
 
 }  // namespace catena::render::vk

@@ -7,6 +7,7 @@ layout(constant_id = 8) const int COLOR_GRID_COUNT = 0;  // color grids: the gri
 #include "shaders/lib/grids.glsl"
 #include "shaders/lib/rays.glsl"
 #include "shaders/lib/lighting.glsl"
+#include "shaders/lib/light_grid.glsl"
 #include "shaders/lib/surface.glsl"
 #include "shaders/lib/raycast.glsl"
 
@@ -31,7 +32,9 @@ void shade_surface(int s, int surface, float t) {
   if (s < SURFACE_COUNT && s == surface && transmittance > frame.termination) {
     const vec3 p = clamp(rays[i].origin + t * rays[i].direction, frame.grids[i].lo, frame.grids[i].hi);
     const float opacity = frame.grids[i].opacity;
-    color_sum += transmittance * opacity * fogged(lit(resolve_color(i, t, frame.grids[i].color), world_gradient(i, p), view_direction), t);
+    const vec3 gradient = world_gradient(i, p);
+    receive_on_surface(light_at(light_q, t), gradient, view_direction);
+    color_sum += transmittance * opacity * fogged(lit(resolve_color(i, t, frame.grids[i].color), gradient, view_direction), t);
     surface_transmittance *= 1.0 - opacity;
     transmittance *= 1.0 - opacity;
     const float past = t + 1e-3 / max(max(abs(rays[i].direction.x), abs(rays[i].direction.y)), abs(rays[i].direction.z));

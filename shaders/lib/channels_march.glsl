@@ -81,11 +81,14 @@ mat3x4 shading_gradients(RaySample a, RaySample b, vec4 middle) {
 
 // Returns the light on a channel by its gradient. `along_ray`: unit vector, world axes.
 Lighting light_of_channel(int channel, mat3x4 gradients, vec3 along_ray) {
-  if ((SHADED_CHANNELS >> channel & 1u) == 0u) return Lighting(vec3(1.0), vec3(0.0));
+  if ((SHADED_CHANNELS >> channel & 1u) == 0u) {
+    if (HAS_LIGHTS == 2u) return scattered_light();
+    return Lighting(vec3(1.0), vec3(0.0));
+  }
   const vec3 normal = frame.grids[0].world_gradient * vec3(gradients[0][channel], gradients[1][channel], gradients[2][channel]);
   if (HAS_LIGHTS != 0u) return lighting_of(normal, -along_ray);
   const float along = dot(normal, along_ray), length2 = dot(normal, normal);
-  return length2 > 0.0 ? headlight_at(abs(along) * inversesqrt(length2), along * along / length2) : kOnlyAmbient;
+  return length2 > 0.0 ? headlight_at(abs(along) * inversesqrt(length2), along * along / length2) : without_normal();
 }
 
 // Returns the premultiplied color along the ray of pixel coordinate q, up to depth `end`; with HALF_OPACITY_DEPTH that depth, and alpha 1
@@ -126,6 +129,7 @@ vec4 march_packed(vec2 q, float end) {
       mat3x4 gradients = mat3x4(0.0);
       if (SHADED != 0u && sigma.x + sigma.y > 0.0) gradients = shading_gradients(s, e, middle);
       vec3 first = vec3(0.0), second = vec3(0.0);
+      receive_between(q, s.t, e.t);
       for (int channel = 0; channel < CHANNEL_COUNT; ++channel) {
         const Lighting light = light_of_channel(channel, gradients, along_ray);
         first += a[channel].x * lit(a[channel].yzw, light);

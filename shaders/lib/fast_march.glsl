@@ -34,7 +34,7 @@ vec3 normal_at(RaySample at) {
 Lighting headlight_between(float a, float b, float across2) {
   const float squares = (a * a + a * b + b * b) * (1.0 / 3.0), length2 = across2 + squares;
   const float sizes = a * b >= 0.0 ? 0.5 * abs(a + b) : 0.5 * (a * a + b * b) / abs(b - a);
-  return length2 > 0.0 ? headlight_at(min(1.0, sizes * inversesqrt(length2)), squares / length2) : kOnlyAmbient;
+  return length2 > 0.0 ? headlight_at(min(1.0, sizes * inversesqrt(length2)), squares / length2) : without_normal();
 }
 
 // Constant data of a march.
@@ -61,7 +61,8 @@ RaySample next_sample(March m, RaySample from, out float curved) {
   curved = 1.0;
   if (SKIPS_EMPTY != 0u) {
     const float leave = homogeneous_exit(from.s, from.p, m.inverse, m.is_forward_axis);
-    if (leave > h) {
+    // light varies in homogeneous regions, unless nothing is seen there
+    if (leave > h && (HAS_LIGHTS != 2u || lookup_preintegrated(from.s.code, from.s.code).x == 0.0)) {
       next = from.t + leave;
       curved = 0.0;
     }
@@ -131,7 +132,7 @@ vec4 march_packed(vec2 q, float end) {
   // shading: the gradient, its component along the ray, the squared length of the rest, and what lights of the scene add there
   vec3 normal = vec3(0.0);
   float along = 0.0, across2 = 0.0;
-  Lighting light = kOnlyAmbient;
+  Lighting light = without_normal();
   if (SHADED != 0u) {
     normal = normal_at(s);
     along = dot(normal, along_ray);
@@ -162,6 +163,7 @@ vec4 march_packed(vec2 q, float end) {
       const float split = half_way <= 0.5 ? half_transmittance_position(transmittance, half_way) : 1.0 + half_transmittance_position(half_way, after);
       return vec4(s.t + 0.5 * extent * split, 0.0, 0.0, 1.0);
     }
+    receive_between(q, s.t, e.t);
     if (SHADED != 0u) {
       vec3 normal_end = normal_at(e);
       if (MASKED != 0u && !e.s.valid) normal_end = normal;
@@ -196,6 +198,11 @@ vec4 march_packed(vec2 q, float end) {
       last = lit(second.yzw, l1);
       sum += (transmittance - half_way) * lit(first.yzw, l0) + (half_way - after) * last;
     } else {
+      if (HAS_LIGHTS == 2u) {
+        const Lighting scattered = scattered_light();
+        first.yzw = lit(first.yzw, scattered);
+        second.yzw = lit(second.yzw, scattered);
+      }
       sum += (transmittance - half_way) * first.yzw + (half_way - after) * second.yzw;
       last = second.yzw;
     }

@@ -2,11 +2,12 @@
 // Constants and the transfer function of the fast raycast, pre-integrated over pairs of codes (render/raycast/preintegrated.h), and the
 // light of a segment.
 #include "shaders/lib/lighting.glsl"
+#include "shaders/lib/light_grid.glsl"
 layout(constant_id = 0) const uint SHADED = 0;  // 1: by the gradient of the cell, 2: by precomputed gradients
 layout(constant_id = 1) const uint SKIPS_EMPTY = 0;
 layout(constant_id = 2) const uint HAS_OPAQUE = 0;
 layout(constant_id = 10) const uint INTERPOLATES_TABLE = 0;  // between codes
-layout(constant_id = 11) const uint HAS_LIGHTS = 0;  // lights of the scene; 0: a headlight
+layout(constant_id = 11) const uint HAS_LIGHTS = 0;  // 1: lights or an environment of the scene; 2: things darken each other. 0: a headlight
 layout(constant_id = 7) const uint HALF_OPACITY_DEPTH = 0;  // output: depth of half transmittance instead of a color
 
 layout(binding = 4) uniform utexture2D preintegrated;  // 256 x 256 for each channel
@@ -41,7 +42,11 @@ Lighting headlight_at(float n, float n2) {
 }
 
 Lighting mean_light(Lighting a, Lighting b) { return Lighting(0.5 * (a.diffuse + b.diffuse), 0.5 * (a.specular + b.specular)); }
-vec3 lit(vec3 color, Lighting light) { return color * light.diffuse + light.specular; }
+
+// Sets `arriving` in the middle of the segment from depth t0 to t1 of pixel coordinate q.
+void receive_between(vec2 q, float t0, float t1) {
+  if (HAS_LIGHTS == 2u) receive_in_volume(light_at(q, 0.5 * (t0 + t1)));
+}
 
 // Returns the position where transmittance falls to 0.5 in a segment of constant sigma, as a share of its length; before > 0.5 >= after.
 float half_transmittance_position(float before, float after) { return clamp(log(2.0 * before) / log(before / max(after, 1e-30)), 0.0, 1.0); }

@@ -24,6 +24,8 @@ float jitter_offset = 0.0;  // missing part of the first segment, in segments
 float optical_depth = 0.0, surface_transmittance = 1.0, transmittance = 1.0;
 vec3 color_sum = vec3(0.0);
 float half_opacity_depth = NO_DEPTH;
+vec2 light_q;               // pixel coordinate
+float light_is_on = 0.0;    // 1: things darken each other
 
 bool has_factor(int i) { return (GRID_MODES >> (2 * i) & 1u) != 0u; }
 bool has_other_color(int i) { return (GRID_MODES >> (2 * i) & 2u) != 0u; }
@@ -67,7 +69,8 @@ void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_s
     if (volume_skips(i)) {
       const ivec3 brick = cell_of(i, p) >> 3;
       const uint word = brick_word(i, brick);
-      distance = HAS_FOG != 0u && is_homogeneous(word) ? 0 : skip_distance(word);  // fog varies in homogeneous regions
+      // fog and light vary in homogeneous regions
+      distance = (HAS_FOG != 0u || light_is_on > 0.0) && is_homogeneous(word) ? 0 : skip_distance(word);
       is_active = distance == 0 || is_homogeneous(word);
       if (distance > 0) skip_count = min(skip_count, max(1, int(ceil(min(exit_empty_region(rays[i], p, brick, distance) / h, 1e6)))));
     }
@@ -82,6 +85,10 @@ void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_s
           if (volume_is_shaded(i) || has_factor(i)) gradient = world_gradient(i, p);
           if (has_factor(i)) c.a *= gradient_factor(i, length(gradient) * frame.grids[i].value_scale);
           c.rgb = resolve_color(i, t, c.rgb);
+          for (float on = light_is_on; on > 0.0; on = 0.0) {
+            receive_in_volume(light_at(light_q, t));
+            if (!volume_is_shaded(i)) c.rgb = lit(c.rgb, scattered_light());
+          }
           if (volume_is_shaded(i)) c.rgb = lit(c.rgb, gradient, view_direction);
           if (HAS_FOG != 0u) c.rgb = fogged(c.rgb, t);
           emitted += c.a * c.rgb;
@@ -141,6 +148,8 @@ float setup_pixel(vec2 q) {
   const vec3 direction = world_direction(q);
   world_per_depth = length(direction);
   view_direction = -direction / world_per_depth;
+  light_q = q;
+  light_is_on = frame.light_grid.is_on + float(q.x < -1e30);  // not uniform, as in as_nonuniform (rays.glsl)
   // interleaved gradient noise (J. Jimenez, 2014): adjacent pixels differ strongly, so that the eye averages over them
   if (HAS_JITTER != 0u) jitter_offset = fract(52.9829189 * fract(dot(floor(q + frame.axis), vec2(0.06711056, 0.00583715))));
   return HAS_OPAQUE != 0u ? texelFetch(opaque_depth, ivec2(q + frame.axis), 0).r : NO_DEPTH;

@@ -9,6 +9,7 @@
 #include "shaders/lib/grids.glsl"
 #include "shaders/lib/rays.glsl"
 #include "shaders/lib/lighting.glsl"
+#include "shaders/lib/light_grid.glsl"
 layout(constant_id = 1) const uint HAS_CELLS = 0;  // 0: there is no cell map
 #define SURFACE_CELLS
 #include "shaders/lib/surface.glsl"
@@ -27,7 +28,9 @@ void main() {
   vec3 color = vec3(0.0);
   for (bool hit = t < NO_DEPTH; hit; hit = t < -NO_DEPTH) {
     const vec3 p = clamp(ray.origin + t * ray.direction, frame.grids[0].lo, frame.grids[0].hi);
-    color = fogged(lit(frame.grids[0].color, world_gradient(0, p), -normalize(world_direction(q))), t);
+    const vec3 gradient = world_gradient(0, p), to_camera = -normalize(world_direction(q));
+    receive_on_surface(light_at(q, t), gradient, to_camera);
+    color = fogged(lit(frame.grids[0].color, gradient, to_camera), t);
   }
   if (t >= NO_DEPTH) discard;
   out_color = vec4(color, 1.0);

@@ -10,6 +10,7 @@ layout(scalar, binding = 0) uniform Frame { FrameData frame; };
 #define BRICK_SIZE 8
 #include "shaders/lib/rays.glsl"
 #include "shaders/lib/lighting.glsl"
+#include "shaders/lib/light_grid.glsl"
 const float seen_transmittance = 1.0;
 #define HAS_NUMBERS
 #include "shaders/lib/paged.glsl"
@@ -28,7 +29,9 @@ void main() {
   if (t >= NO_DEPTH) discard;
   const vec3 p = clamp(ray.origin + t * ray.direction, frame.grids[0].lo, frame.grids[0].hi);
   const vec3 gradient = frame.grids[0].world_gradient * smooth_gradient(p, sample_packed(p));
-  out_color = vec4(fogged(lit(frame.grids[0].color, gradient, -normalize(world_direction(q))), t), 1.0);
+  const vec3 to_camera = -normalize(world_direction(q));
+  receive_on_surface(light_at(q, t), gradient, to_camera);
+  out_color = vec4(fogged(lit(frame.grids[0].color, gradient, to_camera), t), 1.0);
   out_depth = t;
   out_id = frame.grids[0].id;
   gl_FragDepth = buffer_depth(t);

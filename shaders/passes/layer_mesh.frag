@@ -8,7 +8,11 @@
 
 layout(scalar, binding = 0) uniform Frame { MeshFrameData frame; };
 #include "shaders/lib/lighting.glsl"
+#include "shaders/lib/light_grid.glsl"
 #include "shaders/lib/mesh_color.glsl"
 #include "shaders/lib/peel.glsl"
 
-void main() { write_fragment(true, layer.opacity * mesh_color(), layer.opacity, in_depth, in_id); }
+void main() {
+  receive_on_surface(frame.light_grid.from_view * in_view + frame.light_grid.origin, in_normal, to_camera());
+  write_fragment(true, layer.opacity * mesh_color(), layer.opacity, in_depth, in_id);
+}

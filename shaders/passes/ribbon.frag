@@ -6,6 +6,7 @@
 
 layout(scalar, binding = 0) uniform Frame { MeshFrameData frame; };
 #include "shaders/lib/lighting.glsl"
+#include "shaders/lib/light_grid.glsl"
 layout(location = 0) in vec4 in_tangent;
 layout(location = 1) in vec4 in_color;
 layout(location = 2) flat in uint in_id;
@@ -24,6 +25,10 @@ void main() {
   const float across = clamp(in_tangent.w, -1.0, 1.0) * (in_inside < 0.0 ? -1.0 : 1.0);
   // view axes are left-handed: the cross product has the opposite sign of the vertex shader's, in world axes
   const vec3 normal = sqrt(1.0 - across * across) * front - across * cross(tangent, front);
+  // the position on the ribbon, in view axes
+  const float depth = in_color.w - frame.offset_depth + frame.offset.z;
+  const vec3 view = vec3(slope.x, -slope.y, 1.0) * vec3(vec2(mix(depth, 1.0, float(frame.orthographic))), depth);
+  receive_on_surface(frame.light_grid.from_view * view + frame.light_grid.origin, normal, to_camera);
   out_color = vec4(fogged(lit(in_color.rgb, normal, to_camera), in_color.w), 1.0);
   out_depth = in_color.w;
   out_id = in_id;

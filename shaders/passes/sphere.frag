@@ -6,6 +6,7 @@
 
 layout(scalar, binding = 0) uniform Frame { MeshFrameData frame; };
 #include "shaders/lib/lighting.glsl"
+#include "shaders/lib/light_grid.glsl"
 layout(location = 0) flat in vec3 in_center;
 layout(location = 1) flat in float in_radius;
 layout(location = 2) flat in vec3 in_color;
@@ -36,6 +37,7 @@ void main() {
   const vec3 normal = front_visible ? front : back, view = in_center + normal;
   const vec3 to_camera = mix(-ray, vec3(0.0, 0.0, -1.0), flat_view);
   const float depth = view.z + frame.offset_depth - frame.offset.z;
+  receive_on_surface(frame.light_grid.from_view * view + frame.light_grid.origin, normal, to_camera);
   out_color = vec4(fogged(lit(in_color, normal, to_camera), depth), 1.0);
   out_depth = depth;
   out_id = in_id & ID_MASK;

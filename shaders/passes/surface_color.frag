@@ -9,6 +9,7 @@
 #include "shaders/lib/grids.glsl"
 #include "shaders/lib/rays.glsl"
 #include "shaders/lib/lighting.glsl"
+#include "shaders/lib/light_grid.glsl"
 #include "shaders/lib/tables.glsl"
 #include "shaders/lib/color_by.glsl"
 
@@ -24,5 +25,7 @@ void main() {
   const LocalRay ray = local_ray(0, q), other = local_ray(1, q);
   const vec3 p = clamp(ray.origin + t * ray.direction, frame.grids[0].lo, frame.grids[0].hi);
   const vec3 color = color_at(1, other.origin + t * other.direction, frame.grids[0].color);
-  out_color = vec4(fogged(lit(color, world_gradient(0, p), -normalize(world_direction(q))), t), 1.0);
+  const vec3 gradient = world_gradient(0, p), to_camera = -normalize(world_direction(q));
+  receive_on_surface(light_at(q, t), gradient, to_camera);
+  out_color = vec4(fogged(lit(color, gradient, to_camera), t), 1.0);
 }

@@ -10,6 +10,7 @@
 #include "shaders/lib/grids.glsl"
 #include "shaders/lib/rays.glsl"
 #include "shaders/lib/lighting.glsl"
+#include "shaders/lib/light_grid.glsl"
 #include "shaders/lib/raycast.glsl"
 
 void main() {

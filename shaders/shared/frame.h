@@ -54,6 +54,20 @@ struct LightData {
   vec3 direction, color;
 };
 
+// Light that arrives in the scene, a 3D texture over a box along the world's axes (render/light). Texture coordinates of pixel q at depth
+// t:
+//   (origin + origin_x q.x + origin_y q.y) + t (direction + direction_x q.x + direction_y q.y)
+// for triangles: from_view * position in view axes + origin.
+struct LightGridData {
+  vec3 origin, origin_x, origin_y;
+  vec3 direction, direction_x, direction_y;
+  mat3 from_view;
+  mat3 from_normal;  // offset of the lookup at a surface, along its unit normal in the axes of the shader
+  float is_on;       // 0: nothing is cast
+  float open_gain;   // 1 / share of the environment that arrives at an open, even surface
+  uint version;      // changes with the texture
+};
+
 // Depth fog: the opacity of the fog color at depth t is min(max_opacity, (t - near) per_depth max_opacity).
 struct FogData {
   vec3 color;
@@ -85,6 +99,8 @@ struct FrameData {
   ClipData clips[MAX_CLIP_PLANES];
   uint light_count;  // 0: a headlight
   LightData lights[MAX_LIGHTS];
+  vec3 sky, ground, zenith;  // environment: light from above and below, and the direction upwards
+  LightGridData light_grid;
   FogData fog;
   GridData grids[MAX_GRIDS];
 };
@@ -106,6 +122,8 @@ struct MeshFrameData {
   uint clip_count;
   uint light_count;
   LightData lights[MAX_LIGHTS];
+  vec3 sky, ground, zenith;  // as in FrameData, in view axes
+  LightGridData light_grid;
   FogData fog;
   vec4 clips[MAX_CLIP_PLANES];  // inside where dot(xyz, position) + w >= 0
 };

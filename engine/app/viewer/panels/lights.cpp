@@ -8,7 +8,7 @@ namespace catena::app {
 
 namespace {
 
-void draw_light(Edits& edits, const scene::Light& light, std::size_t index) {
+void draw_light(Edits& edits, const scene::Light& light, std::size_t index, bool is_only) {
   const std::string pointer = fmt::format("/lights/{}", index);
   ImGui::PushID(static_cast<int>(index));
   if (ImGui::TreeNodeEx("##light", ImGuiTreeNodeFlags_DefaultOpen, "light %zu", index + 1)) {
@@ -18,7 +18,7 @@ void draw_light(Edits& edits, const scene::Light& light, std::size_t index) {
     bool follows = light.follows_camera;
     if (ImGui::Checkbox("fixed to the camera", &follows))
       edits.set(pointer + "/fixed_to", scene::to_json(std::string_view(follows ? "camera" : "scene")), "frame of the light");
-    if (ImGui::Button("Remove")) edits.remove(pointer, "remove the light");
+    if (ImGui::Button("Remove")) edits.remove(is_only ? "/lights" : pointer, "remove the light");
     ImGui::TreePop();
   }
   ImGui::PopID();
@@ -26,8 +26,14 @@ void draw_light(Edits& edits, const scene::Light& light, std::size_t index) {
 
 void draw_lights(PanelContext& context) {
   const auto& lights = context.scene.scene().lights;
-  if (lights.empty()) ImGui::TextDisabled("a headlight, as no light is stated");
-  for (std::size_t i = 0; i < lights.size(); ++i) draw_light(context.edits, lights[i], i);
+  const scene::Scene& scene = context.scene.scene();
+  if (lights.empty()) ImGui::TextDisabled(scene.has_headlight ? "a headlight, as no light is stated" : "no light");
+  bool occludes = scene.ambient_occlusion.has_value(), shadows = scene.shadows;
+  if (ImGui::Checkbox("ambient occlusion", &occludes))
+    context.edits.set("/ambient_occlusion", scene::to_json(occludes), "ambient occlusion");
+  if (ImGui::Checkbox("shadows of the lights fixed to the scene", &shadows))
+    context.edits.set("/shadows", scene::to_json(shadows), "shadows");
+  for (std::size_t i = 0; i < lights.size(); ++i) draw_light(context.edits, lights[i], i, lights.size() == 1);
   if (ImGui::Button("Add a light"))
     context.edits.set("/lights/-", R"({"direction": [-0.5, 0.7, 1], "fixed_to": "camera", "intensity": 0.8})", "add a light");
 }

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+/// Reads what lights the scene: "lights", "environment", "ambient_occlusion" and "shadows".
+#include <algorithm>
+
+#include "engine/base/text.h"
+#include "engine/scene/readers.h"
+#include "engine/scene/to_json.h"
+
+namespace catena::scene {
+namespace {
+
+using schema::Section;
+
+const Table<Light>& light_table() {
+  static const auto table = [] {
+    Table<Light> t;
+    t.bind(schema::direction("direction", "Direction towards the light; with `\"fixed_to\": \"camera\"` as right, up, towards the camera.")
+               .required(),
+           &Light::direction);
+    t.bind(schema::color("color", "Colour of the light."), &Light::color);
+    t.bind(schema::number("intensity", "", "Factor on the colour of the light.").non_negative(), &Light::intensity);
+    const Key fixed = schema::choice("fixed_to", {"scene", "camera"}, "Frame in which the direction of the light is fixed.");
+    t.bind(fixed, &Light::follows_camera);
+    return t;
+  }();
+  return table;
+}
+
+Outcome read_lights(Scene& scene, const json::Node& node) {
+  scene.has_headlight = false;
+  return each_item(node, [&](const json::Node& item) -> Outcome {
+    if (scene.lights.size() == kMaxLights)
+      return json::error_at(item, "there are more than " + std::to_string(kMaxLights) + " lights; that many at most were expected");
+    Light light;
+    CATENA_CHECK(light_table().read(scene, item, light));
+    scene.lights.push_back(light);
+    return Done{};
+  });
+}
+
+const Table<EnvironmentLight>& environment_table() {
+  static const auto table = [] {
+    Table<EnvironmentLight> t;
+    t.bind(schema::color("sky", "Light from above (+z).").required(), &EnvironmentLight::sky);
+    t.bind(schema::color("ground", "Light from below; in between the two are mixed.").required(), &EnvironmentLight::ground);
+    return t;
+  }();
+  return table;
+}
+
+Outcome read_environment(Scene& scene, const json::Node& node) {
+  EnvironmentLight light;
+  if (node.kind == json::Kind::object) {
+    CATENA_CHECK(environment_table().read(scene, node, light));
+  } else {
+    const auto color = json::as_vec3(node, "environment");
+    if (!color || std::min({color->x, color->y, color->z}) < 0 || std::max({color->x, color->y, color->z}) > 1)
+      return json::error_at(node,
+                            "\"environment\" is not a colour; [r, g, b] with components from 0 to 1, or an object with \"sky\" and "
+                            "\"ground\", was expected");
+    light.sky = light.ground = {static_cast<float>(color->x), static_cast<float>(color->y), static_cast<float>(color->z)};
+  }
+  scene.environment_light = light;
+  return Done{};
+}
+
+const Table<AmbientOcclusion>& ambient_occlusion_table() {
+  static const auto table = [] {
+    Table<AmbientOcclusion> t;
+    t.bind(schema::number("reach", "world", "Distance at which an occluder counts by 1/e.")
+               .positive()
+               .with_default("a tenth of the diagonal of what is drawn"),
+           &AmbientOcclusion::reach);
+    t.bind(schema::number("strength", "", "Share of the occlusion that is applied.").within(0, 1), &AmbientOcclusion::strength);
+    return t;
+  }();
+  return table;
+}
+
+Outcome read_ambient_occlusion(Scene& scene, const json::Node& node) {
+  if (node.kind == json::Kind::boolean) {
+    if (node.boolean) scene.ambient_occlusion.emplace();
+    return Done{};
+  }
+  if (node.kind != json::Kind::object)
+    return json::error_at(node, "\"ambient_occlusion\" is neither true, false nor an object; one of them was expected");
+  return ambient_occlusion_table().read(scene, node, scene.ambient_occlusion.emplace());
+}
+
+Outcome read_shadows(Scene& scene, const json::Node& node) {
+  if (node.kind != json::Kind::boolean) return json::error_at(node, "\"shadows\" is not a boolean; true or false was expected");
+  scene.shadows = node.boolean;
+  return Done{};
+}
+
+}  // namespace
+
+Part lights_part() {
+  return {
+      make_list_component("lights",
+                          "Directional lights. Default: a headlight; an empty list: none. With `shadows`, the first three that are fixed "
+                          "to the scene cast shadows.",
+                          light_table(), static_cast<int>(kMaxLights)),
+      read_lights};
+}
+
+Part environment_part() {
+  const Key key =
+      schema::any_of("environment",
+                     {schema::color("", "Light from all sides."), schema::object("", environment_table().keys(), "Sky and ground.")},
+                     "Light from all sides, as a colour or as sky and ground.")
+          .with_default("[0.2, 0.2, 0.2]; with `ambient_occlusion` [0.5, 0.5, 0.5]");
+  return {{"environment", "Light from all sides, which ambient occlusion reduces.", Section::Layout::value, {key}}, read_environment};
+}
+
+Part ambient_occlusion_part() {
+  return {{"ambient_occlusion", "Darkens what is enclosed: the share of the environment's light that arrives.", Section::Layout::on_off,
+           ambient_occlusion_table().keys()},
+          read_ambient_occlusion};
+}
+
+Part shadows_part() {
+  const Key key = schema::boolean("shadows", "Shadows of the lights that are fixed to the scene.").with_default("false");
+  return {{"shadows", "Shadows of lights that are fixed to the scene, of all that is drawn.", Section::Layout::value, {key}}, read_shadows};
+}
+
+std::string to_json(const Light& light) { return light_table().write({}, light); }
+
+}  // namespace catena::scene

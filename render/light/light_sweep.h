@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+/// Light that arrives in each cell (light_cells.h). One sweep over the planes of cells, away from the light, per direction:
+///   arrives(p) = transmitted(p) (1 - decay (1 - arrives(q))),   decay = exp(-|p - q| / reach)
+/// where q is the point of the previous plane towards the light, interpolated there, and `transmitted` the transmittance from q to p. With
+/// an infinite reach this is the transmittance to the light, otherwise an occluder at the distance s counts by exp(-s / reach). The
+/// interpolation widens the edges of shadows by about a cell. CPU code, any thread; blocks, uses all cores.
+#pragma once
+#include <vector>
+
+#include "render/light/light_cells.h"
+
+namespace catena::render {
+
+/// Returns the share of light from one direction that arrives at the center of each cell. `to_light`: unit vector. `reach`: display units.
+std::vector<float> sweep_light(const LightCells& cells, const Vec3& to_light, double reach);
+
+/// Returns the share of light from all sides that arrives: the mean of 24 directions.
+std::vector<float> sweep_environment(const LightCells& cells, double reach);
+/// Returns this share at a height above an opaque plane.
+double open_environment(double height, double reach);
+
+}  // namespace catena::render
