@@ -109,7 +109,7 @@ Part environment_part() {
       schema::any_of("environment",
                      {schema::color("", "Light from all sides."), schema::object("", environment_table().keys(), "Sky and ground.")},
                      "Light from all sides, as a colour or as sky and ground.")
-          .with_default("[0.2, 0.2, 0.2]; with `ambient_occlusion` [0.5, 0.5, 0.5]");
+          .with_default("gray, 0.2; with ambient occlusion 0.5");
   return {{"environment", "Light from all sides, which ambient occlusion reduces.", Section::Layout::value, {key}}, read_environment};
 }
 

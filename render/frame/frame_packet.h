@@ -63,6 +63,7 @@ struct IlluminationItem {
   bool is_default() const { return sky == IlluminationItem{}.sky && ground == IlluminationItem{}.ground; }
   /// Returns whether items darken each other.
   bool is_cast() const { return occlusion_reach > 0 || shadows; }
+  /// Compares all members.
   bool operator==(const IlluminationItem& other) const {
     return sky == other.sky && ground == other.ground && occlusion_reach == other.occlusion_reach &&
            occlusion_strength == other.occlusion_strength && shadows == other.shadows && bounds.lo == other.bounds.lo &&

@@ -54,7 +54,7 @@ class Caster {
     const ExtinctionTable extinction(item.transfer);
     std::vector<float> weight(cells_.count()), sum(cells_.count());
     scatter(*item.grid, 0, item.is_clipped, sum, &weight,
-            [&](const Slab& slab, std::size_t i, std::size_t, std::size_t) { return extinction(slab.block.values[i]); });
+            [&](const Slab& slab, std::size_t i, bool, std::size_t, std::size_t) { return extinction(slab.block.values[i]); });
     for (std::size_t i = 0; i < sum.size(); ++i)
       if (weight[i] > 0) cells_.extinction[i] += sum[i] / weight[i];
   }
@@ -63,12 +63,14 @@ class Caster {
     if (!(item.opacity > 0)) return;
     const auto level = float(item.level), extinction = float(optical_depth(item.opacity) / cells_.edge);
     std::vector<float> most(cells_.count());
-    scatter(*item.grid, 1, item.is_clipped, most, nullptr, [&](const Slab& slab, std::size_t i, std::size_t row, std::size_t plane) {
-      const std::vector<float>& v = slab.block.values;
-      const bool inside = v[i] >= level;
-      const auto differs = [&](std::size_t next) { return next < v.size() && (v[next] >= level) != inside; };
-      return differs(i + 1) || differs(i + row) || differs(i + plane) ? extinction : 0;
-    });
+    scatter(*item.grid, 1, item.is_clipped, most, nullptr,
+            [&](const Slab& slab, std::size_t i, bool has_right, std::size_t row, std::size_t plane) {
+              const std::vector<float>& v = slab.block.values;
+              const bool inside = v[i] >= level;
+              const auto differs = [&](std::size_t next) { return next < v.size() && (v[next] >= level) != inside; };
+              const bool has_upper = i % plane + row < plane;
+              return (has_right && differs(i + 1)) || (has_upper && differs(i + row)) || differs(i + plane) ? extinction : 0;
+            });
     for (std::size_t i = 0; i < most.size(); ++i) cells_.extinction[i] += most[i];
   }
 
@@ -150,7 +152,8 @@ class Caster {
         }
   }
 
-  /// Calls value(slab, voxel, row, plane) for each voxel, and adds it to its cell in `out`; without `weight` the largest value remains.
+  /// Calls value(slab, voxel, has_right, row, plane) for each voxel, with the strides of its neighbors, and adds it to its cell in `out`;
+  /// without `weight` the largest value remains.
   template <class Value>
   void scatter(const field::ScalarGrid& grid, int margin, bool is_clipped, std::vector<float>& out, std::vector<float>* weight,
                const Value& value) {
@@ -177,19 +180,27 @@ class Caster {
       const std::size_t part_row = std::size_t(size[0]), part_plane = part_row * std::size_t(size[1]);
       std::vector<float> part(part_plane * std::size_t(size[2])), counts(weight ? part.size() : 0);
       const float top[3] = {float(size[0] - 1), float(size[1] - 1), float(size[2] - 1)};
+      // cells of a row along x, which are the same for all rows if the voxels are parallel to the cells
+      std::vector<std::uint32_t> along(std::size_t(n.x), 0);
+      const bool is_parallel = step.y == 0 && step.z == 0;
+      const bool keeps_all = planes_.empty() || !is_clipped;
       for (int z = 0; z < slab.planes; ++z)
         for (int y = 0; y < n.y; ++y) {
           const Vec3 first = cell_of(0, y, slab.first + z) - Vec3(lo[0], lo[1], lo[2]);
+          const auto place = [&](double at, int axis) { return std::size_t(std::clamp(float(at), 0.0f, top[axis])); };
+          const std::size_t base = is_parallel ? place(first.z, 2) * part_plane + place(first.y, 1) * part_row : 0;
+          if (!is_parallel || (y == 0 && z == 0))
+            for (int x = 0; x < n.x; ++x) {
+              const Vec3 at = first + double(x) * step;
+              const std::size_t rest = is_parallel ? 0 : place(at.z, 2) * part_plane + place(at.y, 1) * part_row;
+              along[std::size_t(x)] = std::uint32_t(rest + place(at.x, 0));
+            }
           const std::size_t from = slab.block.voxel_index(0, y, slab.offset + z);
           for (int x = 0; x < n.x; ++x) {
-            const Vec3 at = first + double(x) * step;
-            if (!planes_.empty() && is_clipped && is_clipped_away(cells_.lo + cells_.edge * (at + Vec3(lo[0], lo[1], lo[2])), true))
+            if (!keeps_all && is_clipped_away(cells_.lo + cells_.edge * (first + double(x) * step + Vec3(lo[0], lo[1], lo[2])), true))
               continue;
-            const std::size_t cell = std::size_t(std::clamp(float(at.z), 0.0f, top[2])) * part_plane +
-                                     std::size_t(std::clamp(float(at.y), 0.0f, top[1])) * part_row +
-                                     std::size_t(std::clamp(float(at.x), 0.0f, top[0]));
-            const std::size_t voxel = from + std::size_t(x);
-            const float v = slab.block.is_used(voxel) ? value(slab, voxel, x + 1 < n.x ? row : plane * std::size_t(n.z), plane) : 0.0f;
+            const std::size_t cell = base + along[std::size_t(x)], voxel = from + std::size_t(x);
+            const float v = slab.block.is_used(voxel) ? value(slab, voxel, x + 1 < n.x, row, plane) : 0.0f;
             if (weight) {
               part[cell] += v;
               counts[cell] += 1;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "render/light/light_grid.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "engine/base/threads.h"
 #include "render/light/light_sweep.h"
 #include "render/vk/commands.h"
 
@@ -13,72 +14,96 @@ namespace catena::render {
 namespace {
 
 constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
-using Texel = std::array<std::uint8_t, 4>;
+constexpr std::size_t kTexelBytes = 4;
 
 std::uint8_t to_byte(float share) { return std::uint8_t(std::lround(255 * std::clamp(share, 0.0f, 1.0f))); }
 
-/// Returns the shares of the lights (red, green, blue) and of the environment (alpha) that arrive in the cells.
-std::vector<Texel> arriving_light(const LightCells& cells, const FramePacket& packet) {
-  std::vector<Texel> texels(cells.count(), Texel{255, 255, 255, 255});
-  for (std::size_t i = 0; packet.illumination.shadows && i < std::min(kMaxShadows, packet.lights.size()); ++i) {
-    if (packet.lights[i].camera_relative) continue;
-    const std::vector<float> share = sweep_light(cells, direction(packet.lights[i].direction), std::numeric_limits<double>::infinity());
-    for (std::size_t k = 0; k < share.size(); ++k) texels[k][i] = to_byte(share[k]);
-  }
-  if (packet.illumination.occlusion_reach > 0) {
-    const std::vector<float> share = sweep_environment(cells, packet.illumination.occlusion_reach);
-    const auto strength = float(packet.illumination.occlusion_strength);
-    for (std::size_t k = 0; k < share.size(); ++k) texels[k][3] = to_byte(1 - strength * (1 - share[k]));
-  }
-  return texels;
-}
-
 }  // namespace
 
-Result<LightGrid> LightGrid::create(vk::Device& device) {
-  LightGrid self;
-  CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
-  CATENA_TRY(self.open_, vk::Image::create(device, vk::volume_image_info(kFormat, 1, 1, 1)));
-  CATENA_CHECK(
-      vk::upload_planes(device, self.open_, 1, [](std::uint32_t, std::uint32_t, std::byte* out) { std::memset(out, 255, sizeof(Texel)); }));
-  return self;
+bool LightGrid::Casters::operator==(const Casters& other) const {
+  return bounds.lo == other.bounds.lo && bounds.hi == other.bounds.hi && clip_planes == other.clip_planes && volumes == other.volumes &&
+         isosurfaces == other.isosurfaces && meshes == other.meshes && tubes == other.tubes && arrows == other.arrows &&
+         glyphs == other.glyphs && spheres == other.spheres;
+}
+
+/// Computes the texels that differ from the last ones.
+void LightGrid::cast(const FramePacket& packet) {
+  const IlluminationItem& next = packet.illumination;
+  const bool is_new = texels_.size() != cells_.count();
+  if (is_new) texels_.assign(cells_.count(), {255, 255, 255, 255});
+  const auto set = [&](std::size_t channel, const auto& share_of_cell) {
+    parallel_for(texels_.size(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) texels_[k][channel] = to_byte(share_of_cell(k));
+    });
+  };
+  // lights that are not cast arrive everywhere
+  const auto direction_of = [](const IlluminationItem& item, const std::vector<LightItem>& lights, std::size_t i) {
+    return item.shadows && i < lights.size() && !lights[i].camera_relative ? lights[i].direction : Vec3(0.0);
+  };
+  for (std::size_t i = 0; i < kMaxShadows; ++i) {
+    const Vec3 to = direction_of(next, packet.lights, i);
+    if (!is_new && to == direction_of(illumination_, lights_, i)) continue;
+    if (to == Vec3(0.0)) {
+      set(i, [](std::size_t) { return 1.0f; });
+      continue;
+    }
+    const std::vector<float> share = sweep_light(cells_, direction(to), std::numeric_limits<double>::infinity());
+    set(i, [&](std::size_t k) { return share[k]; });
+  }
+  if (is_new || next.occlusion_reach != illumination_.occlusion_reach || next.occlusion_strength != illumination_.occlusion_strength) {
+    const auto strength = float(next.occlusion_reach > 0 ? next.occlusion_strength : 0);
+    std::vector<float> share(texels_.size(), 1.0f);
+    if (strength > 0) share = sweep_environment(cells_, next.occlusion_reach);
+    set(3, [&](std::size_t k) { return 1 - strength * (1 - share[k]); });
+  }
+  illumination_ = next;
+  lights_ = packet.lights;
 }
 
 Outcome LightGrid::update(vk::Device& device, const FramePacket& packet, bool is_only_view) {
   is_on_ = false;
+  if (!open_) {
+    CATENA_TRY(linear_, vk::Sampler::create(device, vk::Filter::linear));
+    CATENA_TRY(open_, vk::Image::create(device, vk::volume_image_info(kFormat, 1, 1, 1)));
+    CATENA_CHECK(
+        vk::upload_planes(device, open_, 1, [](std::uint32_t, std::uint32_t, std::byte* out) { std::memset(out, 255, kTexelBytes); }));
+  }
   device.share(open_, linear_);
-  if (!packet.illumination.is_cast()) {
-    if (is_only_view) inputs_.reset(), image_ = {};
+  const IlluminationItem& item = packet.illumination;
+  if (!item.is_cast()) {
+    if (is_only_view) casters_.reset(), cells_ = {}, texels_ = {}, image_ = {};
     return Done{};
   }
-  Inputs inputs{packet.illumination, packet.lights, packet.clip_planes, packet.volumes, packet.isosurfaces,
-                packet.meshes,       packet.tubes,  packet.arrows,      packet.glyphs,  packet.spheres};
-  if (!inputs_ || !(*inputs_ == inputs)) {
-    inputs_.reset();
-    const LightCells cells = make_light_cells(packet);
-    if (!(cells.edge > 0)) return Done{};
-    CATENA_CHECK(upload(device, cells, packet));
-    inputs_ = std::move(inputs);
+  Casters casters{item.bounds,  packet.clip_planes, packet.volumes, packet.isosurfaces, packet.meshes,
+                  packet.tubes, packet.arrows,      packet.glyphs,  packet.spheres};
+  const bool is_same = casters_ && *casters_ == casters;
+  if (!is_same) {
+    casters_.reset();
+    texels_.clear();
+    cells_ = make_light_cells(packet);
+    if (!(cells_.edge > 0)) return Done{};
+  }
+  if (!is_same || !(item == illumination_) || packet.lights != lights_) {
+    cast(packet);
+    CATENA_CHECK(upload(device));
+    casters_ = std::move(casters);
   }
   device.share(image_, linear_);
   is_on_ = true;
   return Done{};
 }
 
-Outcome LightGrid::upload(vk::Device& device, const LightCells& cells, const FramePacket& packet) {
-  const std::vector<Texel> texels = arriving_light(cells, packet);
-  const auto [nx, ny, nz] = std::array{std::size_t(cells.size.x), std::size_t(cells.size.y), std::size_t(cells.size.z)};
+Outcome LightGrid::upload(vk::Device& device) {
+  const std::size_t nx = std::size_t(cells_.size.x), ny = std::size_t(cells_.size.y), nz = std::size_t(cells_.size.z);
   CATENA_TRY(image_, vk::Image::create(device, vk::volume_image_info(kFormat, nx, ny, nz)));
   CATENA_CHECK(vk::upload_planes(device, image_, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
-    std::memcpy(out, texels.data() + std::size_t(first) * nx * ny, std::size_t(count) * nx * ny * sizeof(Texel));
+    std::memcpy(out, texels_.data() + std::size_t(first) * nx * ny, std::size_t(count) * nx * ny * kTexelBytes);
   }));
   ++version_;
-  lo_ = cells.lo;
   constexpr double kOffsetCells = 1.5;
-  surface_offset_ = kOffsetCells * cells.edge;
-  const IlluminationItem& item = packet.illumination;
+  surface_offset_ = kOffsetCells * cells_.edge;
+  const IlluminationItem& item = illumination_;
   open_share_ = item.occlusion_reach > 0 ? 1 - item.occlusion_strength * (1 - open_environment(surface_offset_, item.occlusion_reach)) : 1;
-  size_ = cells.edge * Vec3(cells.size.x, cells.size.y, cells.size.z);
   return Done{};
 }
 

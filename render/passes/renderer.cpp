@@ -51,7 +51,6 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const vk::DeviceOptions& opti
   std::unique_ptr<Renderer> self(new Renderer);
   CATENA_TRY(self->impl_->device, vk::Device::create(options));
   self->impl_->residency.emplace(*self->impl_->device);
-  CATENA_TRY(self->impl_->light, LightGrid::create(*self->impl_->device));
   return self;
 }
 
@@ -136,8 +135,8 @@ Outcome Renderer::Impl::prepare(Frame& frame) {
   }
   frame.written_targets = 0;
   frame.rays = CameraRays::make(frame.packet, bounds, of_rays.empty() ? of_surfaces : of_rays);
-  CATENA_CHECK(light->update(*device, frame.packet, frame.is_first && frame.is_last));
-  frame.rays.light_place = {light->lo(), light->size(), light->surface_offset(), light->open_share(), light->version()};
+  CATENA_CHECK(light.update(*device, frame.packet, frame.is_first && frame.is_last));
+  frame.rays.light_place = {light.lo(), light.size(), light.edge(), light.surface_offset(), light.open_share(), light.version()};
   return targets.ensure(*device, frame.packet.width, frame.packet.height, needed);
 }
 

@@ -17,7 +17,7 @@ namespace catena::render {
 struct Renderer::Impl {
   std::unique_ptr<vk::Device> device;  // declared first, destroyed last
   std::optional<ResidencyManager> residency;
-  std::optional<LightGrid> light;
+  LightGrid light;
   Targets targets;
   std::vector<vk::Image>
       /// target::volume of the eyes that are not being rendered; the first eye's volume is in `targets` at the end of a frame.
@@ -76,6 +76,7 @@ Outcome_ Renderer::Impl::reset_on_error(Outcome_ result) {
   if (result) return result;
   drop_passes();
   residency->clear();
+  light.clear();
   targets = Targets{};
   eye_volumes.clear();
   return result;

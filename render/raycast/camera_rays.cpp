@@ -56,6 +56,7 @@ AlongRays along_rays(const CameraRays& rays, const Mat3& from_world, const Vec3&
 shared::LightGridData light_grid_of(const LightPlace& place) {
   shared::LightGridData data{};
   data.is_on = place.version > 0 ? 1 : 0;
+  data.half_cell = float(0.5 * place.cell);
   data.open_gain = float(1 / place.open_share);
   data.version = place.version;
   return data;

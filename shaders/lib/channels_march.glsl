@@ -129,7 +129,7 @@ vec4 march_packed(vec2 q, float end) {
       mat3x4 gradients = mat3x4(0.0);
       if (SHADED != 0u && sigma.x + sigma.y > 0.0) gradients = shading_gradients(s, e, middle);
       vec3 first = vec3(0.0), second = vec3(0.0);
-      receive_between(q, s.t, e.t);
+      receive_between(q, s.t, e.t, sigma.x + sigma.y > 0.0);
       for (int channel = 0; channel < CHANNEL_COUNT; ++channel) {
         const Lighting light = light_of_channel(channel, gradients, along_ray);
         first += a[channel].x * lit(a[channel].yzw, light);

@@ -163,7 +163,7 @@ vec4 march_packed(vec2 q, float end) {
       const float split = half_way <= 0.5 ? half_transmittance_position(transmittance, half_way) : 1.0 + half_transmittance_position(half_way, after);
       return vec4(s.t + 0.5 * extent * split, 0.0, 0.0, 1.0);
     }
-    receive_between(q, s.t, e.t);
+    receive_between(q, s.t, e.t, first.x + second.x > 0.0);
     if (SHADED != 0u) {
       vec3 normal_end = normal_at(e);
       if (MASKED != 0u && !e.s.valid) normal_end = normal;

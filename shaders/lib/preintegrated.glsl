@@ -43,9 +43,16 @@ Lighting headlight_at(float n, float n2) {
 
 Lighting mean_light(Lighting a, Lighting b) { return Lighting(0.5 * (a.diffuse + b.diffuse), 0.5 * (a.specular + b.specular)); }
 
-// Sets `arriving` in the middle of the segment from depth t0 to t1 of pixel coordinate q.
-void receive_between(vec2 q, float t0, float t1) {
-  if (HAS_LIGHTS == 2u) receive_in_volume(light_at(q, 0.5 * (t0 + t1)));
+float light_until = -NO_DEPTH;  // depth up to which `arriving` holds
+
+// Sets `arriving` for the segment from depth t0 to t1 of pixel coordinate q, if it is visible: anew after half a cell of the light grid. A
+// loop with at most one iteration replaces a branch (rays.glsl).
+void receive_between(vec2 q, float t0, float t1, bool is_visible) {
+  if (HAS_LIGHTS == 2u)
+    for (bool anew = is_visible && t1 > light_until; anew; anew = false) {
+      light_until = max(t1, t0 + frame.light_grid.half_cell);
+      receive_in_volume(light_at(q, 0.5 * (t0 + light_until)));
+    }
 }
 
 // Returns the position where transmittance falls to 0.5 in a segment of constant sigma, as a share of its length; before > 0.5 >= after.

@@ -64,6 +64,7 @@ struct LightGridData {
   mat3 from_view;
   mat3 from_normal;  // offset of the lookup at a surface, along its unit normal in the axes of the shader
   float is_on;       // 0: nothing is cast
+  float half_cell;   // half of a cell's edge, world units
   float open_gain;   // 1 / share of the environment that arrives at an open, even surface
   uint version;      // changes with the texture
 };

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "render/light/light_grid.h"
 #include "render/passes/passes.h"
 #include "render/vk/commands.h"
 #include "tests/render/support/image_fixture.h"
@@ -65,6 +66,8 @@ class Layers : public ImageTest {
 
     const std::size_t bytes = 16 * std::size_t(packet_.width) * packet_.height;
     auto buffer = vk::Buffer::create(device, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::readback);
+    LightGrid light;
+    EXPECT_TRUE(light.update(device, packet_, true));
     auto commands = vk::Commands::begin(device);
     EXPECT_TRUE(buffer && commands);
     const auto recorded = (*pass)->record(*commands, frame);

@@ -46,13 +46,20 @@ TEST(SharedStructs, FrameAndGridData) {
       MEMBER(GridData, spread_labels)};
   grid["[]"] = sizeof(GridData);
   expect_offsets(shaders, "GridData", grid);
-  expect_offsets(shaders, "FrameData", {MEMBER(FrameData, half_size),    MEMBER(FrameData, axis),        MEMBER(FrameData, clip_count),
-                                        MEMBER(FrameData, light_count),  MEMBER(FrameData, lights),      MEMBER(FrameData, fog),
-                                        MEMBER(FrameData, clips),        MEMBER(FrameData, slope),       MEMBER(FrameData, right),
-                                        MEMBER(FrameData, up),           MEMBER(FrameData, forward),     MEMBER(FrameData, reference_depth),
-                                        MEMBER(FrameData, front_depth),  MEMBER(FrameData, depth_near),  MEMBER(FrameData, depth_far),
-                                        MEMBER(FrameData, orthographic), MEMBER(FrameData, spacing),     MEMBER(FrameData, first),
-                                        MEMBER(FrameData, step_world),   MEMBER(FrameData, termination), MEMBER(FrameData, grids)});
+  expect_offsets(
+      shaders, "FrameData",
+      {MEMBER(FrameData, half_size),   MEMBER(FrameData, axis),       MEMBER(FrameData, clip_count), MEMBER(FrameData, light_count),
+       MEMBER(FrameData, lights),      MEMBER(FrameData, sky),        MEMBER(FrameData, ground),     MEMBER(FrameData, zenith),
+       MEMBER(FrameData, light_grid),  MEMBER(FrameData, fog),        MEMBER(FrameData, clips),      MEMBER(FrameData, slope),
+       MEMBER(FrameData, right),       MEMBER(FrameData, up),         MEMBER(FrameData, forward),    MEMBER(FrameData, reference_depth),
+       MEMBER(FrameData, front_depth), MEMBER(FrameData, depth_near), MEMBER(FrameData, depth_far),  MEMBER(FrameData, orthographic),
+       MEMBER(FrameData, spacing),     MEMBER(FrameData, first),      MEMBER(FrameData, step_world), MEMBER(FrameData, termination),
+       MEMBER(FrameData, grids)});
+  expect_offsets(shaders, "LightGridData",
+                 {MEMBER(LightGridData, origin), MEMBER(LightGridData, origin_x), MEMBER(LightGridData, origin_y),
+                  MEMBER(LightGridData, direction), MEMBER(LightGridData, direction_x), MEMBER(LightGridData, direction_y),
+                  MEMBER(LightGridData, from_view), MEMBER(LightGridData, from_normal), MEMBER(LightGridData, is_on),
+                  MEMBER(LightGridData, half_cell), MEMBER(LightGridData, open_gain), MEMBER(LightGridData, version)});
   const Offsets table{MEMBER(TableData, start),       MEMBER(TableData, last),      MEMBER(TableData, control_points),
                       MEMBER(TableData, per_linear),  MEMBER(TableData, lo),        MEMBER(TableData, entries_per_unit),
                       MEMBER(TableData, first_value), MEMBER(TableData, last_value)};
@@ -89,7 +96,8 @@ TEST(SharedStructs, MeshFrameData) {
       {"mesh.vert"}, "MeshFrameData",
       {MEMBER(MeshFrameData, view_from_world), MEMBER(MeshFrameData, offset), MEMBER(MeshFrameData, offset_depth),
        MEMBER(MeshFrameData, scale), MEMBER(MeshFrameData, shift), MEMBER(MeshFrameData, pixel), MEMBER(MeshFrameData, clip_count),
-       MEMBER(MeshFrameData, light_count), MEMBER(MeshFrameData, lights), MEMBER(MeshFrameData, fog), MEMBER(MeshFrameData, clips),
+       MEMBER(MeshFrameData, light_count), MEMBER(MeshFrameData, lights), MEMBER(MeshFrameData, sky), MEMBER(MeshFrameData, ground),
+       MEMBER(MeshFrameData, zenith), MEMBER(MeshFrameData, light_grid), MEMBER(MeshFrameData, fog), MEMBER(MeshFrameData, clips),
        MEMBER(MeshFrameData, depth_near), MEMBER(MeshFrameData, depth_far), MEMBER(MeshFrameData, orthographic)});
 }
 
