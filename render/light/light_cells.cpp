@@ -18,29 +18,36 @@ constexpr int kMargin = 2;          // empty cells around everything
 
 double optical_depth(double opacity) { return opacity >= 1 ? kOpaqueDepth : std::min(kOpaqueDepth, -std::log1p(-opacity)); }
 
-/// Extinction by value, tabulated where the transfer function is on a linear scale.
-class ExtinctionTable {
+double voxel_edge(const field::ScalarGrid& grid) {
+  const Mat3& m = grid.mapping().world_from_index_linear;
+  return std::max({norm(m[0]), norm(m[1]), norm(m[2])});
+}
+
+/// Transmittance of a length by value, tabulated where the transfer function is on a linear scale.
+class TransmittanceTable {
  public:
-  explicit ExtinctionTable(const TransferTable& transfer) : points_(transfer.extinctions) {
+  TransmittanceTable(const TransferTable& transfer, double length) : points_(transfer.extinctions), length_(length) {
     if (points_.empty() || transfer.is_categorical || transfer.linear_below > 0) return;
     lo_ = float(points_.front()[0]);
     const double range = points_.back()[0] - points_.front()[0];
     if (!(range > 0)) return;
     per_value_ = float((kEntries - 1) / range);
     entries_.resize(kEntries);
-    for (int i = 0; i < kEntries; ++i)
-      entries_[std::size_t(i)] = float(interpolate_piecewise(points_, points_.front()[0] + range * i / (kEntries - 1), 1));
+    for (int i = 0; i < kEntries; ++i) entries_[std::size_t(i)] = at(points_.front()[0] + range * i / (kEntries - 1));
   }
   float operator()(float value) const {
-    if (entries_.empty()) return float(interpolate_piecewise(points_, value, 1));
-    const float at = std::clamp((value - lo_) * per_value_, 0.0f, float(kEntries - 1));
-    return entries_[std::size_t(at + 0.5f)];
+    if (entries_.empty()) return at(value);
+    const float place = std::clamp((value - lo_) * per_value_, 0.0f, float(kEntries - 1));
+    return entries_[std::size_t(place + 0.5f)];
   }
 
  private:
+  float at(double value) const { return float(std::exp(-length_ * interpolate_piecewise(points_, value, 1))); }
+
   static constexpr int kEntries = 4096;
   std::vector<std::array<double, 2>> points_;
   std::vector<float> entries_;
+  double length_;
   float lo_ = 0, per_value_ = 0;
 };
 
@@ -51,12 +58,15 @@ class Caster {
 
   void add(const VolumeItem& item) {
     if (item.projection != Projection::composite || item.transfer.extinctions.empty()) return;
-    const ExtinctionTable extinction(item.transfer);
+    // voxels beside each other, not behind each other, have a mean transmittance
+    const double voxel = voxel_edge(*item.grid);
+    const TransmittanceTable transmittance(item.transfer, voxel);
     std::vector<float> weight(cells_.count()), sum(cells_.count());
     scatter(*item.grid, 0, item.is_clipped, sum, &weight,
-            [&](const Slab& slab, std::size_t i, bool, std::size_t, std::size_t) { return extinction(slab.block.values[i]); });
+            [&](const Slab& slab, std::size_t i, bool, std::size_t, std::size_t) { return 1 - transmittance(slab.block.values[i]); });
+    const auto most = float(kOpaqueDepth / cells_.edge);
     for (std::size_t i = 0; i < sum.size(); ++i)
-      if (weight[i] > 0) cells_.extinction[i] += sum[i] / weight[i];
+      if (sum[i] > 0) cells_.extinction[i] += std::min(most, float(-std::log1p(-std::min(0.9999999f, sum[i] / weight[i])) / voxel));
   }
 
   void add(const IsosurfaceItem& item) {
@@ -224,11 +234,6 @@ class Caster {
   const std::vector<Plane>& planes_;
   LightCells& cells_;
 };
-
-double voxel_edge(const field::ScalarGrid& grid) {
-  const Mat3& m = grid.mapping().world_from_index_linear;
-  return std::max({norm(m[0]), norm(m[1]), norm(m[2])});
-}
 
 /// Calls body(item) for everything that casts shadows.
 template <class Body>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Extinction of everything that casts shadows, in one coarse grid over the scene. CPU code, any thread; blocks, uses all cores.
-///   volumes          mean extinction of the voxels in a cell
+///   volumes          that of the mean transmittance of a voxel in the cell
 ///   surfaces         cells that a surface crosses have its opacity: isosurfaces, meshes
 ///   tubes, arrows,   the share of a cell's face that they cover; thick ones fill cells
 ///   spheres
