@@ -506,6 +506,7 @@ struct Light {
   Color color{1, 1, 1};           ///< Display color
   double intensity = 1;           ///< Factor on `color`
   bool follows_camera = false;    ///< True: fixed to the camera; false: fixed in the world
+  double angular_size_deg = 0;    ///< Diameter as seen from the scene, degrees; makes shadows soft
 };
 
 /// Current time step and playback speed (time_steps.h).

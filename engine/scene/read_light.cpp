@@ -21,6 +21,9 @@ const Table<Light>& light_table() {
     t.bind(schema::number("intensity", "", "Factor on the colour of the light.").non_negative(), &Light::intensity);
     const Key fixed = schema::choice("fixed_to", {"scene", "camera"}, "Frame in which the direction of the light is fixed.");
     t.bind(fixed, &Light::follows_camera);
+    t.bind(schema::number("angular_size", "degrees", "Diameter of the light as seen from the scene, which makes its shadows soft.")
+               .within(0, 60),
+           &Light::angular_size_deg);
     return t;
   }();
   return table;

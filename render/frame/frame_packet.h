@@ -49,6 +49,7 @@ struct LightItem {
   Vec3 direction{0.0, 0.0, 1.0};  ///< direction towards the light
   Color color{1, 1, 1};           ///< color times intensity
   bool camera_relative = false;   ///< `direction` is in view axes
+  double angular_size_deg = 0;    ///< diameter as seen from the scene, degrees; makes shadows soft
   bool operator==(const LightItem&) const = default;
 };
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
+#include <utility>
 
 #include "engine/base/threads.h"
 #include "render/light/light_sweep.h"
@@ -37,17 +37,18 @@ void LightGrid::cast(const FramePacket& packet) {
     });
   };
   // lights that are not cast arrive everywhere
-  const auto direction_of = [](const IlluminationItem& item, const std::vector<LightItem>& lights, std::size_t i) {
-    return item.shadows && i < lights.size() && !lights[i].camera_relative ? lights[i].direction : Vec3(0.0);
+  const auto cast_of = [](const IlluminationItem& item, const std::vector<LightItem>& lights, std::size_t i) {
+    const bool is_cast = item.shadows && i < lights.size() && !lights[i].camera_relative;
+    return is_cast ? std::pair(lights[i].direction, lights[i].angular_size_deg) : std::pair(Vec3(0.0), 0.0);
   };
   for (std::size_t i = 0; i < kMaxShadows; ++i) {
-    const Vec3 to = direction_of(next, packet.lights, i);
-    if (!is_new && to == direction_of(illumination_, lights_, i)) continue;
-    if (to == Vec3(0.0)) {
+    const auto own = cast_of(next, packet.lights, i);
+    if (!is_new && own == cast_of(illumination_, lights_, i)) continue;
+    if (own.first == Vec3(0.0)) {
       set(i, [](std::size_t) { return 1.0f; });
       continue;
     }
-    const std::vector<float> share = sweep_light(cells_, direction(to), std::numeric_limits<double>::infinity());
+    const std::vector<float> share = sweep_light(cells_, direction(own.first), own.second);
     set(i, [&](std::size_t k) { return share[k]; });
   }
   if (is_new || next.occlusion_reach != illumination_.occlusion_reach || next.occlusion_strength != illumination_.occlusion_strength) {

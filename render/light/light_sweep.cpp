@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "engine/base/threads.h"
 
@@ -93,12 +95,31 @@ void add_ordered(const SweepOrder& order, const std::vector<float>& values, std:
 
 }  // namespace
 
-std::vector<float> sweep_light(const LightCells& cells, const Vec3& to_light, double reach) {
-  const SweepOrder order(cells, main_axis(to_light));
-  std::vector<float> ordered(cells.count()), arriving(cells.count());
-  add_sweep(cells, order, half_transmittances(cells, order, std::fabs(to_light[order.main])), to_light, reach, 1, ordered);
-  add_ordered(order, ordered, arriving);
-  return arriving;
+std::vector<float> sweep_light(const LightCells& cells, const Vec3& to_light, double angular_size_deg) {
+  // points of the disc along a spiral, each of the same area
+  constexpr int kPoints = 12;
+  constexpr double kGoldenAngle = 2.399963229728653;
+  const int count = angular_size_deg > 0 ? kPoints : 1;
+  const double radius = std::tan(0.5 * angular_size_deg * std::numbers::pi / 180);
+  const Vec3 u = direction(cross(to_light, std::fabs(to_light.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(1, 0, 0))), v = cross(to_light, u);
+  // two sums, so that the result does not depend on the threads
+  std::vector<float> parts[2];
+  parallel_for(2, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t part = begin; part < end; ++part) {
+      parts[part].assign(cells.count(), 0);
+      for (int k = int(part); k < count; k += 2) {
+        const double r = count > 1 ? radius * std::sqrt((k + 0.5) / count) : 0, angle = kGoldenAngle * k;
+        const Vec3 to = direction(to_light + r * (std::cos(angle) * u + std::sin(angle) * v));
+        const SweepOrder order(cells, main_axis(to));
+        std::vector<float> ordered(cells.count());
+        add_sweep(cells, order, half_transmittances(cells, order, std::fabs(to[order.main])), to, std::numeric_limits<double>::infinity(),
+                  1 / float(count), ordered);
+        add_ordered(order, ordered, parts[part]);
+      }
+    }
+  });
+  for (std::size_t i = 0; i < parts[0].size(); ++i) parts[0][i] += parts[1][i];
+  return std::move(parts[0]);
 }
 
 std::vector<float> sweep_environment(const LightCells& cells, double reach) {

@@ -11,8 +11,9 @@
 
 namespace catena::render {
 
-/// Returns the share of light from one direction that arrives at the center of each cell. `to_light`: unit vector. `reach`: display units.
-std::vector<float> sweep_light(const LightCells& cells, const Vec3& to_light, double reach);
+/// Returns the share of the light of a disc that arrives at the center of each cell: the mean over directions to points of the disc.
+/// `to_light`: unit vector to its center. `angular_size_deg`: its diameter, degrees; 0: one direction.
+std::vector<float> sweep_light(const LightCells& cells, const Vec3& to_light, double angular_size_deg = 0);
 
 /// Returns the share of light from all sides that arrives: the mean of 24 directions.
 std::vector<float> sweep_environment(const LightCells& cells, double reach);

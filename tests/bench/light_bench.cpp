@@ -4,7 +4,6 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <limits>
 
 #include "render/light/light_sweep.h"
 #include "render/passes/renderer.h"
@@ -57,8 +56,7 @@ void cells(benchmark::State& state) {
 
 void shadow(benchmark::State& state) {
   const LightCells cells = make_light_cells(packet_of(true, true));
-  for (auto _ : state)
-    benchmark::DoNotOptimize(sweep_light(cells, direction(Vec3(1, -0.6, 1)), std::numeric_limits<double>::infinity()).data());
+  for (auto _ : state) benchmark::DoNotOptimize(sweep_light(cells, direction(Vec3(1, -0.6, 1)), state.range(0)).data());
 }
 
 void environment(benchmark::State& state) {
@@ -82,7 +80,7 @@ void image(benchmark::State& state, bool is_shaded, bool is_lit) {
 }
 
 BENCHMARK(cells)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(shadow)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(shadow)->Arg(0)->Arg(5)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(environment)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(image, plain_headlight, false, false)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(image, plain_lit, false, true)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "render/light/light_sweep.h"
 #include "tests/render/support/image_fixture.h"
@@ -11,8 +10,6 @@
 namespace catena::test::light_sweep_test {
 
 using namespace catena::render;
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 LightCells make_cells(int x, int y, int z, float extinction = 0) {
   LightCells cells;
@@ -26,7 +23,7 @@ TEST(LightSweep, ASlabAttenuatesByBeersLaw) {
   const LightCells cells = make_cells(40, 30, 50, 0.8f);
   for (const Vec3& to : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0.3, 0.2, 1), Vec3(-0.2, 0.1, 1)}) {
     const Vec3 l = direction(to);
-    const std::vector<float> light = sweep_light(cells, l, kInfinite);
+    const std::vector<float> light = sweep_light(cells, l);
     // from the middle of the cells the light leaves through the face of the main axis
     const int k = 5;
     const int x = l.x == 1 ? 39 - k : 20, y = l.y == -1 ? k : 15, z = l.z > 0.5 ? 49 - k : l.z < -0.5 ? k : 25;
@@ -35,10 +32,25 @@ TEST(LightSweep, ASlabAttenuatesByBeersLaw) {
   }
 }
 
+// Behind the edge of an opaque half plane the share is the part of the disc that is seen.
+TEST(LightSweep, APenumbraIsAsWideAsTheLight) {
+  LightCells cells = make_cells(100, 20, 60);
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 50; ++x) cells.extinction[cells.index(x, y, 50)] = 200;
+  constexpr double kSize = 20;
+  const std::vector<float> light = sweep_light(cells, {0, 0, 1}, kSize);
+  const double height = 4.0, radius = height * std::tan(0.5 * kSize * M_PI / 180);
+  for (int x = 30; x < 70; x += 2) {
+    const double d = std::clamp((0.1 * (x + 0.5) - 5.0) / radius, -1.0, 1.0);  // of the edge from the middle of the disc
+    const double seen = 1 - (std::acos(d) - d * std::sqrt(1 - d * d)) / M_PI;
+    EXPECT_NEAR(light[cells.index(x, 10, 10)], seen, 0.12) << x;
+  }
+}
+
 TEST(LightSweep, NothingIsDarkInEmptySpace) {
   const LightCells cells = make_cells(9, 7, 8);
   for (const float share : sweep_environment(cells, 1)) EXPECT_NEAR(share, 1, 1e-5);
-  for (const float share : sweep_light(cells, direction(Vec3(1, -2, 3)), kInfinite)) EXPECT_NEAR(share, 1, 1e-5);
+  for (const float share : sweep_light(cells, direction(Vec3(1, -2, 3)))) EXPECT_NEAR(share, 1, 1e-5);
 }
 
 // At the height h over an opaque plane 1/2 of the environment and E2(h / reach) / 2 of the rest are lost.

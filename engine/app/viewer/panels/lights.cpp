@@ -15,6 +15,7 @@ void draw_light(Edits& edits, const scene::Light& light, std::size_t index, bool
     edit_color(edits, "colour", light.color, pointer + "/color");
     edit_slider(edits, "intensity", light.intensity, 0, 3, pointer + "/intensity", "%.2f");
     edit_vector(edits, "direction", pointer + "/direction", light.direction, 0.01);
+    edit_slider(edits, "angular size", light.angular_size_deg, 0, 30, pointer + "/angular_size", "%.1f deg");
     bool follows = light.follows_camera;
     if (ImGui::Checkbox("fixed to the camera", &follows))
       edits.set(pointer + "/fixed_to", scene::to_json(std::string_view(follows ? "camera" : "scene")), "frame of the light");
