@@ -14,7 +14,7 @@ namespace catena::render {
 namespace {
 
 constexpr double kOpaqueDepth = 8;  // optical depth of a cell that an opaque surface crosses
-constexpr int kMargin = 2;          // empty cells around everything
+constexpr int kMargin = 3;          // empty cells around everything
 
 double optical_depth(double opacity) { return opacity >= 1 ? kOpaqueDepth : std::min(kOpaqueDepth, -std::log1p(-opacity)); }
 
@@ -63,7 +63,7 @@ class Caster {
     const TransmittanceTable transmittance(item.transfer, voxel);
     std::vector<float> weight(cells_.count()), sum(cells_.count());
     scatter(*item.grid, 0, item.is_clipped, sum, &weight,
-            [&](const Slab& slab, std::size_t i, bool, std::size_t, std::size_t) { return 1 - transmittance(slab.block.values[i]); });
+            [&](const Slab& slab, std::size_t i, int, std::size_t, std::size_t) { return 1 - transmittance(slab.block.values[i]); });
     const auto most = float(kOpaqueDepth / cells_.edge);
     for (std::size_t i = 0; i < sum.size(); ++i)
       if (sum[i] > 0) cells_.extinction[i] += std::min(most, float(-std::log1p(-std::min(0.9999999f, sum[i] / weight[i])) / voxel));
@@ -71,30 +71,37 @@ class Caster {
 
   void add(const IsosurfaceItem& item) {
     if (!(item.opacity > 0)) return;
-    const auto level = float(item.level), extinction = float(optical_depth(item.opacity) / cells_.edge);
+    // voxels on both sides: no light passes between the cells, of which it crosses about two
+    const auto level = float(item.level), extinction = float((item.opacity >= 1 ? 1 : 0.5) * optical_depth(item.opacity) / cells_.edge);
     std::vector<float> most(cells_.count());
-    scatter(*item.grid, 1, item.is_clipped, most, nullptr,
-            [&](const Slab& slab, std::size_t i, bool has_right, std::size_t row, std::size_t plane) {
-              const std::vector<float>& v = slab.block.values;
-              const bool inside = v[i] >= level;
-              const auto differs = [&](std::size_t next) { return next < v.size() && (v[next] >= level) != inside; };
-              const bool has_upper = i % plane + row < plane;
-              return (has_right && differs(i + 1)) || (has_upper && differs(i + row)) || differs(i + plane) ? extinction : 0;
-            });
+    scatter(*item.grid, 1, item.is_clipped, most, nullptr, [&](const Slab& slab, std::size_t i, int x, std::size_t row, std::size_t plane) {
+      const std::vector<float>& v = slab.block.values;
+      const bool inside = v[i] >= level;
+      const auto differs = [&](bool exists, std::size_t other) { return exists && (v[other] >= level) != inside; };
+      const std::size_t in_plane = i % plane;
+      const bool crosses = differs(x > 0, i - 1) || differs(std::size_t(x) + 1 < row, i + 1) || differs(in_plane >= row, i - row) ||
+                           differs(in_plane + row < plane, i + row) || differs(i >= plane, i - plane) ||
+                           differs(i + plane < v.size(), i + plane);
+      return crosses ? extinction : 0;
+    });
     for (std::size_t i = 0; i < most.size(); ++i) cells_.extinction[i] += most[i];
   }
 
-  /// Marks the cells that the triangles cross, by points at most half an edge apart.
+  /// Marks the cells that the triangles cross, by points at most half an edge apart, on both sides: no light passes between the cells.
   void add(const MeshItem& item) {
     if (!item.geometry || !(item.opacity > 0)) return;
-    const double extinction = optical_depth(item.opacity) / cells_.edge;
+    const double extinction = (item.opacity >= 1 ? 1 : 0.5) * optical_depth(item.opacity) / cells_.edge;
     const MeshGeometry& mesh = *item.geometry;
     for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
       const Vec3 a = mesh.vertices[mesh.triangles[t]], b = mesh.vertices[mesh.triangles[t + 1]] - a,
                  c = mesh.vertices[mesh.triangles[t + 2]] - a;
       const int steps = steps_of(std::max({norm(b), norm(c), norm(c - b)}));
+      const Vec3 normal = cross(b, c);
+      const Vec3 aside = norm(normal) > 0 ? 0.5 * cells_.edge * direction(normal) : Vec3(0.0);
       for (int i = 0; i <= steps; ++i)
-        for (int j = 0; j <= steps - i; ++j) mark(a + b * (double(i) / steps) + c * (double(j) / steps), extinction, item.is_clipped);
+        for (int j = 0; j <= steps - i; ++j)
+          for (const double side : {-1.0, 1.0})
+            mark(a + b * (double(i) / steps) + c * (double(j) / steps) + side * aside, extinction, item.is_clipped);
     }
   }
 
@@ -162,7 +169,7 @@ class Caster {
         }
   }
 
-  /// Calls value(slab, voxel, has_right, row, plane) for each voxel, with the strides of its neighbors, and adds it to its cell in `out`;
+  /// Calls value(slab, voxel, x, row, plane) for each voxel, with the strides of its neighbors, and adds it to its cell in `out`;
   /// without `weight` the largest value remains.
   template <class Value>
   void scatter(const field::ScalarGrid& grid, int margin, bool is_clipped, std::vector<float>& out, std::vector<float>* weight,
@@ -171,7 +178,7 @@ class Caster {
     const field::Mapping& mapping = grid.mapping();
     const Vec3 step = mapping.world_from_index_linear[0] / cells_.edge;
     std::mutex mutex;
-    for_each_slab(grid, {0, extent.size.z, 0, margin}, [&](const Slab& slab) {
+    for_each_slab(grid, {0, extent.size.z, margin, margin}, [&](const Slab& slab) {
       const field::Index3& n = slab.block.size;
       const std::size_t row = std::size_t(n.x), plane = row * std::size_t(n.y);
       const auto cell_of = [&](int x, int y, int z) {
@@ -210,7 +217,7 @@ class Caster {
             if (!keeps_all && is_clipped_away(cells_.lo + cells_.edge * (first + double(x) * step + Vec3(lo[0], lo[1], lo[2])), true))
               continue;
             const std::size_t cell = base + along[std::size_t(x)], voxel = from + std::size_t(x);
-            const float v = slab.block.is_used(voxel) ? value(slab, voxel, x + 1 < n.x, row, plane) : 0.0f;
+            const float v = slab.block.is_used(voxel) ? value(slab, voxel, x, row, plane) : 0.0f;
             if (weight) {
               part[cell] += v;
               counts[cell] += 1;
@@ -257,9 +264,10 @@ LightCells make_light_cells(const FramePacket& packet) {
   const Vec3 size = bounds.hi - bounds.lo;
   const double longest = std::max({size.x, size.y, size.z});
   if (!(longest > 0) || !std::isfinite(longest)) return cells;
-  cells.edge = std::max(longest / (kMaxLightCells - 2 * kMargin), least_edge);
-  cells.lo = bounds.lo - Vec3(kMargin * cells.edge);
-  const auto count = [&](double length) { return std::min(kMaxLightCells, int(std::ceil(length / cells.edge)) + 2 * kMargin); };
+  cells.edge = std::max(longest / (kMaxLightCells - 1 - 2 * kMargin), least_edge);
+  // a voxel in the corner of the bounds is in the middle of its cell
+  cells.lo = bounds.lo - Vec3((kMargin + 0.5) * cells.edge);
+  const auto count = [&](double length) { return std::min(kMaxLightCells, int(std::ceil(length / cells.edge)) + 1 + 2 * kMargin); };
   cells.size = {count(size.x), count(size.y), count(size.z)};
   cells.extinction.resize(cells.count());
   Caster caster(packet, cells);

@@ -101,10 +101,13 @@ Outcome LightGrid::upload(vk::Device& device) {
     std::memcpy(out, texels_.data() + std::size_t(first) * nx * ny, std::size_t(count) * nx * ny * kTexelBytes);
   }));
   ++version_;
-  constexpr double kOffsetCells = 1.5;
+  // cells that a surface crosses reach up to 0.9 of an edge in front of it: an open surface is not darkened by itself
+  constexpr double kOffsetCells = 2.5, kNearestCells = 1.6;
   surface_offset_ = kOffsetCells * cells_.edge;
   const IlluminationItem& item = illumination_;
-  open_share_ = item.occlusion_reach > 0 ? 1 - item.occlusion_strength * (1 - open_environment(surface_offset_, item.occlusion_reach)) : 1;
+  open_share_ = 1;
+  if (item.occlusion_reach > 0)
+    open_share_ = 1 - item.occlusion_strength * (1 - open_environment(kNearestCells * cells_.edge, item.occlusion_reach));
   return Done{};
 }
 

@@ -99,11 +99,10 @@ TEST(UntrustedFile, RenderAndInfoRespectTheMemoryLimit) {
       ", \"volumes\": [{\"field\": \"a\", \"color\": [[0, 0, 0, 0], [1, 1, 1, 1]], \"opacity\": [[0, 0], [1, 0.5]]}]}";
   test::write_file(folder / "raw.json", "{\"fields\": {\"a\": " + kRaw + "}" + drawn);
   test::write_file(folder / "nodes.json", "{\"fields\": {\"a\": {\"analytic\": \"sphere\", \"resolution\": 1024}}" + drawn);
-  for (const std::string& scene : {folder / "raw.json", folder / "nodes.json"}) {
-    run_refused({"render", scene, "-o", folder / "o.png", "--size", "16x16", "--memory", "5"},
-                "MB of memory, expected at most 5 MB (--memory MB allows more)");
-    EXPECT_FALSE(test::exists(folder / "o.png"));
-  }
+  run_refused({"render", folder / "nodes.json", "-o", folder / "o.png", "--size", "16x16", "--memory", "5"},
+              "MB of memory, expected at most 5 MB (--memory MB allows more)");
+  EXPECT_FALSE(test::exists(folder / "o.png"));
+  run_ok({"render", folder / "raw.json", "-o", folder / "o.png", "--size", "16x16", "--memory", "5"});  // in bricks
   run_refused({"info", folder / "raw.json", "--memory", "0"});
 }
 
