@@ -56,7 +56,7 @@ void cells(benchmark::State& state) {
 
 void shadow(benchmark::State& state) {
   const LightCells cells = make_light_cells(packet_of(true, true));
-  for (auto _ : state) benchmark::DoNotOptimize(sweep_light(cells, direction(Vec3(1, -0.6, 1)), state.range(0)).data());
+  for (auto _ : state) benchmark::DoNotOptimize(sweep_light(cells, direction(Vec3(1, -0.6, 1)), double(state.range(0))).data());
 }
 
 void environment(benchmark::State& state) {

@@ -67,6 +67,29 @@ TEST_F(LightImages, OcclusionDarkensWhatIsEnclosed) {
   EXPECT_NEAR(at(draw(packet, {}, "mixed"), -0.7, 0), 0.5 * 0.5 * 255, 1);  // the floor faces the horizon
 }
 
+// A convex surface is not darkened by itself, however it lies in the cells.
+TEST_F(LightImages, AConvexSurfaceDoesNotDarkenItself) {
+  const auto grid = make_grid({48, 48, 48}, [](const Vec3& p) { return 20.3 - norm(p - Vec3(23.5)); });
+  for (const Vec3& side : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 1), Vec3(-1, 2, -1)}) {
+    FramePacket packet = make_packet(Vec3(23.5) + 90.0 * direction(side), {23.5, 23.5, 23.5});
+    packet.background = {0, 0, 0, 1};
+    set_size(packet, 64, 64);
+    set_orthographic(packet, 48);
+    packet.isosurfaces.push_back({grid, 0, {1, 1, 1}});
+    packet.illumination.bounds = grid->world_bounds();
+    packet.lights = {{side, {1, 1, 1}, false}};
+    const Image8 open = draw(packet);
+    packet.illumination.shadows = true;
+    packet.illumination.occlusion_reach = 8;
+    const Image8 lit = draw(packet);
+    int least = 255;
+    for (std::uint32_t y = 0; y < 64; ++y)
+      for (std::uint32_t x = 0; x < 64; ++x)
+        if (std::hypot(x - 31.5, y - 31.5) < 0.75 * 20.3 * 64 / 48) least = std::min(least, 255 + lit.pixel(x, y)[0] - open.pixel(x, y)[0]);
+    EXPECT_GE(least, 255 - 13) << side.x << side.y << side.z;
+  }
+}
+
 TEST_F(LightImages, BothRaycastsReceiveTheSameLight) {
   const auto grid = make_grid({40, 40, 40}, [](const Vec3& p) { return std::max(0.0, 1 - norm(p - Vec3(19.5)) / 18); });
   for (const bool is_shaded : {false, true}) {

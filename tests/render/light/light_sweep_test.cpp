@@ -93,6 +93,35 @@ TEST(LightCells, MeanExtinctionOfAVolume) {
   EXPECT_GT(right, 0.5 * sum);
 }
 
+// No light passes between the cells of a closed surface, from any direction.
+TEST(LightCells, ASurfaceIsTight) {
+  FramePacket packet;
+  const auto grid = make_grid({48, 48, 48}, [](const Vec3& p) { return 20.3 - norm(p - Vec3(23.5)); });
+  packet.isosurfaces.push_back({grid, 0, {1, 1, 1}});
+  packet.illumination.bounds = grid->world_bounds();
+  const LightCells cells = make_light_cells(packet);
+  const Vec3 middle = (Vec3(23.5) - cells.lo) / cells.edge;
+  for (const Vec3& to : {Vec3(0, 0, 1), Vec3(1, 1, 1), Vec3(1, 0, -1), Vec3(-1, 2, 3), Vec3(-3, -1, 0.5)})
+    EXPECT_LT(sweep_light(cells, direction(to))[cells.index(int(middle.x), int(middle.y), int(middle.z))], 0.02) << to.x;
+}
+
+// A symmetric volume receives the same light from opposite sides.
+TEST(LightCells, LightIsSymmetric) {
+  FramePacket packet;
+  const auto grid = make_grid({32, 32, 32}, [](const Vec3& p) { return std::fabs(p.z - 15.5) < 8 ? 1 : 0; });
+  packet.volumes.push_back(volume_item(grid, {{0, 0}, {1, 0.1}}));
+  packet.illumination.bounds = grid->world_bounds();
+  const LightCells cells = make_light_cells(packet);
+  ASSERT_NEAR(cells.edge, 1, 1e-12);
+  const std::vector<float> above = sweep_light(cells, {0, 0, 1}), below = sweep_light(cells, {0, 0, -1});
+  const int first = int(-cells.lo.z), middle = int(16 - cells.lo.x);  // cell of voxel 0
+  for (int z = 0; z < 32; ++z) {
+    const float share = above[cells.index(middle, middle, first + z)];
+    EXPECT_NEAR(share, below[cells.index(middle, middle, first + 31 - z)], 1e-5) << z;
+    EXPECT_NEAR(share, std::exp(-0.1 * std::clamp(23.5 - z, 0.0, 16.0)), 1e-3) << z;
+  }
+}
+
 TEST(LightCells, SurfacesAreOpaqueAndThinTubesAreNot) {
   FramePacket packet;
   packet.meshes.push_back({square_at(0, 2), {1, 1, 1}});
