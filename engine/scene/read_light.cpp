@@ -2,6 +2,7 @@
 /// Reads what lights the scene: "lights", "environment", "ambient_occlusion" and "shadows".
 #include <algorithm>
 
+#include "engine/base/camera_limits.h"
 #include "engine/base/text.h"
 #include "engine/scene/readers.h"
 #include "engine/scene/to_json.h"

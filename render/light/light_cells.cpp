@@ -37,8 +37,8 @@ class TransmittanceTable {
   }
   float operator()(float value) const {
     if (entries_.empty()) return at(value);
-    const float place = std::clamp((value - lo_) * per_value_, 0.0f, float(kEntries - 1));
-    return entries_[std::size_t(place + 0.5f)];
+    const float place = (value - lo_) * per_value_ + 0.5f;  // the nearest entry
+    return entries_[std::size_t(std::clamp(place, 0.0f, float(kEntries - 1)))];
   }
 
  private:
