@@ -14,7 +14,8 @@ namespace catena::render {
 namespace {
 
 constexpr double kOpaqueDepth = 8;  // optical depth of a cell that an opaque surface crosses
-constexpr int kMargin = 3;          // empty cells around everything
+constexpr double kAside = 0.45;  // distance of a mesh's opaque points from it, in cells: less than half, so that an even one takes one cell
+constexpr int kMargin = 3;       // empty cells around everything
 
 double optical_depth(double opacity) { return opacity >= 1 ? kOpaqueDepth : std::min(kOpaqueDepth, -std::log1p(-opacity)); }
 
@@ -97,7 +98,7 @@ class Caster {
                  c = mesh.vertices[mesh.triangles[t + 2]] - a;
       const int steps = steps_of(std::max({norm(b), norm(c), norm(c - b)}));
       const Vec3 normal = cross(b, c);
-      const Vec3 aside = norm(normal) > 0 ? 0.5 * cells_.edge * direction(normal) : Vec3(0.0);
+      const Vec3 aside = norm(normal) > 0 ? kAside * cells_.edge * direction(normal) : Vec3(0.0);
       for (int i = 0; i <= steps; ++i)
         for (int j = 0; j <= steps - i; ++j)
           for (const double side : {-1.0, 1.0})
