@@ -196,11 +196,7 @@ Outcome read_orientation_marker(Scene& scene, const json::Node& node) {
   return Done{};
 }
 
-Outcome read_status(Scene& scene, const json::Node& node) {
-  if (node.kind != json::Kind::boolean) return json::error_at(node, "\"status\" is not a boolean; true or false was expected");
-  scene.annotations.show_status = node.boolean;
-  return Done{};
-}
+Outcome read_status(Scene& scene, const json::Node& node) { return read_boolean(node, scene.annotations.show_status); }
 
 Outcome read_title(Scene& scene, const json::Node& node) {
   CATENA_TRY(scene.annotations.title, json::as_string(node, "title"));

@@ -11,19 +11,6 @@ namespace {
 
 using schema::Section;
 
-/// Reads a spatial reference: true (defaults), false (none) or an object.
-template <class T>
-Outcome read_on_off(Scene& scene, const json::Node& node, const Table<T>& table, std::optional<T>& out) {
-  if (node.kind == json::Kind::boolean && !node.boolean) return Done{};
-  if (node.kind != json::Kind::boolean && node.kind != json::Kind::object)
-    return json::error_at(node, in_quotes(node.label) + " is neither true, false nor an object; one of them was expected");
-  T made;
-  if constexpr (requires { made.where; }) made.where = node;
-  if (node.kind == json::Kind::object) CATENA_CHECK(table.read(scene, node, made));
-  out = std::move(made);
-  return Done{};
-}
-
 const Table<BoundingBox>& bounding_box_table() {
   static const auto table = [] {
     Table<BoundingBox> t;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// Reads what lights the scene: "lights", "environment", "ambient_occlusion" and "shadows".
-#include <algorithm>
-
 #include "engine/base/camera_limits.h"
 #include "engine/base/text.h"
 #include "engine/scene/readers.h"
@@ -57,12 +55,12 @@ Outcome read_environment(Scene& scene, const json::Node& node) {
   if (node.kind == json::Kind::object) {
     CATENA_CHECK(environment_table().read(scene, node, light));
   } else {
-    const auto color = json::as_vec3(node, "environment");
-    if (!color || std::min({color->x, color->y, color->z}) < 0 || std::max({color->x, color->y, color->z}) > 1)
+    const auto color = as_color(node);
+    if (!color)
       return json::error_at(node,
                             "\"environment\" is not a colour; [r, g, b] with components from 0 to 1, or an object with \"sky\" and "
                             "\"ground\", was expected");
-    light.sky = light.ground = {static_cast<float>(color->x), static_cast<float>(color->y), static_cast<float>(color->z)};
+    light.sky = light.ground = *color;
   }
   scene.environment_light = light;
   return Done{};
@@ -79,22 +77,6 @@ const Table<AmbientOcclusion>& ambient_occlusion_table() {
     return t;
   }();
   return table;
-}
-
-Outcome read_ambient_occlusion(Scene& scene, const json::Node& node) {
-  if (node.kind == json::Kind::boolean) {
-    if (node.boolean) scene.ambient_occlusion.emplace();
-    return Done{};
-  }
-  if (node.kind != json::Kind::object)
-    return json::error_at(node, "\"ambient_occlusion\" is neither true, false nor an object; one of them was expected");
-  return ambient_occlusion_table().read(scene, node, scene.ambient_occlusion.emplace());
-}
-
-Outcome read_shadows(Scene& scene, const json::Node& node) {
-  if (node.kind != json::Kind::boolean) return json::error_at(node, "\"shadows\" is not a boolean; true or false was expected");
-  scene.shadows = node.boolean;
-  return Done{};
 }
 
 }  // namespace
@@ -118,14 +100,16 @@ Part environment_part() {
 }
 
 Part ambient_occlusion_part() {
-  return {{"ambient_occlusion", "Darkens what is enclosed: the share of the environment's light that arrives.", Section::Layout::on_off,
-           ambient_occlusion_table().keys()},
-          read_ambient_occlusion};
+  return {
+      {"ambient_occlusion", "Darkens what is enclosed: the share of the environment's light that arrives.", Section::Layout::on_off,
+       ambient_occlusion_table().keys()},
+      [](Scene& scene, const json::Node& node) { return read_on_off(scene, node, ambient_occlusion_table(), scene.ambient_occlusion); }};
 }
 
 Part shadows_part() {
   const Key key = schema::boolean("shadows", "Shadows of the lights that are fixed to the scene.").with_default("false");
-  return {{"shadows", "Shadows of lights that are fixed to the scene, of all that is drawn.", Section::Layout::value, {key}}, read_shadows};
+  return {{"shadows", "Shadows of lights that are fixed to the scene, of all that is drawn.", Section::Layout::value, {key}},
+          [](Scene& scene, const json::Node& node) { return read_boolean(node, scene.shadows); }};
 }
 
 std::string to_json(const Light& light) { return light_table().write({}, light); }

@@ -73,10 +73,9 @@ Outcome read_background(Scene& scene, const json::Node& node) {
     return Done{};
   }
   const std::string expected = "[r, g, b] with components from 0 to 1, or \"transparent\", was expected";
-  const auto color = json::as_vec3(node, "background");
-  const bool valid = color && std::min({color->x, color->y, color->z}) >= 0 && std::max({color->x, color->y, color->z}) <= 1;
-  if (!valid) return json::error_at(node, "\"background\" is not a colour; " + expected);
-  scene.background.color = {static_cast<float>(color->x), static_cast<float>(color->y), static_cast<float>(color->z)};
+  const auto color = as_color(node);
+  if (!color) return json::error_at(node, "\"background\" is not a colour; " + expected);
+  scene.background.color = *color;
   return Done{};
 }
 
@@ -98,11 +97,7 @@ Outcome read_quality(Scene& scene, const json::Node& node) {
 
 constexpr double kMaxStretchRatio = 1e9;
 
-Outcome read_jitter(Scene& scene, const json::Node& node) {
-  if (node.kind != json::Kind::boolean) return json::error_at(node, "\"jitter\" is not a boolean; true or false was expected");
-  scene.jitter = node.boolean;
-  return Done{};
-}
+Outcome read_jitter(Scene& scene, const json::Node& node) { return read_boolean(node, scene.jitter.emplace()); }
 
 Outcome read_stretch(Scene& scene, const json::Node& node) {
   const auto factors = json::as_vec3(node, "stretch");
@@ -118,6 +113,12 @@ Outcome read_stretch(Scene& scene, const json::Node& node) {
 using schema::Section;
 
 }  // namespace
+
+std::optional<Color> as_color(const json::Node& node) {
+  const auto color = json::as_vec3(node, node.label);
+  if (!color || std::min({color->x, color->y, color->z}) < 0 || std::max({color->x, color->y, color->z}) > 1) return std::nullopt;
+  return Color{static_cast<float>(color->x), static_cast<float>(color->y), static_cast<float>(color->z)};
+}
 
 TuningTargets image_targets(std::string_view quality) {
   TuningTargets targets;

@@ -46,6 +46,17 @@ Outcome each_item(const json::Node& node, Read&& read) {
   return Done{};
 }
 
+/// Reads true or false.
+inline Outcome read_boolean(const json::Node& node, bool& out) {
+  if (node.kind != json::Kind::boolean)
+    return json::error_at(node, in_quotes(node.label) + " is not a boolean; true or false was expected");
+  out = node.boolean;
+  return Done{};
+}
+
+/// Returns the color of [r, g, b] with components from 0 to 1; nullopt: something else.
+std::optional<Color> as_color(const json::Node& node);
+
 /// Returns whether the text matches [a-z][a-z0-9_]*.
 bool is_identifier(std::string_view text);
 /// Checks that a name is an identifier. `kind` names the object in the message: "mesh".
@@ -94,6 +105,19 @@ Result<Entity> read_widget_name(const Scene& scene, const json::Node& object, st
 
 template <class T>
 using Table = schema::StructSchema<T, Scene>;
+
+/// Reads true (defaults), false (none) or an object.
+template <class T>
+Outcome read_on_off(Scene& scene, const json::Node& node, const Table<T>& table, std::optional<T>& out) {
+  if (node.kind == json::Kind::boolean && !node.boolean) return Done{};
+  if (node.kind != json::Kind::boolean && node.kind != json::Kind::object)
+    return json::error_at(node, in_quotes(node.label) + " is neither true, false nor an object; one of them was expected");
+  T made;
+  if constexpr (requires { made.where; }) made.where = node;
+  if (node.kind == json::Kind::object) CATENA_CHECK(table.read(scene, node, made));
+  out = std::move(made);
+  return Done{};
+}
 
 /// Binds a key that names a field to the field's entity; if the key is optional and absent, the entity is none.
 template <class T, class C, class Access>

@@ -26,12 +26,14 @@ bool LightGrid::Casters::operator==(const Casters& other) const {
          glyphs == other.glyphs && spheres == other.spheres;
 }
 
-/// Computes the texels that differ from the last ones.
-void LightGrid::cast(const FramePacket& packet) {
+/// Computes the texels that differ from the last ones. Returns whether any may.
+bool LightGrid::cast(const FramePacket& packet) {
   const IlluminationItem& next = packet.illumination;
   const bool is_new = texels_.size() != cells_.count();
   if (is_new) texels_.assign(cells_.count(), {255, 255, 255, 255});
+  bool is_changed = is_new;
   const auto set = [&](std::size_t channel, const auto& share_of_cell) {
+    is_changed = true;
     parallel_for(texels_.size(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) texels_[k][channel] = to_byte(share_of_cell(k));
     });
@@ -59,6 +61,7 @@ void LightGrid::cast(const FramePacket& packet) {
   }
   illumination_ = next;
   lights_ = packet.lights;
+  return is_changed;
 }
 
 Outcome LightGrid::update(vk::Device& device, const FramePacket& packet, bool is_only_view) {
@@ -85,8 +88,7 @@ Outcome LightGrid::update(vk::Device& device, const FramePacket& packet, bool is
     if (!(cells_.edge > 0)) return Done{};
   }
   if (!is_same || !(item == illumination_) || packet.lights != lights_) {
-    cast(packet);
-    CATENA_CHECK(upload(device));
+    if (cast(packet)) CATENA_CHECK(upload(device));
     casters_ = std::move(casters);
   }
   device.share(image_, linear_);
@@ -100,14 +102,17 @@ Outcome LightGrid::upload(vk::Device& device) {
   CATENA_CHECK(vk::upload_planes(device, image_, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
     std::memcpy(out, texels_.data() + std::size_t(first) * nx * ny, std::size_t(count) * nx * ny * kTexelBytes);
   }));
-  ++version_;
   // cells that a surface crosses reach up to 0.9 of an edge in front of it: an open surface is not darkened by itself
   constexpr double kOffsetCells = 2.5, kNearestCells = 1.6;
-  surface_offset_ = kOffsetCells * cells_.edge;
+  place_.lo = cells_.lo;
+  place_.size = cells_.edge * Vec3(cells_.size.x, cells_.size.y, cells_.size.z);
+  place_.cell = cells_.edge;
+  place_.surface_offset = kOffsetCells * cells_.edge;
   const IlluminationItem& item = illumination_;
-  open_share_ = 1;
+  place_.open_share = 1;
   if (item.occlusion_reach > 0)
-    open_share_ = 1 - item.occlusion_strength * (1 - open_environment(kNearestCells * cells_.edge, item.occlusion_reach));
+    place_.open_share = 1 - item.occlusion_strength * (1 - open_environment(kNearestCells * cells_.edge, item.occlusion_reach));
+  ++place_.version;
   return Done{};
 }
 

@@ -136,7 +136,7 @@ Outcome Renderer::Impl::prepare(Frame& frame) {
   frame.written_targets = 0;
   frame.rays = CameraRays::make(frame.packet, bounds, of_rays.empty() ? of_surfaces : of_rays);
   CATENA_CHECK(light.update(*device, frame.packet, frame.is_first && frame.is_last));
-  frame.rays.light_place = {light.lo(), light.size(), light.edge(), light.surface_offset(), light.open_share(), light.version()};
+  frame.rays.light_place = light.place();
   return targets.ensure(*device, frame.packet.width, frame.packet.height, needed);
 }
 
