@@ -170,6 +170,9 @@ struct Volume {
   bool clipped = true;                            ///< Cut by the clip planes
   Projection projection = Projection::composite;  ///< Rule that combines the values along a ray
   std::optional<ColorBy> color_by{};              ///< Colors by another field; composite only
+  double albedo = 1;                              ///< Factor on the color of scattered light, 0 to 1; look `lit`
+  double anisotropy = 0;                          ///< g of the phase function, above -1 and below 1; look `lit`
+  double reflected_share = 1;                     ///< Share that the gradient reflects if `shaded`, 0 to 1; look `lit`
 };
 
 /// Surface on which a scalar field has a given value.
@@ -499,6 +502,10 @@ struct AmbientOcclusion {
   double reach = 0;     ///< Distance at which an occluder counts by 1/e, world units; 0: a tenth of the diagonal
   double strength = 1;  ///< Share of the occlusion that is applied, 0 to 1
 };
+
+/// Space in which colors and light are added: `plain`: the display encoding; `lit`: linear radiance. automatic: `lit` if the scene states
+/// `environment`, `ambient_occlusion` or `shadows`.
+enum class Look { automatic, plain, lit };
 
 /// A directional light. Without any light the scene has a headlight.
 struct Light {

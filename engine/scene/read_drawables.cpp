@@ -24,6 +24,15 @@ const Table<Volume>& volume_table() {
         },
         [](const Scene&, const Volume& v) { return transfer_members(v.transfer); });
     t.bind(schema::boolean("shade", "Lighting by the gradient of the field."), &Volume::shaded);
+    t.bind(schema::number("albedo", "", "Factor on the colour of the light that is scattered; with `\"look\": \"lit\"`.").within(0, 1),
+           &Volume::albedo);
+    t.bind(schema::number("anisotropy", "", "Henyey and Greenstein's g: above 0, light is scattered forwards; with `\"look\": \"lit\"`.")
+               .within(-0.99, 0.99),
+           &Volume::anisotropy);
+    t.bind(schema::number("reflected_share", "",
+                          "With `shade`, share of the light that the gradient reflects; the rest is scattered; with `\"look\": \"lit\"`.")
+               .within(0, 1),
+           &Volume::reflected_share);
     t.bind(clip_key(), &Volume::clipped);
     t.companion(visible_key());
     t.bind(schema::choice("projection", {"composite", "maximum", "minimum", "average"},

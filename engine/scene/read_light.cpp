@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Reads what lights the scene: "lights", "environment", "ambient_occlusion" and "shadows".
+/// Reads what lights the scene: "look", "lights", "environment", "ambient_occlusion" and "shadows".
 #include "engine/base/camera_limits.h"
 #include "engine/base/text.h"
 #include "engine/scene/readers.h"
@@ -104,6 +104,19 @@ Part ambient_occlusion_part() {
       {"ambient_occlusion", "Darkens what is enclosed: the share of the environment's light that arrives.", Section::Layout::on_off,
        ambient_occlusion_table().keys()},
       [](Scene& scene, const json::Node& node) { return read_on_off(scene, node, ambient_occlusion_table(), scene.ambient_occlusion); }};
+}
+
+Part look_part() {
+  const Key key = schema::choice("look", {"lit", "plain"},
+                                 "Colours and light are added as linear radiance (`lit`) or in the encoding of the display (`plain`).")
+                      .with_default("lit if the scene has environment, ambient_occlusion or shadows");
+  return {{"look", "Space in which colours and light are added.", Section::Layout::value, {key}},
+          [](Scene& scene, const json::Node& node) -> Outcome {
+            bool is_plain = false;
+            CATENA_CHECK(schema::read_value(schema::choice("look", {"lit", "plain"}, ""), node, is_plain));
+            scene.look = is_plain ? Look::plain : Look::lit;
+            return Done{};
+          }};
 }
 
 Part shadows_part() {

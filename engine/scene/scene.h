@@ -56,6 +56,7 @@ struct Scene {
   std::optional<EnvironmentLight> environment_light;  ///< Empty: gray
   std::optional<AmbientOcclusion> ambient_occlusion;  ///< Empty: none
   bool shadows = false;                               ///< The lights cast shadows
+  Look look = Look::automatic;                        ///< Space in which light is added
   std::string quality;         ///< Image quality: draft, balanced, reference, time=MS, error=E or step=VOXELS; empty: not specified
   TuningTargets tuning;        ///< Targets stated by `quality` and "coupling"
   Entity cursor;               ///< Entity that has the Cursor component

@@ -12,7 +12,9 @@
 #include "render/extract/auto_camera.h"
 #include "render/extract/drawable.h"
 #include "render/extract/extract_internal.h"
+#include "render/extract/linear_colors.h"
 #include "render/extract/stretch.h"
+#include "render/frame/linear_color.h"
 
 namespace catena::render {
 
@@ -149,6 +151,7 @@ void set_view(const scene::Scene& scene, const View& view, FramePacket& packet) 
   const Bounds drawn = drawn_bounds(packet);
   update_box_lines(scene, drawn.empty() ? packet_bounds(packet) : drawn, packet);
   update_fog(scene, packet_bounds(packet), packet);
+  if (packet.fog && packet.illumination.is_linear) packet.fog->color = to_linear(packet.fog->color);
   update_widgets(scene, data_bounds(packet), packet);
   update_eyes(packet, scene.stereo);
 }
@@ -205,6 +208,7 @@ Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width
   extract_feet(scene, drawn, packet);
   extract_environment(scene, drawn.empty() ? packet_bounds(packet) : drawn, packet);
   extract_widgets(scene, data_bounds(packet), packet);
+  if (packet.illumination.is_linear) make_colors_linear(packet);
   update_eyes(packet, scene.stereo);
   CATENA_CHECK(check_eye_separation(packet, scene.stereo));
   return packet;

@@ -171,12 +171,15 @@ FogItem fog_of(const scene::Fog& fog, const Bounds& drawn, const FramePacket& pa
 void extract_light(const scene::Scene& scene, FramePacket& packet) {
   for (const scene::Light& light : scene.lights) {
     const auto i = static_cast<float>(light.intensity);
-    packet.lights.push_back({light.direction, {i * light.color.r, i * light.color.g, i * light.color.b}, light.follows_camera, light.angular_size_deg});
+    packet.lights.push_back(
+        {light.direction, {i * light.color.r, i * light.color.g, i * light.color.b}, light.follows_camera, light.angular_size_deg});
   }
   // those that cast shadows come first
   if (scene.shadows) std::ranges::stable_partition(packet.lights, [](const LightItem& light) { return !light.camera_relative; });
   IlluminationItem& item = packet.illumination;
   item.shadows = scene.shadows;
+  const bool is_lit = scene.environment_light || scene.ambient_occlusion || scene.shadows;
+  item.is_linear = scene.look == scene::Look::lit || (scene.look == scene::Look::automatic && is_lit);
   item.bounds = drawn_bounds(packet);
   if (scene.ambient_occlusion) {
     constexpr double kReachShare = 0.1;

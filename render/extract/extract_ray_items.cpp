@@ -61,6 +61,7 @@ Outcome extract_volumes(const scene::Scene& scene, FramePacket& packet) {
     const std::uint32_t id = packet.add_object("volume", entity_name(scene, volume.field), volume.where.label);
     packet.volumes.push_back({std::move(grid), std::move(transfer), volume.shaded, id, volume.clipped, projection_of(volume.projection),
                               std::move(color_by), any.paged});
+    packet.volumes.back().scattering = {volume.albedo, volume.anisotropy, volume.reflected_share};
   }
   return Done{};
 }

@@ -58,8 +58,11 @@ struct IlluminationItem {
   Color sky{0.2f, 0.2f, 0.2f}, ground{0.2f, 0.2f, 0.2f};  ///< light from above (+z) and from below; in between they are mixed
   double occlusion_reach = 0;                             ///< an occluder at this distance counts by 1/e, display units; 0: no occlusion
   double occlusion_strength = 1;                          ///< share of the occlusion that is applied
-  bool shadows = false;                                   ///< the first kMaxShadows lights cast shadows, if they are fixed in the world
-  Bounds bounds{};                                        ///< of what casts shadows, display units
+  /// Light is added in linear radiance and converted to the display encoding at the end. The colors of fog, volumes, isosurfaces
+  /// and slices are linear then (render/extract/linear_colors.h). False: it is added in the display encoding.
+  bool is_linear = false;
+  bool shadows = false;  ///< the first kMaxShadows lights cast shadows, if they are fixed in the world
+  Bounds bounds{};       ///< of what casts shadows, display units
   /// Returns whether the environment is the default one.
   bool is_default() const { return sky == IlluminationItem{}.sky && ground == IlluminationItem{}.ground; }
   /// Returns whether items darken each other.
@@ -67,8 +70,8 @@ struct IlluminationItem {
   /// Compares all members.
   bool operator==(const IlluminationItem& other) const {
     return sky == other.sky && ground == other.ground && occlusion_reach == other.occlusion_reach &&
-           occlusion_strength == other.occlusion_strength && shadows == other.shadows && bounds.lo == other.bounds.lo &&
-           bounds.hi == other.bounds.hi;
+           occlusion_strength == other.occlusion_strength && is_linear == other.is_linear && shadows == other.shadows &&
+           bounds.lo == other.bounds.lo && bounds.hi == other.bounds.hi;
   }
 };
 /// Largest number of lights that cast shadows.
@@ -133,6 +136,14 @@ struct ColorSource {
   bool operator==(const ColorSource&) const = default;
 };
 
+/// How a volume scatters light; of FramePacket::illumination with linear radiance.
+struct Scattering {
+  double albedo = 1;      ///< factor on the color, 0 to 1; already applied to the transfer function's colors
+  double anisotropy = 0;  ///< g of Henyey and Greenstein's phase function, > -1 and < 1; > 0: forwards
+  double surface = 1;     ///< shaded volumes: share that is reflected by the gradient; the rest is scattered by the phase function
+  bool operator==(const Scattering&) const = default;
+};
+
 /// Volume to be rendered by ray casting.
 struct VolumeItem {
   std::shared_ptr<const field::ScalarGrid> grid;  ///< scalar field
@@ -144,6 +155,7 @@ struct VolumeItem {
   std::optional<ColorSource> color_by{};          ///< color by another field; composite only
   /// Finest level of the data of which `grid` is a coarser one, drawn by the fast raycast; null: `grid` is all.
   std::shared_ptr<const field::PagedGrid> paged{};
+  Scattering scattering{};  ///< how it scatters light
   bool operator==(const VolumeItem&) const = default;
 };
 

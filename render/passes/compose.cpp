@@ -69,11 +69,12 @@ Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
   Targets& targets = frame.targets;
   const bool opaque = frame.has(target::opaque_color), volume = frame.has(target::volume), smooth = smooths_edges(frame);
   const bool ghost = frame.has(target::occluded_overlay) && frame.occluded_area.extent.width > 0 && frame.occluded_area.extent.height > 0;
+  const bool is_linear = frame.packet.illumination.is_linear;
   const std::array<float, 4>& background = frame.packet.background;
   if (frame.half_resolution_volume) {
     CATENA_ASSERT(!ghost);  // without opaque items there is no cursor, and so no ghost
     return upsample_.record(commands, *frame.half_resolution_volume, opaque ? &targets.opaque_color : nullptr, targets.placeholder,
-                            background, frame.half_resolution_area, targets.output);
+                            background, is_linear, frame.half_resolution_area, targets.output);
   }
   CATENA_TRY(const vk::Pipeline* plain, pipeline(frame, false));
   const vk::Pipeline* with_ghost = nullptr;
@@ -81,7 +82,8 @@ Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
     CATENA_TRY(with_ghost, pipeline(frame, true));
   }
   shared::ComposeData data{};
-  data.background = {background[0], background[1], background[2], background[3]};
+  data.background = background_data(background, is_linear);
+  data.is_linear = is_linear ? 1 : 0;
   data.sides = 4;
   data.ends = 2;
   data.max_step = kMaxStep;

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "render/frame/linear_color.h"
 #include "render/passes/renderer_impl.h"
 
 namespace catena::render {
@@ -201,11 +202,16 @@ Result<Image8> Renderer::sample_rays_once(const FramePacket& packet, const Rende
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t pixel = spacing * (i / result.width * packet.width + i % result.width);
     const float behind = opaque.empty() ? 1 : 1 - imath_half_to_float(opaque[4 * pixel + 3]), through = 1 - volume[4 * i + 3];
+    // linear radiance is composited with the background after the conversion, as an image with straight alpha is
+    const bool is_linear = packet.illumination.is_linear;
+    const float alpha = 1 - through * behind;
     for (std::size_t c = 0; c < 3; ++c) {
-      const float sum = behind * packet.background[c] + (opaque.empty() ? 0 : imath_half_to_float(opaque[4 * pixel + c]));
-      result.rgba[4 * i + c] = to_byte(volume[4 * i + c] + through * sum);
+      const float sum = (is_linear ? 0 : behind * packet.background[c]) + (opaque.empty() ? 0 : imath_half_to_float(opaque[4 * pixel + c]));
+      float value = volume[4 * i + c] + through * sum;
+      if (is_linear && alpha > 0) value = alpha * float(to_display(double(value / alpha))) + (1 - alpha) * packet.background[c];
+      result.rgba[4 * i + c] = to_byte(value);
     }
-    result.rgba[4 * i + 3] = to_byte(1 - through * behind);
+    result.rgba[4 * i + 3] = to_byte(alpha);
   }
   return result;
 }

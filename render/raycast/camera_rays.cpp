@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "render/raycast/camera_rays.h"
 
+#include "render/frame/linear_color.h"
+
 #include <glm/matrix.hpp>
 
 namespace catena::render {
@@ -53,6 +55,13 @@ AlongRays along_rays(const CameraRays& rays, const Mat3& from_world, const Vec3&
 }
 
 /// Returns the part of the light grid's data that rays and triangles share.
+/// Display encoding: diffuse 0.7 and a highlight; a volume is shown as it is by the default lights. Linear radiance: a light's irradiance
+/// is pi times its color, of which a surface reflects cos / pi and a volume scatters 1 / (4 pi).
+shared::LookData look_of(const IlluminationItem& illumination) {
+  if (illumination.is_linear) return {1, 0, 0.25f, 1.0f / 3, 1};
+  return {0.7f, 0.2f, 0.8f, 0.5f, 0};
+}
+
 shared::LightGridData light_grid_of(const LightPlace& place) {
   shared::LightGridData data{};
   data.is_on = place.version > 0 ? 1 : 0;
@@ -121,6 +130,7 @@ shared::FrameData CameraRays::frame_data() const {
     grid.direction = along.direction, grid.direction_x = along.direction_x, grid.direction_y = along.direction_y;
     grid.from_normal = glm::mat3(light_place.surface_offset * scale);
   }
+  f.look = look_of(illumination);
   f.fog = fog_of(*this);
   return f;
 }
@@ -143,6 +153,7 @@ shared::GridData CameraRays::grid_data(const ResidentGrid& resident, const field
   g.value_offset = resident.offset;
   g.value_scale = resident.scale;
   g.nearest = resident.nearest ? 1 : 0;
+  g.surface_share = 1;
   return g;
 }
 
@@ -175,6 +186,7 @@ shared::MeshFrameData CameraRays::mesh_frame_data(const Vec3& origin) const {
     m.light_grid.origin = narrow(scale * (camera.position - light_place.lo));
     m.light_grid.from_normal = glm::mat3(light_place.surface_offset * scale * world_from_view);
   }
+  m.look = look_of(illumination);
   m.fog = fog_of(*this);
   m.clip_count = std::uint32_t(clip_planes.size());
   for (std::size_t i = 0; i < clip_planes.size(); ++i) {
@@ -224,6 +236,18 @@ VkRect2D covered_area(std::span<const field::Field* const> fields, const Camera&
   for (const field::Field* field : fields)
     for (int i = 0; i < 8; ++i) corners.push_back(field->corner(i));
   return covered_area(corners, camera);
+}
+
+glm::vec4 background_data(const std::array<float, 4>& background, bool is_linear) {
+  glm::vec4 data(background[0], background[1], background[2], background[3]);
+  if (is_linear)
+    for (int c = 0; c < 3; ++c) data[c] = float(to_linear(double(data[c])));
+  return data;
+}
+
+void set_scattering(const Scattering& scattering, shared::GridData& grid) {
+  grid.anisotropy = float(scattering.anisotropy);
+  grid.surface_share = float(scattering.surface);
 }
 
 }  // namespace catena::render

@@ -4,6 +4,7 @@
 #pragma once
 #include <vulkan/vulkan.h>
 
+#include <array>
 #include <span>
 
 #include "engine/field/grid/grid.h"
@@ -45,6 +46,12 @@ struct CameraRays {
   /// Returns the coefficients of the signed distance from a plane along a pixel's ray.
   shared::ClipData clip_data(const Plane& plane) const;
 };
+
+/// Returns a background color, which is in the display encoding, in the encoding of the images.
+glm::vec4 background_data(const std::array<float, 4>& background, bool is_linear);
+
+/// Writes how a volume scatters light.
+void set_scattering(const Scattering& scattering, shared::GridData& grid);
 
 /// Returns the pixel rectangle that contains the projections of the points, enlarged by 1 pixel; the whole image if one of them is behind
 /// the camera; empty without points.

@@ -37,7 +37,7 @@ UpsampleDispatch make_upsample_dispatch(const VkRect2D& area, const VkExtent3D& 
 }
 
 Outcome Upsampler::record(vk::Commands& commands, vk::Image& half_grid, vk::Image* opaque, const vk::Image& none,
-                          const std::array<float, 4>& background, const VkRect2D& area, vk::Image& image_size) {
+                          const std::array<float, 4>& background, bool is_linear, const VkRect2D& area, vk::Image& image_size) {
   vk::Pipeline& pipeline = pipelines_[opaque ? 1 : 0];
   if (!pipeline) {
     vk::ComputeInfo info;
@@ -62,7 +62,8 @@ Outcome Upsampler::record(vk::Commands& commands, vk::Image& half_grid, vk::Imag
     commands.end_pass();
   }
   UpsampleDispatch groups = make_upsample_dispatch(pixels, size);
-  groups.data.background = {background[0], background[1], background[2], background[3]};
+  groups.data.background = background_data(background, is_linear);
+  groups.data.is_linear = is_linear ? 1 : 0;
   CATENA_CHECK(vk::write_uniform(*device_, uniform_, groups.data));
   commands.transition(half_grid, vk::kFragmentRead);
   commands.transition(image_size, vk::kComputeWrite);
@@ -220,9 +221,12 @@ Result<shared::FrameData> FastVolumeRaycast::write_frame(const CameraRays& rays,
   frame.grids[0] = rays.grid_data(resources_.local_geometry(), mapping);
   frame.grids[0].id = resources_.items().front().id;
   frame.grids[0].is_clipped = resources_.items().front().is_clipped;
+  set_scattering(resources_.items().front().scattering, frame.grids[0]);
   frame.termination = float(settings.termination);
   frame.step_world = float(settings.step_voxels * mapping.min_voxel_edge());
-  lights_ = rays.light_place.version > 0 ? 2 : !rays.lights.empty() || !rays.illumination.is_default() ? 1 : 0;
+  lights_ = rays.light_place.version > 0 || rays.illumination.is_linear ? 2
+            : !rays.lights.empty() || !rays.illumination.is_default()   ? 1
+                                                                        : 0;
   CATENA_CHECK(vk::write_uniform(*device_, frame_, frame));
   return frame;
 }

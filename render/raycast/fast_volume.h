@@ -154,7 +154,7 @@ class Upsampler {
   /// Renders into `image`. `opaque` null: nothing opaque, `none` is bound instead. `area`: pixels that the volume may cover. Transitions
   /// the images to their layouts.
   Outcome record(vk::Commands& commands, vk::Image& half_grid, vk::Image* opaque, const vk::Image& none,
-                 const std::array<float, 4>& background, const VkRect2D& area, vk::Image& image);
+                 const std::array<float, 4>& background, bool is_linear, const VkRect2D& area, vk::Image& image);
 
  private:
   vk::Device* device_;

@@ -63,7 +63,8 @@ Result<const vk::Pipeline*> VolumeRaycast::pipeline(const PipelineKey& kind) {
   if (pipeline) return &pipeline;
   vk::GraphicsInfo info;
   info.vertex = kind.dirty_only ? vk::Spirv(kVolumeTilesShader) : vk::Spirv(kVolumeVertexShader);
-  info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {2, vk::DescriptorKind::texture}, {vk::kSharedBinding, vk::DescriptorKind::sampled}};
+  info.layout_bindings = {
+      {0, vk::DescriptorKind::uniform}, {2, vk::DescriptorKind::texture}, {vk::kSharedBinding, vk::DescriptorKind::sampled}};
   if (kind.dirty_only) info.layout_bindings.push_back({kChanged, vk::DescriptorKind::texture});
   if (!kind.is_layers_only()) info.layout_bindings.push_back({1, vk::DescriptorKind::buffer});
   add_grid_layout(info.layout_bindings, kind.grid_slots());
@@ -165,6 +166,7 @@ shared::GridData VolumeRaycast::volume_data(const CameraRays& rays, const Volume
   shared::GridData grid = rays.grid_data(*volume.resident, volume.item.grid->mapping());
   grid.id = volume.item.id;
   grid.is_clipped = volume.item.is_clipped;
+  set_scattering(volume.item.scattering, grid);
   grid.value_table = table_data(volume.lut, volume.table_start);
   if (!volume.factors.entries.empty()) grid.gradient_table = table_data(volume.factors, volume.factor_start);
   return grid;

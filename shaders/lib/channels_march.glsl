@@ -82,7 +82,7 @@ mat3x4 shading_gradients(RaySample a, RaySample b, vec4 middle) {
 // Returns the light on a channel by its gradient. `along_ray`: unit vector, world axes.
 Lighting light_of_channel(int channel, mat3x4 gradients, vec3 along_ray) {
   if ((SHADED_CHANNELS >> channel & 1u) == 0u) {
-    if (HAS_LIGHTS == 2u) return scattered_light();
+    if (HAS_LIGHTS == 2u) return scattered_light(frame.grids[0].anisotropy, -along_ray);
     return Lighting(vec3(1.0), vec3(0.0));
   }
   const vec3 normal = frame.grids[0].world_gradient * vec3(gradients[0][channel], gradients[1][channel], gradients[2][channel]);

@@ -29,6 +29,13 @@ vec3 normal_at(RaySample at) {
   return frame.grids[0].world_gradient * (SHADED == 2u ? smooth_gradient(at.p, at.s) : at.s.gradient);
 }
 
+// Returns the light of the scene on a gradient.
+Lighting reflected_light(vec3 gradient, vec3 to_camera) {
+  const Lighting light = lighting_of(gradient, to_camera);
+  if (HAS_LIGHTS != 2u) return light;
+  return with_phase(light, frame.grids[0].surface_share, frame.grids[0].anisotropy, to_camera);
+}
+
 // Returns the mean light of a headlight over half a segment, along which the derivative goes from a to b. `across2`: squared length of the gradient's
 // component across the ray. The derivative is known better than the gradient's direction; both sides are shaded alike.
 Lighting headlight_between(float a, float b, float across2) {
@@ -137,7 +144,7 @@ vec4 march_packed(vec2 q, float end) {
     normal = normal_at(s);
     along = dot(normal, along_ray);
     across2 = dot(normal, normal) - along * along;
-    if (HAS_LIGHTS != 0u) light = lighting_of(normal, -along_ray);
+    if (HAS_LIGHTS != 0u) light = reflected_light(normal, -along_ray);
   }
   vec3 last = vec3(0.0);
   const float begin = s.t, longest = m.h, voxels = length(m.ray.direction);
@@ -182,9 +189,9 @@ vec4 march_packed(vec2 q, float end) {
       const float along_middle = SHADED == 1u ? 1.5 * rise - 0.25 * end_sum : mix(0.5 * end_sum, 0.75 * rise + 0.125 * end_sum, by_rise);
       Lighting l0, l1;
       if (HAS_LIGHTS != 0u) {
-        const Lighting light_end = lighting_of(normal_end, -along_ray);
+        const Lighting light_end = reflected_light(normal_end, -along_ray);
         if (MASKED != 0u && !s.s.valid) light = light_end;
-        const Lighting light_middle = lighting_of(0.5 * (normal + normal_end) + (along_middle - 0.5 * end_sum) * along_ray, -along_ray);
+        const Lighting light_middle = reflected_light(0.5 * (normal + normal_end) + (along_middle - 0.5 * end_sum) * along_ray, -along_ray);
         l0 = mean_light(light, light_middle);
         l1 = mean_light(light_middle, light_end);
         light = light_end;
@@ -199,7 +206,7 @@ vec4 march_packed(vec2 q, float end) {
       sum += (transmittance - half_way) * lit(first.yzw, l0) + (half_way - after) * last;
     } else {
       if (HAS_LIGHTS == 2u) {
-        const Lighting scattered = scattered_light();
+        const Lighting scattered = scattered_light(frame.grids[0].anisotropy, -along_ray);
         first.yzw = lit(first.yzw, scattered);
         second.yzw = lit(second.yzw, scattered);
       }

@@ -19,5 +19,6 @@ vec3 mesh_color() {
                             length(vec2(dFdx(in_edges.z), dFdy(in_edges.z))));
   const vec3 pixels = in_edges / max(a_pixel, vec3(1e-30));
   const float line = clamp(EDGE_HALF_WIDTH + 0.5 - min(min(pixels.x, pixels.y), pixels.z), 0.0, 1.0);
-  return fogged(mix(lit(in_color, in_normal, to_camera()), EDGE_DARKNESS * in_color, line), in_depth);
+  const vec3 color = vertex_color(in_color);
+  return fogged(mix(lit(color, in_normal, to_camera()), EDGE_DARKNESS * color, line), in_depth);
 }

@@ -87,9 +87,10 @@ void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_s
           c.rgb = resolve_color(i, t, c.rgb);
           for (float on = light_is_on; on > 0.0; on = 0.0) {
             receive_in_volume(light_at(light_q, t));
-            if (!volume_is_shaded(i)) c.rgb = lit(c.rgb, scattered_light());
+            if (!volume_is_shaded(i)) c.rgb = lit(c.rgb, scattered_light(frame.grids[i].anisotropy, view_direction));
           }
-          if (volume_is_shaded(i)) c.rgb = lit(c.rgb, gradient, view_direction);
+          if (volume_is_shaded(i))
+            c.rgb = lit(c.rgb, with_phase(lighting_of(gradient, view_direction), frame.grids[i].surface_share, frame.grids[i].anisotropy, view_direction));
           if (HAS_FOG != 0u) c.rgb = fogged(c.rgb, t);
           emitted += c.a * c.rgb;
           sigma_sum += c.a;
@@ -149,7 +150,7 @@ float setup_pixel(vec2 q) {
   world_per_depth = length(direction);
   view_direction = -direction / world_per_depth;
   light_q = q;
-  light_is_on = frame.light_grid.is_on + float(q.x < -1e30);  // not uniform, as in as_nonuniform (rays.glsl)
+  light_is_on = max(frame.light_grid.is_on, frame.look.is_linear) + float(q.x < -1e30);  // not uniform, as in as_nonuniform (rays.glsl)
   // interleaved gradient noise (J. Jimenez, 2014): adjacent pixels differ strongly, so that the eye averages over them
   if (HAS_JITTER != 0u) jitter_offset = fract(52.9829189 * fract(dot(floor(q + frame.axis), vec2(0.06711056, 0.00583715))));
   return HAS_OPAQUE != 0u ? texelFetch(opaque_depth, ivec2(q + frame.axis), 0).r : NO_DEPTH;

@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Blends occluded_overlay over volume over opaque over background, premultiplied floats; writes straight alpha. Display values are not
-// converted. With SMOOTH_EDGES the contours of opaque items are antialiased.
+// Blends occluded_overlay over volume over opaque over background, premultiplied floats; writes straight alpha. Linear radiance is
+// converted to the display encoding before the overlay. With SMOOTH_EDGES the contours of opaque items are antialiased.
 #include "shaders/shared/frame.h"
 
 layout(constant_id = 0) const uint HAS_OPAQUE = 0;
@@ -18,6 +18,7 @@ layout(binding = 3) uniform texture2D occluded_overlay_color;
 layout(binding = 4) uniform texture2D opaque_depth;
 layout(binding = 5) uniform utexture2D opaque_id;
 layout(location = 0) out vec4 out_color;
+#include "shaders/lib/linear_color.glsl"
 #include "shaders/lib/smooth_edges.glsl"
 
 void main() {
@@ -35,6 +36,7 @@ void main() {
     sum = c + (1.0 - c.a) * sum;
     volume_alpha = c.a;
   }
+  sum = premultiplied_to_display(sum, compose.is_linear, gl_FragCoord.xy);
   if (HAS_OCCLUDED_OVERLAY != 0u) {
     // opacity of the occluder: 1 behind an opaque item, else (negative alpha) the volume's alpha
     const vec4 c = texelFetch(occluded_overlay_color, at, 0);

@@ -33,7 +33,7 @@ void main() {
   const float rim = 1.0 - smoothstep(RIM_PIXELS - 0.5, RIM_PIXELS + 0.5, inside);
   const float edge = 1.0 - smoothstep(EDGE_PIXELS - 0.5, EDGE_PIXELS + 0.5, inside);
   const float alpha = mix(FACE_ALPHA, RIM_ALPHA, rim);
-  const vec3 base = mesh_color();
+  const vec3 base = displayed_color(mesh_color());
   const vec3 color = mix(mix(base, vec3(1.0), RIM_WHITE * rim), EDGE_SHARE * base, edge);
   const bool hidden = texelFetch(opaque_id, ivec2(gl_FragCoord.xy), 0).r != in_id;
   out_color = vec4(alpha * color, hidden ? alpha : -alpha);

@@ -29,7 +29,7 @@ void main() {
   const float depth = in_color.w - frame.offset_depth + frame.offset.z;
   const vec3 view = vec3(slope.x, -slope.y, 1.0) * vec3(vec2(mix(depth, 1.0, float(frame.orthographic))), depth);
   receive_on_surface(frame.light_grid.from_view * view + frame.light_grid.origin, normal, to_camera);
-  out_color = vec4(fogged(lit(in_color.rgb, normal, to_camera), in_color.w), 1.0);
+  out_color = vec4(fogged(lit(vertex_color(in_color.rgb), normal, to_camera), in_color.w), 1.0);
   out_depth = in_color.w;
   out_id = in_id;
 }

@@ -38,7 +38,7 @@ void main() {
   const vec3 to_camera = mix(-ray, vec3(0.0, 0.0, -1.0), flat_view);
   const float depth = view.z + frame.offset_depth - frame.offset.z;
   receive_on_surface(frame.light_grid.from_view * view + frame.light_grid.origin, normal, to_camera);
-  out_color = vec4(fogged(lit(in_color, normal, to_camera), depth), 1.0);
+  out_color = vec4(fogged(lit(vertex_color(in_color), normal, to_camera), depth), 1.0);
   out_depth = depth;
   out_id = in_id & ID_MASK;
   gl_FragDepth = mix(frame.depth_near / max(view.z, 1e-30), (frame.depth_far - view.z) / (frame.depth_far - frame.depth_near), flat_view);

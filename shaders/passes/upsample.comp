@@ -16,6 +16,7 @@ layout(binding = 2) uniform texture2D half_resolution;
 layout(binding = 3, rgba8) uniform writeonly image2D image;
 
 #include "shaders/lib/four_point.glsl"
+#include "shaders/lib/linear_color.glsl"
 
 void finish(ivec2 at, vec4 volume) {
   const vec4 c = clamp_premultiplied(volume);
@@ -24,7 +25,7 @@ void finish(ivec2 at, vec4 volume) {
     const vec4 o = texelFetch(opaque_color, at, 0);
     sum = o + (1.0 - o.a) * sum;
   }
-  sum = c + (1.0 - c.a) * sum;
+  sum = premultiplied_to_display(c + (1.0 - c.a) * sum, upsample.is_linear, vec2(at));
   if (at.x < int(upsample.width) && at.y < int(upsample.height))
     imageStore(image, at, sum.a > 0.0 ? vec4(sum.rgb / sum.a, sum.a) : vec4(0.0));
 }

@@ -34,7 +34,8 @@ struct PageLevels {
 
 // Interpolation from every 2nd pixel to the image, in invocations from ray grid point first_x, first_y on.
 struct UpsampleData {
-  vec4 background;  // alpha 0: transparent
+  vec4 background;  // alpha 0: transparent; in the encoding of the images
+  float is_linear;  // 1: the images are linear radiance
   uint first_x, first_y;
   uint width, height;  // image size, pixels
 };

@@ -47,6 +47,7 @@ struct GridData {
   float nearest;    // 1: value of the nearest voxel center; 0: trilinear
   // Coloring by labels, 0.5: where the nearest voxel has no label, the nearest label of the cell is used; otherwise 0.
   float spread_labels;
+  float anisotropy, surface_share;  // volumes: of the phase function; share that the gradient reflects
 };
 
 // Directional light; the unit vector points to it: in world axes, for triangles in view axes.
@@ -67,6 +68,13 @@ struct LightGridData {
   float half_cell;   // half of a cell's edge, world units
   float open_gain;   // 1 / share of the environment that arrives at an open, even surface
   uint version;      // changes with the texture
+};
+
+// Model of the light (shaders/lib/lighting.glsl).
+struct LookData {
+  float diffuse, specular, scattered;  // share of a light that a surface reflects, in all directions and as a highlight, and a volume scatters
+  float zenith_share;                  // of the environment: change by the cosine of the normal and the zenith
+  float is_linear;                     // 1: colors and light are linear radiance; 0: in the display encoding
 };
 
 // Depth fog: the opacity of the fog color at depth t is min(max_opacity, (t - near) per_depth max_opacity).
@@ -102,6 +110,7 @@ struct FrameData {
   LightData lights[MAX_LIGHTS];
   vec3 sky, ground, zenith;  // environment: light from above and below, and the direction upwards
   LightGridData light_grid;
+  LookData look;
   FogData fog;
   GridData grids[MAX_GRIDS];
 };
@@ -125,6 +134,7 @@ struct MeshFrameData {
   LightData lights[MAX_LIGHTS];
   vec3 sky, ground, zenith;  // as in FrameData, in view axes
   LightGridData light_grid;
+  LookData look;
   FogData fog;
   vec4 clips[MAX_CLIP_PLANES];  // inside where dot(xyz, position) + w >= 0
 };
@@ -134,6 +144,7 @@ struct ComposeData {
   vec4 background;  // alpha 0: transparent
   int sides, ends;  // antialiasing of contours: 4 and 2
   int max_step;     // antialiasing of contours: pixels searched along a step in each direction
+  float is_linear;  // 1: the images are linear radiance
 };
 
 CATENA_SHARED_END

@@ -58,6 +58,10 @@ Result<double> Frames::draw(int frame, Outputs* outputs) {
   const std::int64_t start = now_ns();
   CATENA_TRY(const render::FramePacket next, packet(frame));
   const double extract_ms = ms_since(start);
+  if (path) {
+    CATENA_TRY(const double ms, draw_path(next, outputs, frame));
+    return extract_ms + ms;
+  }
   Outcome stopped = Done{};
   bool interrupted = false;
   const std::function<Outcome(const render::Band&)> take = [&](const render::Band& band) -> Outcome {
@@ -84,6 +88,29 @@ Result<double> Frames::draw(int frame, Outputs* outputs) {
                  true};
   if (outputs != nullptr) CATENA_CHECK(outputs->end_frame());
   return extract_ms + ms->wall_ms;
+}
+
+Result<double> Frames::draw_path(const render::FramePacket& packet, Outputs* outputs, int frame) {
+  const std::int64_t start = now_ns();
+  ProgressLine line("path tracing", 1);
+  const auto picture = render_path(*renderer, packet, *path, channels, [&](double done) {
+    line.update(done);
+    return !interrupt_->is_requested();
+  });
+  if (!picture) {
+    if (picture.error().system_failure) throw MachineFailure{picture.error().message};
+    return picture.error();
+  }
+  if (!*picture) throw MachineFailure{"interrupted: no incomplete file was kept"};
+  if (path_summary.empty())
+    for (const std::string& note : (*picture)->notes) print_message("note: " + note);
+  path_summary = (*picture)->summary;
+  if (outputs == nullptr) return ms_since(start);
+  if (first_ms == 0) first_ms = ms_since_process_start();
+  CATENA_CHECK(outputs->begin_frame(frame));
+  CATENA_CHECK(outputs->write((*picture)->band));
+  CATENA_CHECK(outputs->end_frame());
+  return ms_since(start);
 }
 
 Frames::Sample Frames::sample_of(const render::FramePacket& packet) const {

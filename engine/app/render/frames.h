@@ -45,11 +45,15 @@ class Frames {
   bool needs_full_resolution = false;  ///< A grid that is downsampled to fit into the GPU memory is an error.
   bool smooth_edges = true;            ///< Contours are antialiased in frames that are drawn in one piece.
   render::TilePlan plan;
+  std::optional<PathQuality> path;   ///< The frames are path traced.
+  std::string path_summary;          ///< Samples and error of the last path-traced frame.
   render::BandChannels channels;     ///< What the outputs need of each band.
   ProgressLine* progress = nullptr;  ///< Updated after each tile; null: not reported.
   double first_ms = 0;               ///< Time from process start to the first pixels on the host, ms.
 
  private:
+  /// Traces a frame and writes it. Returns milliseconds.
+  Result<double> draw_path(const render::FramePacket& packet, Outputs* outputs, int frame);
   /// Adds the planes of --layout ortho.
   Outcome add_planes(render::FramePacket& packet);
 

@@ -7,6 +7,7 @@
 #include "engine/app/render/outputs.h"
 #include "engine/app/render/video_writer.h"
 #include "engine/scene/time_steps.h"
+#include "render/extract/extract_internal.h"
 
 namespace catena::app {
 
@@ -42,6 +43,15 @@ Outcome check_frames(const RenderOptions& o, const std::vector<int>& steps) {
 Outcome check_shard_outputs(const RenderOptions& o) {
   if (!is_numbered(o.output) || video_kind(o.output))
     return Error{o.output + ": --shard divides the images of a sequence; the name of an image with %03d was expected"};
+  return Done{};
+}
+
+Outcome check_path_tracing(const RenderOptions& o, const scene::Scene& scene) {
+  if (scene.look == scene::Look::plain) return Error{"--quality path: light is linear radiance there; \"look\": \"lit\" was expected"};
+  if (!o.layout.empty() || render::stereo_view_count(scene.stereo) > 1)
+    return Error{"--quality path: a single view was expected, without --layout and stereo"};
+  if (o.tile > 0 || o.antialias > 0)
+    return Error{"--quality path: --tile and --antialias do not apply; samples are spread over each pixel"};
   return Done{};
 }
 

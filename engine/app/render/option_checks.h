@@ -15,6 +15,8 @@ Result<ImageSize> picture_size(const RenderOptions& o, const scene::Stereo& ster
 Outcome check_frames(const RenderOptions& o, const std::vector<int>& steps);
 /// Checks that the outputs of a shard are one file per frame.
 Outcome check_shard_outputs(const RenderOptions& o);
+/// Checks that a scene and the options suit path tracing.
+Outcome check_path_tracing(const RenderOptions& options, const scene::Scene& scene);
 /// Rejects what is chosen by times measured on one machine, which would differ between shards.
 Outcome check_shard_settings(const RenderOptions& o, const scene::Scene& scene, const std::string& quality_name, const Quality& quality);
 /// Rejects steps beyond the last one of the longest field. Steps inside data files are known only after the fields are loaded.

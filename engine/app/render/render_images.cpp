@@ -116,7 +116,13 @@ Outcome RenderRun::resolve() {
   CATENA_CHECK(o_.stereo.apply(scene_->stereo));
   CATENA_TRY(output_size_, picture_size(o_, scene_->stereo, size_));
   quality_name_ = !o_.quality.empty() ? o_.quality : scene_->quality.empty() ? "balanced" : scene_->quality;
-  CATENA_TRY(quality_, parse_quality(quality_name_));
+  CATENA_TRY(quality_.path, parse_path_quality(quality_name_));
+  if (quality_.path) {
+    CATENA_CHECK(check_path_tracing(o_, *scene_));
+    scene_->look = scene::Look::lit;
+  } else {
+    CATENA_TRY(quality_, parse_quality(quality_name_));
+  }
   if (shard) CATENA_CHECK(check_shard_settings(o_, *scene_, quality_name_, quality_));
   IoConflictChecker files(*scene_);
   files.add_input(o_.probe);
@@ -169,6 +175,7 @@ Outcome RenderRun::prepare() {
   frames_->renderer = machine(render::Renderer::create(device));
   frames_->settings = quality_.settings;
   frames_->channels = required_band_channels(o_);
+  frames_->path = quality_.path;
   frames_->smooth_edges = o_.antialias == 0 && o_.tile == 0;
   const auto antialias = static_cast<std::uint32_t>(std::max(1, o_.antialias)), tile = static_cast<std::uint32_t>(o_.tile);
   frames_->plan = render::stereo_view_count(scene_->stereo) > 1 || !o_.layout.empty()
@@ -242,9 +249,10 @@ Outcome RenderRun::draw() {
   for (const render::GridDownsampling& coarser : stats_.downsampled_grids) print_line(coarser.message());
   if (const render::PagingStats bricks = frames_->renderer->paging(); bricks.finest_level > 0 || bricks.resident < bricks.visible)
     print_line(bricks.message());
+  if (!frames_->path_summary.empty()) say("quality " + quality_name_ + ": " + frames_->path_summary);
   print_scene_notes(*scene_);
   say(fmt::format("{}: {}x{}, {}{}, on {}", o_.output, output_size_.width, output_size_.height, describe_contents(first_),
-                  stats_.tiles > 1 ? fmt::format(", {} tiles", stats_.tiles) : "", stats_.device));
+                  stats_.tiles > 1 ? fmt::format(", {} tiles", stats_.tiles) : "", quality_.path ? "the processor" : stats_.device));
   stats_.frame_ms.push_back(first_ms);
   for (const int frame : std::span(frame_list_).subspan(1)) {
     choose_frame_settings(frame);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/app/cli/options.h"
+#include "engine/app/render/path_quality.h"
 #include "engine/base/result.h"
 #include "render/frame/camera.h"
 #include "render/frame/camera_path.h"
@@ -80,6 +81,7 @@ Result<std::vector<int>> parse_steps(const std::string& words);
 struct Quality {
   render::RenderSettings settings;
   std::optional<render::QualityGoal> goal;
+  std::optional<PathQuality> path = {};       ///< `catena render`: the image is path traced
   std::optional<double> interactive_ms = {};  ///< Viewer: target time of a frame while something moves, ms; empty: the default
 };
 
