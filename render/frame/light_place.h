@@ -12,7 +12,7 @@ struct LightPlace {
   Vec3 lo{0.0}, size{0.0};    ///< display units
   double cell = 0;            ///< edge of a cell, display units
   double surface_offset = 0;  ///< distance from a surface, along its normal, at which light is looked up
-  double open_share = 1;      ///< share of the environment that arrives there, if the surface is even and nothing else is near
+  int planes = 0;             ///< number of planes of cells along z
   std::uint32_t version = 0;  ///< changes with the light; 0: nothing is cast
 };
 

@@ -72,18 +72,20 @@ class Caster {
 
   void add(const IsosurfaceItem& item) {
     if (!(item.opacity > 0)) return;
-    // voxels on both sides: no light passes between the cells, of which it crosses about two
-    const auto level = float(item.level), extinction = float((item.opacity >= 1 ? 1 : 0.5) * optical_depth(item.opacity) / cells_.edge);
+    // voxels at or above the level with one below it among the 26 around: no light passes between their cells
+    const auto level = float(item.level), extinction = float(optical_depth(item.opacity) / cells_.edge);
     std::vector<float> most(cells_.count());
     scatter(*item.grid, 1, item.is_clipped, most, nullptr, [&](const Slab& slab, std::size_t i, int x, std::size_t row, std::size_t plane) {
       const std::vector<float>& v = slab.block.values;
-      const bool inside = v[i] >= level;
-      const auto differs = [&](bool exists, std::size_t other) { return exists && (v[other] >= level) != inside; };
-      const std::size_t in_plane = i % plane;
-      const bool crosses = differs(x > 0, i - 1) || differs(std::size_t(x) + 1 < row, i + 1) || differs(in_plane >= row, i - row) ||
-                           differs(in_plane + row < plane, i + row) || differs(i >= plane, i - plane) ||
-                           differs(i + plane < v.size(), i + plane);
-      return crosses ? extinction : 0;
+      if (!(v[i] >= level)) return 0.0f;
+      const std::size_t in_plane = i % plane, first_x = x > 0 ? 1 : 0, last_x = std::size_t(x) + 1 < row ? 1 : 0;
+      const std::size_t first_y = in_plane >= row ? row : 0, last_y = in_plane + row < plane ? row : 0;
+      const std::size_t first_z = i >= plane ? plane : 0, last_z = i + plane < v.size() ? plane : 0;
+      for (std::size_t z = i - first_z; z <= i + last_z; z += plane)
+        for (std::size_t y = z - first_y; y <= z + last_y; y += row)
+          for (std::size_t k = y - first_x; k <= y + last_x; ++k)
+            if (!(v[k] >= level)) return extinction;
+      return 0.0f;
     });
     for (std::size_t i = 0; i < most.size(); ++i) cells_.extinction[i] += most[i];
   }
@@ -243,13 +245,13 @@ class Caster {
   LightCells& cells_;
 };
 
-/// Calls body(item) for everything that casts shadows.
+/// Calls body(item) for all surfaces that cast shadows.
 template <class Body>
-void each_caster(const FramePacket& packet, const Body& body) {
+void each_surface(const FramePacket& packet, const Body& body) {
   const auto each = [&](const auto& items) {
     for (const auto& item : items) body(item);
   };
-  each(packet.volumes), each(packet.isosurfaces), each(packet.meshes), each(packet.tubes), each(packet.arrows), each(packet.glyphs),
+  each(packet.isosurfaces), each(packet.meshes), each(packet.tubes), each(packet.arrows), each(packet.glyphs),
       each(packet.spheres);
 }
 
@@ -272,7 +274,16 @@ LightCells make_light_cells(const FramePacket& packet) {
   cells.size = {count(size.x), count(size.y), count(size.z)};
   cells.extinction.resize(cells.count());
   Caster caster(packet, cells);
-  each_caster(packet, [&](const auto& item) { caster.add(item); });
+  bool has_surfaces = false;
+  each_surface(packet, [&](const auto& item) {
+    caster.add(item);
+    has_surfaces = true;
+  });
+  if (has_surfaces) {
+    cells.open.reserve(cells.count());
+    for (const float extinction : cells.extinction) cells.open.push_back(std::exp(-extinction * float(cells.edge)));
+  }
+  for (const VolumeItem& item : packet.volumes) caster.add(item);
   return cells;
 }
 

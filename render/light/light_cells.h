@@ -19,6 +19,7 @@ struct LightCells {
   double edge = 0;                ///< edge of a cell; 0: nothing casts shadows
   field::Index3 size{0, 0, 0};    ///< number of cells
   std::vector<float> extinction;  ///< per display unit, x fastest
+  std::vector<float> open;        ///< share that surfaces leave open; empty: there are no surfaces
 
   std::size_t count() const { return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z); }
   std::size_t index(int x, int y, int z) const {

@@ -16,7 +16,11 @@ namespace {
 constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
 constexpr std::size_t kTexelBytes = 4;
 
+constexpr double kOffsetCells = 1;  // of the lookup at a surface, whose cells do not count
+
 std::uint8_t to_byte(float share) { return std::uint8_t(std::lround(255 * std::clamp(share, 0.0f, 1.0f))); }
+/// From -1 to 1; 0 is exact.
+std::uint8_t signed_to_byte(float value) { return std::uint8_t(128 + std::lround(127 * std::clamp(value, -1.0f, 1.0f))); }
 
 }  // namespace
 
@@ -29,13 +33,18 @@ bool LightGrid::Casters::operator==(const Casters& other) const {
 /// Computes the texels that differ from the last ones. Returns whether any may.
 bool LightGrid::cast(const FramePacket& packet) {
   const IlluminationItem& next = packet.illumination;
-  const bool is_new = texels_.size() != cells_.count();
-  if (is_new) texels_.assign(cells_.count(), {255, 255, 255, 255});
+  const std::size_t count = cells_.count();
+  const auto open = [&](std::size_t k) { return cells_.open.empty() ? 1.0f : std::max(cells_.open[k], 1.0f / 255); };
+  const bool is_new = texels_.size() != 2 * count;
+  if (is_new) {
+    texels_.resize(2 * count);
+    for (std::size_t k = 0; k < count; ++k) texels_[count + k] = {128, 128, 128, to_byte(open(k))};
+  }
   bool is_changed = is_new;
   const auto set = [&](std::size_t channel, const auto& share_of_cell) {
     is_changed = true;
-    parallel_for(texels_.size(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) texels_[k][channel] = to_byte(share_of_cell(k));
+    parallel_for(count, std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) texels_[k][channel] = to_byte(open(k) * share_of_cell(k));
     });
   };
   // lights that are not cast arrive everywhere
@@ -55,9 +64,12 @@ bool LightGrid::cast(const FramePacket& packet) {
   }
   if (is_new || next.occlusion_reach != illumination_.occlusion_reach || next.occlusion_strength != illumination_.occlusion_strength) {
     const auto strength = float(next.occlusion_reach > 0 ? next.occlusion_strength : 0);
-    std::vector<float> share(texels_.size(), 1.0f);
+    std::array<std::vector<float>, 4> share;
     if (strength > 0) share = sweep_environment(cells_, next.occlusion_reach);
-    set(3, [&](std::size_t k) { return 1 - strength * (1 - share[k]); });
+    set(3, [&](std::size_t k) { return strength > 0 ? 1 - strength * (1 - share[0][k]) : 1.0f; });
+    for (std::size_t k = 0; k < count; ++k)
+      for (std::size_t a = 0; a < 3; ++a)
+        texels_[count + k][a] = signed_to_byte(strength > 0 ? strength * open(k) * share[a + 1][k] : 0.0f);
   }
   illumination_ = next;
   lights_ = packet.lights;
@@ -98,20 +110,15 @@ Outcome LightGrid::update(vk::Device& device, const FramePacket& packet, bool is
 
 Outcome LightGrid::upload(vk::Device& device) {
   const std::size_t nx = std::size_t(cells_.size.x), ny = std::size_t(cells_.size.y), nz = std::size_t(cells_.size.z);
-  CATENA_TRY(image_, vk::Image::create(device, vk::volume_image_info(kFormat, nx, ny, nz)));
+  CATENA_TRY(image_, vk::Image::create(device, vk::volume_image_info(kFormat, nx, ny, 2 * nz)));
   CATENA_CHECK(vk::upload_planes(device, image_, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
     std::memcpy(out, texels_.data() + std::size_t(first) * nx * ny, std::size_t(count) * nx * ny * kTexelBytes);
   }));
-  // cells that a surface crosses reach up to 0.9 of an edge in front of it: an open surface is not darkened by itself
-  constexpr double kOffsetCells = 2.5, kNearestCells = 1.6;
   place_.lo = cells_.lo;
   place_.size = cells_.edge * Vec3(cells_.size.x, cells_.size.y, cells_.size.z);
   place_.cell = cells_.edge;
+  place_.planes = cells_.size.z;
   place_.surface_offset = kOffsetCells * cells_.edge;
-  const IlluminationItem& item = illumination_;
-  place_.open_share = 1;
-  if (item.occlusion_reach > 0)
-    place_.open_share = 1 - item.occlusion_strength * (1 - open_environment(kNearestCells * cells_.edge, item.occlusion_reach));
   ++place_.version;
   return Done{};
 }

@@ -50,7 +50,7 @@ class LightGrid {
   LightCells cells_;
   std::vector<LightItem> lights_;                    ///< of the texels
   IlluminationItem illumination_;                    ///< of the texels
-  std::vector<std::array<std::uint8_t, 4>> texels_;  ///< share of the lights (red, green, blue), and of the environment (alpha)
+  std::vector<std::array<std::uint8_t, 4>> texels_;  ///< as in shaders/lib/light_grid.glsl
   bool is_on_ = false;
   LightPlace place_;
 };

@@ -2,6 +2,7 @@
 #include "render/light/light_sweep.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -53,9 +54,10 @@ std::vector<float> half_transmittances(const LightCells& cells, const SweepOrder
   return halves;
 }
 
-/// Adds weight * share of the light that arrives to `sum`; all in the order of the sweep.
+/// Adds weights[n] * share of the light that arrives to sums[n]; all in the order of the sweep.
+template <std::size_t Count>
 void add_sweep(const LightCells& cells, const SweepOrder& order, const std::vector<float>& halves, const Vec3& to_light, double reach,
-               float weight, std::vector<float>& sum) {
+               const std::array<float, Count>& weights, std::array<std::vector<float>, Count>& sums) {
   const bool from_top = to_light[order.main] > 0;
   const double along = std::fabs(to_light[order.main]);
   const auto decay = float(std::exp(-cells.edge / along / reach)), rest = 1 - decay;
@@ -66,7 +68,8 @@ void add_sweep(const LightCells& cells, const SweepOrder& order, const std::vect
   // what leaves the cells of the previous plane and of this one, with a border where everything arrives
   constexpr std::size_t kBorder = 2;
   const std::size_t row = order.width + 2 * kBorder;
-  std::vector<float> before(row * (order.height + 2 * kBorder), 1.0f), leaving = before;
+  std::vector<float> before(row * (order.height + 2 * kBorder), 1.0f), leaving = before, arriving(order.width);
+  float* __restrict arrives = arriving.data();
   for (std::size_t k = 0; k < order.planes; ++k) {
     const std::size_t plane = (from_top ? order.planes - 1 - k : k) * order.height * order.width;
     for (std::size_t j = 0; j < order.height; ++j) {
@@ -75,11 +78,14 @@ void add_sweep(const LightCells& cells, const SweepOrder& order, const std::vect
       const float* __restrict upper = lower + row;
       const float* __restrict half = &halves[plane + j * order.width];
       float* __restrict out = &leaving[(j + kBorder) * row + kBorder];
-      float* __restrict to = &sum[plane + j * order.width];
       for (std::size_t i = 0; i < order.width; ++i) {
         const float here = (rest + w00 * lower[i] + w10 * lower[i + 1] + w01 * upper[i] + w11 * upper[i + 1]) * half[i];
-        to[i] += weight * here;
+        arrives[i] = here;
         out[i] = here * half[i];
+      }
+      for (std::size_t n = 0; n < Count; ++n) {
+        float* __restrict to = &sums[n][plane + j * order.width];
+        for (std::size_t i = 0; i < order.width; ++i) to[i] += weights[n] * arrives[i];
       }
     }
     std::swap(before, leaving);
@@ -111,10 +117,10 @@ std::vector<float> sweep_light(const LightCells& cells, const Vec3& to_light, do
         const double r = count > 1 ? radius * std::sqrt((k + 0.5) / count) : 0, angle = kGoldenAngle * k;
         const Vec3 to = direction(to_light + r * (std::cos(angle) * u + std::sin(angle) * v));
         const SweepOrder order(cells, main_axis(to));
-        std::vector<float> ordered(cells.count());
-        add_sweep(cells, order, half_transmittances(cells, order, std::fabs(to[order.main])), to, std::numeric_limits<double>::infinity(),
-                  1 / float(count), ordered);
-        add_ordered(order, ordered, parts[part]);
+        std::array<std::vector<float>, 1> ordered{std::vector<float>(cells.count())};
+        add_sweep<1>(cells, order, half_transmittances(cells, order, std::fabs(to[order.main])), to,
+                     std::numeric_limits<double>::infinity(), {1 / float(count)}, ordered);
+        add_ordered(order, ordered[0], parts[part]);
       }
     }
   });
@@ -122,7 +128,7 @@ std::vector<float> sweep_light(const LightCells& cells, const Vec3& to_light, do
   return std::move(parts[0]);
 }
 
-std::vector<float> sweep_environment(const LightCells& cells, double reach) {
+std::array<std::vector<float>, 4> sweep_environment(const LightCells& cells, double reach) {
   // the rotations of one direction by the symmetries of the cube: a spherical design of degree 7 (McLaren 1963), none of which lies in a
   // plane of cells. Even permutations with an even number of signs, and odd ones with an odd number; by the axis of the largest component
   constexpr double kSquares[3] = {0.7503, 0.1786, 0.0711};
@@ -136,28 +142,30 @@ std::vector<float> sweep_environment(const LightCells& cells, double reach) {
       for (int a = 0; a < 3; ++a) to[a] = std::sqrt(kSquares[kOrders[order][a]]) * ((signs >> a & 1) != 0 ? -1 : 1);
       directions[main_axis(to)].push_back(direction(to));
     }
-  std::vector<float> sum(cells.count());
+  using Moments = std::array<std::vector<float>, 4>;
+  const auto zeros = [&] {
+    Moments moments;
+    for (std::vector<float>& one : moments) one.resize(cells.count());
+    return moments;
+  };
+  Moments sum = zeros();
   for (int axis = 0; axis < 3; ++axis) {
     const SweepOrder order(cells, axis);
     const std::vector<Vec3>& own = directions[axis];
     const std::vector<float> halves = half_transmittances(cells, order, std::fabs(own.front()[axis]));
     // two sums, so that the result does not depend on the threads
-    std::vector<float> parts[2] = {std::vector<float>(cells.count()), std::vector<float>(cells.count())};
+    std::array<Moments, 2> parts{zeros(), zeros()};
     parallel_for(2, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t part = begin; part < end; ++part)
-        for (std::size_t d = part; d < own.size(); d += 2) add_sweep(cells, order, halves, own[d], reach, 1.0f / 24, parts[part]);
+        for (std::size_t d = part; d < own.size(); d += 2) {
+          const glm::vec3 first(own[d] * (3.0 / 24));
+          add_sweep<4>(cells, order, halves, own[d], reach, {1.0f / 24, first.x, first.y, first.z}, parts[part]);
+        }
     });
-    for (const std::vector<float>& part : parts) add_ordered(order, part, sum);
+    for (const Moments& part : parts)
+      for (std::size_t n = 0; n < 4; ++n) add_ordered(order, part[n], sum[n]);
   }
   return sum;
-}
-
-double open_environment(double height, double reach) {
-  // 1 - E2(height / reach) / 2, over the cosine of the angle to the normal
-  constexpr int kSteps = 1000;
-  double lost = 0;
-  for (int i = 0; i < kSteps; ++i) lost += std::exp(-height / (reach * (i + 0.5) / kSteps)) / kSteps;
-  return 1 - 0.5 * lost;
 }
 
 }  // namespace catena::render

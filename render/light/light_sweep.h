@@ -5,6 +5,7 @@
 /// an infinite reach this is the transmittance to the light, otherwise an occluder at the distance s counts by exp(-s / reach). The
 /// interpolation widens the edges of shadows by about a cell. CPU code, any thread; blocks, uses all cores.
 #pragma once
+#include <array>
 #include <vector>
 
 #include "render/light/light_cells.h"
@@ -15,9 +16,8 @@ namespace catena::render {
 /// `to_light`: unit vector to its center. `angular_size_deg`: its diameter, degrees; 0: one direction.
 std::vector<float> sweep_light(const LightCells& cells, const Vec3& to_light, double angular_size_deg = 0);
 
-/// Returns the share of light from all sides that arrives: the mean of 24 directions.
-std::vector<float> sweep_environment(const LightCells& cells, double reach);
-/// Returns this share at a height above an opaque plane.
-double open_environment(double height, double reach);
+/// Returns the share of light from all sides that arrives, linear in the direction w that it comes from: [0] + dot([1..3], w). From the
+/// mean and the first moment of 24 directions.
+std::array<std::vector<float>, 4> sweep_environment(const LightCells& cells, double reach);
 
 }  // namespace catena::render

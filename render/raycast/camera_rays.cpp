@@ -66,7 +66,8 @@ shared::LightGridData light_grid_of(const LightPlace& place) {
   shared::LightGridData data{};
   data.is_on = place.version > 0 ? 1 : 0;
   data.half_cell = float(0.5 * place.cell);
-  data.open_gain = float(1 / place.open_share);
+  data.half_plane = place.planes > 0 ? 0.5f / float(place.planes) : 0;
+  data.from_world = glm::mat3(1.0f);
   data.version = place.version;
   return data;
 }
@@ -183,6 +184,7 @@ shared::MeshFrameData CameraRays::mesh_frame_data(const Vec3& origin) const {
   if (light_place.version > 0) {
     const Mat3 scale = light_from_world(light_place);
     m.light_grid.from_view = glm::mat3(scale * world_from_view);
+    m.light_grid.from_world = glm::mat3(glm::transpose(world_from_view));
     m.light_grid.origin = narrow(scale * (camera.position - light_place.lo));
     m.light_grid.from_normal = glm::mat3(light_place.surface_offset * scale * world_from_view);
   }

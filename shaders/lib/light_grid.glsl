@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Light that arrives in the scene, computed by render/light. Include it after lighting.glsl. Where nothing is cast, `arriving` stays 1.
+// Light that arrives in the scene, computed by render/light. Include it after lighting.glsl. Where nothing is cast, `arriving` stays 1. The
+// lower half of the texture has the shares of `arriving`, the upper one `arriving_from` (world axes, from -1 to 1) and the openness, by which
+// all are multiplied: cells that surfaces fill do not count.
 layout(binding = 63) uniform sampler3D light_grid;  // kLightGrid of render/raycast/grid_bindings.h
 
 // Returns the texture coordinates along the ray of pixel coordinate q, at depth t.
@@ -8,15 +10,27 @@ vec3 light_at(vec2 q, float t) {
          t * (frame.light_grid.direction + frame.light_grid.direction_x * q.x + frame.light_grid.direction_y * q.y);
 }
 
-// Sets `arriving` inside of a medium.
-void receive_in_volume(vec3 at) { arriving = textureLod(light_grid, at, 0.0); }
+#define LOOKUPS 3      // at a surface, each a cell farther from it, until one is open
+#define OPEN_ENOUGH 0.2
 
-// Sets `arriving` at a surface, looked up in front of it: `normal` is turned towards the camera. The environment counts relative to an open,
-// even surface. Loops with at most one iteration replace branches on uniforms (rays.glsl).
-void receive_on_surface(vec3 at, vec3 normal, vec3 to_camera) {
-  for (float on = frame.light_grid.is_on + float(to_camera.x < -2.0); on > 0.0; on = 0.0) {
-    const vec3 outwards = normalize(normal) * (dot(normal, to_camera) < 0.0 ? -1.0 : 1.0);
-    arriving = textureLod(light_grid, at + frame.light_grid.from_normal * outwards, 0.0);
-    arriving.a = min(1.0, frame.light_grid.open_gain * arriving.a);
-  }
+// Sets `arriving` inside of a medium. Returns the openness.
+float receive_in_volume(vec3 at) {
+  at.z = 0.5 * clamp(at.z, frame.light_grid.half_plane, 1.0 - frame.light_grid.half_plane);
+  const vec4 shares = textureLod(light_grid, at, 0.0), vector = textureLod(light_grid, at + vec3(0.0, 0.0, 0.5), 0.0);
+  const float per_open = 1.0 / max(vector.a, 1.0 / 255.0);
+  arriving = min(vec4(1.0), per_open * shares);
+  arriving_from = frame.light_grid.is_on * per_open * (frame.light_grid.from_world * (255.0 / 127.0 * vector.rgb - 128.0 / 127.0));
+  return vector.a;
 }
+
+// Sets `arriving` at a surface, looked up in front of it, in the direction `outwards`. Loops with at most one iteration replace branches on
+// uniforms (rays.glsl).
+void receive_in_front(vec3 at, vec3 outwards) {
+  float on = frame.light_grid.is_on + float(at.x < -1e30);
+  const vec3 step = frame.light_grid.from_normal * normalize(outwards);
+  for (int k = 1; on > 0.0; ++k)
+    if (receive_in_volume(at + float(k) * step) > OPEN_ENOUGH || k == LOOKUPS) on = 0.0;
+}
+
+// The same, with a normal that is turned towards the camera.
+void receive_on_surface(vec3 at, vec3 normal, vec3 to_camera) { receive_in_front(at, dot(normal, to_camera) < 0.0 ? -normal : normal); }

@@ -6,7 +6,8 @@
 #include "shaders/lib/linear_color.glsl"
 struct Lighting { vec3 diffuse, specular; };  // lit color = color * diffuse + specular
 
-vec4 arriving = vec4(1.0);  // share of the lights 0 to 2 (rgb) and of the environment (a) that arrives at the shaded point
+vec4 arriving = vec4(1.0);  // share of the lights 0 to 2 (rgb) and of the environment (a, mean of all sides) that arrives at the shaded point
+vec3 arriving_from = vec3(0.0);  // change of the environment's share with the direction that it comes from, in the axes of normals
 
 // Returns the share of light i that arrives.
 float arriving_share(uint i) { return i < 3u ? arriving[i] : 1.0; }
@@ -19,9 +20,9 @@ Lighting without_normal() {
   return sum;
 }
 
-// `normal`: unit vector.
+// Returns what a surface receives, by Lambert's law. `normal`: unit vector.
 vec3 environment_light(vec3 normal) {
-  return (frame.ground + (0.5 + frame.look.zenith_share * dot(normal, frame.zenith)) * (frame.sky - frame.ground)) * arriving.a;
+  return (frame.ground + (0.5 + frame.look.zenith_share * dot(normal, frame.zenith)) * (frame.sky - frame.ground)) * clamp(arriving.a + 2.0 / 3.0 * dot(arriving_from, normal), 0.0, 1.0);
 }
 
 Lighting lighting_of(vec3 normal, vec3 to_camera) {

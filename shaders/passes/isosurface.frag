@@ -29,7 +29,9 @@ void main() {
   for (bool hit = t < NO_DEPTH; hit; hit = t < -NO_DEPTH) {
     const vec3 p = clamp(ray.origin + t * ray.direction, frame.grids[0].lo, frame.grids[0].hi);
     const vec3 gradient = world_gradient(0, p), to_camera = -normalize(world_direction(q));
-    receive_on_surface(light_at(q, t), gradient, to_camera);
+    // the side on which the ray comes, which the gradient over several cells may miss
+    const float before = sample_value(0, p - 0.05 * normalize(ray.direction));
+    receive_in_front(light_at(q, t), before < frame.grids[0].level ? -gradient : gradient);
     color = fogged(lit(frame.grids[0].color, gradient, to_camera), t);
   }
   if (t >= NO_DEPTH) discard;

@@ -55,7 +55,7 @@ struct LightData {
   vec3 direction, color;
 };
 
-// Light that arrives in the scene, a 3D texture over a box along the world's axes (render/light). Texture coordinates of pixel q at depth
+// Light that arrives in the scene, a 3D texture over a box along the world's axes, twice (render/light). Texture coordinates of pixel q at depth
 // t:
 //   (origin + origin_x q.x + origin_y q.y) + t (direction + direction_x q.x + direction_y q.y)
 // for triangles: from_view * position in view axes + origin.
@@ -64,9 +64,10 @@ struct LightGridData {
   vec3 direction, direction_x, direction_y;
   mat3 from_view;
   mat3 from_normal;  // offset of the lookup at a surface, along its unit normal in the axes of the shader
+  mat3 from_world;   // world axes to those of the shader's normals
   float is_on;       // 0: nothing is cast
   float half_cell;   // half of a cell's edge, world units
-  float open_gain;   // 1 / share of the environment that arrives at an open, even surface
+  float half_plane;  // half of a plane of cells, as a share of all
   uint version;      // changes with the texture
 };
 

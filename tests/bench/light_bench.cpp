@@ -61,7 +61,7 @@ void shadow(benchmark::State& state) {
 
 void environment(benchmark::State& state) {
   const LightCells cells = make_light_cells(packet_of(true, true));
-  for (auto _ : state) benchmark::DoNotOptimize(sweep_environment(cells, 25).data());
+  for (auto _ : state) benchmark::DoNotOptimize(sweep_environment(cells, 25)[0].data());
 }
 
 void image(benchmark::State& state, bool is_shaded, bool is_lit) {

@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
   const double reach = 0.1 * bounds.diagonal(), infinite = std::numeric_limits<double>::infinity();
   const LightCells cells = make_light_cells(packet);
   const Vec3 light = direction(Vec3(1, -0.7, 1)), eye = direction(Vec3(0.4, -1, 0.5));
-  const std::vector<float> shadow = sweep_light(cells, light), open = sweep_environment(cells, reach);
+  const std::vector<float> shadow = sweep_light(cells, light), open = sweep_environment(cells, reach)[0];
 
   constexpr std::size_t kPoints = 1500;
   constexpr int kDirections = 600;

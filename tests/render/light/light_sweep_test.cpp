@@ -49,7 +49,7 @@ TEST(LightSweep, APenumbraIsAsWideAsTheLight) {
 
 TEST(LightSweep, NothingIsDarkInEmptySpace) {
   const LightCells cells = make_cells(9, 7, 8);
-  for (const float share : sweep_environment(cells, 1)) EXPECT_NEAR(share, 1, 1e-5);
+  for (const float share : sweep_environment(cells, 1)[0]) EXPECT_NEAR(share, 1, 1e-5);
   for (const float share : sweep_light(cells, direction(Vec3(1, -2, 3)))) EXPECT_NEAR(share, 1, 1e-5);
 }
 
@@ -65,7 +65,7 @@ TEST(LightSweep, AHalfSpaceTakesHalfOfTheEnvironment) {
     return sum;
   };
   for (const double reach : {0.5, 1.0}) {
-    const std::vector<float> light = sweep_environment(cells, reach);
+    const std::vector<float> light = sweep_environment(cells, reach)[0];
     for (const int height : {1, 3, 6})
       EXPECT_NEAR(light[cells.index(48, 48, height)], 1 - 0.5 * e2((height - 0.5) * 0.1 / reach), 0.03) << reach << " " << height;
   }

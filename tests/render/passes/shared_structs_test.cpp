@@ -59,7 +59,7 @@ TEST(SharedStructs, FrameAndGridData) {
                  {MEMBER(LightGridData, origin), MEMBER(LightGridData, origin_x), MEMBER(LightGridData, origin_y),
                   MEMBER(LightGridData, direction), MEMBER(LightGridData, direction_x), MEMBER(LightGridData, direction_y),
                   MEMBER(LightGridData, from_view), MEMBER(LightGridData, from_normal), MEMBER(LightGridData, is_on),
-                  MEMBER(LightGridData, half_cell), MEMBER(LightGridData, open_gain), MEMBER(LightGridData, version)});
+                  MEMBER(LightGridData, half_cell), MEMBER(LightGridData, half_plane), MEMBER(LightGridData, from_world), MEMBER(LightGridData, version)});
   const Offsets table{MEMBER(TableData, start),       MEMBER(TableData, last),      MEMBER(TableData, control_points),
                       MEMBER(TableData, per_linear),  MEMBER(TableData, lo),        MEMBER(TableData, entries_per_unit),
                       MEMBER(TableData, first_value), MEMBER(TableData, last_value)};
