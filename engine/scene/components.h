@@ -516,6 +516,18 @@ struct Light {
   double angular_size_deg = 0;    ///< Diameter as seen from the scene, degrees; makes shadows soft
 };
 
+/// What lights the scene.
+struct Illumination {
+  std::vector<Light> lights;                          ///< Empty: a headlight, unless has_headlight is false
+  bool has_headlight = true;                          ///< False: the scene states its lights, possibly none
+  std::optional<EnvironmentLight> environment_light;  ///< Empty: gray
+  std::optional<AmbientOcclusion> ambient_occlusion;  ///< Empty: none
+  bool shadows = false;                               ///< The lights cast shadows
+  Look look = Look::automatic;                        ///< Space in which light is added
+  /// Returns whether the scene states no light, so that the look `lit` has its default one.
+  bool is_unstated() const { return lights.empty() && has_headlight && !environment_light && !ambient_occlusion && !shadows; }
+};
+
 /// Current time step and playback speed (time_steps.h).
 struct TimeLine {
   int step = 0;                 ///< Current step, counted from 0

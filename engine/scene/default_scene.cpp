@@ -297,10 +297,19 @@ Outcome add_stretch(const FileColors& colors, DefaultScene& result) {
   return Done{};
 }
 
+/// Lights surfaces and lines. Volumes, slices, and what is read against a scalar bar are read by colors that light would change.
+Outcome add_light(DefaultScene& result) {
+  for (const char* key : {"\"volumes\"", "\"slices\"", "\"scalar_bars\""})
+    if (result.text.find(key) != std::string::npos) return Done{};
+  CATENA_TRY(result.text, json::set_value(result.text, result.scene_path, "/look", "\"lit\""));
+  return Done{};
+}
+
 /// Loads one data file and writes its default scene, with its stretch.
 Result<DefaultScene> stretched_scene_of_one_file(const std::string& path, const std::string& grid, const FileColors& colors, int step) {
   CATENA_TRY(DefaultScene result, scene_of_one_file(path, grid, colors, step));
   CATENA_CHECK(add_stretch(colors, result));
+  CATENA_CHECK(add_light(result));
   return result;
 }
 

@@ -29,13 +29,13 @@ const Table<Light>& light_table() {
 }
 
 Outcome read_lights(Scene& scene, const json::Node& node) {
-  scene.has_headlight = false;
+  scene.illumination.has_headlight = false;
   return each_item(node, [&](const json::Node& item) -> Outcome {
-    if (scene.lights.size() == kMaxLights)
+    if (scene.illumination.lights.size() == kMaxLights)
       return json::error_at(item, "there are more than " + std::to_string(kMaxLights) + " lights; that many at most were expected");
     Light light;
     CATENA_CHECK(light_table().read(scene, item, light));
-    scene.lights.push_back(light);
+    scene.illumination.lights.push_back(light);
     return Done{};
   });
 }
@@ -62,7 +62,7 @@ Outcome read_environment(Scene& scene, const json::Node& node) {
                             "\"ground\", was expected");
     light.sky = light.ground = *color;
   }
-  scene.environment_light = light;
+  scene.illumination.environment_light = light;
   return Done{};
 }
 
@@ -100,10 +100,11 @@ Part environment_part() {
 }
 
 Part ambient_occlusion_part() {
-  return {
-      {"ambient_occlusion", "Darkens what is enclosed: the share of the environment's light that arrives.", Section::Layout::on_off,
-       ambient_occlusion_table().keys()},
-      [](Scene& scene, const json::Node& node) { return read_on_off(scene, node, ambient_occlusion_table(), scene.ambient_occlusion); }};
+  return {{"ambient_occlusion", "Darkens what is enclosed: the share of the environment's light that arrives.", Section::Layout::on_off,
+           ambient_occlusion_table().keys()},
+          [](Scene& scene, const json::Node& node) {
+            return read_on_off(scene, node, ambient_occlusion_table(), scene.illumination.ambient_occlusion);
+          }};
 }
 
 Part look_part() {
@@ -114,7 +115,7 @@ Part look_part() {
           [](Scene& scene, const json::Node& node) -> Outcome {
             bool is_plain = false;
             CATENA_CHECK(schema::read_value(schema::choice("look", {"lit", "plain"}, ""), node, is_plain));
-            scene.look = is_plain ? Look::plain : Look::lit;
+            scene.illumination.look = is_plain ? Look::plain : Look::lit;
             return Done{};
           }};
 }
@@ -122,7 +123,7 @@ Part look_part() {
 Part shadows_part() {
   const Key key = schema::boolean("shadows", "Shadows of the lights that are fixed to the scene.").with_default("false");
   return {{"shadows", "Shadows of lights that are fixed to the scene, of all that is drawn.", Section::Layout::value, {key}},
-          [](Scene& scene, const json::Node& node) { return read_boolean(node, scene.shadows); }};
+          [](Scene& scene, const json::Node& node) { return read_boolean(node, scene.illumination.shadows); }};
 }
 
 std::string to_json(const Light& light) { return light_table().write({}, light); }

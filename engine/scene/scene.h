@@ -35,28 +35,23 @@ struct Scene {
   /// Derived data, with the same entities as `entities`: traced lines, sorted values, ruler results, polylines for rendering. Can be
   /// dropped at any time and is computed again on use.
   EntityStore cache;
-  Coupling coupling;                                  ///< Parameters of the force of the links
-  Workspace workspace;                                ///< Mapping from the device's workspace to the world
-  std::optional<json::Node> device;                   ///< Item "device"; its keys are read when the device is opened
-  Camera camera;                                      ///< The camera
-  Stereo stereo;                                      ///< Stereo mode, eye separation and screens
-  Background background;                              ///< Background of the image
-  TimeLine time;                                      ///< Current time step
-  Annotations annotations;                            ///< Text and marks over the image
-  std::vector<ClipPlane> clip_planes;                 ///< Planes that cut the scene
-  Vec3 stretch{1.0};                                  ///< Factors by which images are stretched along the world's axes, > 0
-  std::optional<OrthogonalViews> orthogonal_views;    ///< Planes beside the 3D view; empty: the window opens without them
-  std::optional<bool> jitter;                         ///< Jitter of ray samples; empty: by `quality`
-  std::optional<BoundingBox> bounding_box;            ///< Empty: not rendered
-  std::optional<Axes> axes;                           ///< Empty: not rendered
-  std::optional<Ground> ground;                       ///< Empty: not rendered
-  std::optional<Fog> fog;                             ///< Empty: no fog
-  std::vector<Light> lights;                          ///< Empty: a headlight, unless has_headlight is false
-  bool has_headlight = true;                          ///< False: the scene states its lights, possibly none
-  std::optional<EnvironmentLight> environment_light;  ///< Empty: gray
-  std::optional<AmbientOcclusion> ambient_occlusion;  ///< Empty: none
-  bool shadows = false;                               ///< The lights cast shadows
-  Look look = Look::automatic;                        ///< Space in which light is added
+  Coupling coupling;                                ///< Parameters of the force of the links
+  Workspace workspace;                              ///< Mapping from the device's workspace to the world
+  std::optional<json::Node> device;                 ///< Item "device"; its keys are read when the device is opened
+  Camera camera;                                    ///< The camera
+  Stereo stereo;                                    ///< Stereo mode, eye separation and screens
+  Background background;                            ///< Background of the image
+  TimeLine time;                                    ///< Current time step
+  Annotations annotations;                          ///< Text and marks over the image
+  std::vector<ClipPlane> clip_planes;               ///< Planes that cut the scene
+  Vec3 stretch{1.0};                                ///< Factors by which images are stretched along the world's axes, > 0
+  std::optional<OrthogonalViews> orthogonal_views;  ///< Planes beside the 3D view; empty: the window opens without them
+  std::optional<bool> jitter;                       ///< Jitter of ray samples; empty: by `quality`
+  std::optional<BoundingBox> bounding_box;          ///< Empty: not rendered
+  std::optional<Axes> axes;                         ///< Empty: not rendered
+  std::optional<Ground> ground;                     ///< Empty: not rendered
+  std::optional<Fog> fog;                           ///< Empty: no fog
+  Illumination illumination;                        ///< What lights the scene
   std::string quality;         ///< Image quality: draft, balanced, reference, time=MS, error=E or step=VOXELS; empty: not specified
   TuningTargets tuning;        ///< Targets stated by `quality` and "coupling"
   Entity cursor;               ///< Entity that has the Cursor component

@@ -167,38 +167,53 @@ FogItem fog_of(const scene::Fog& fog, const Bounds& drawn, const FramePacket& pa
   return item;
 }
 
+/// The light of the look `lit` of a scene that states none: a soft key light from above, a weaker one at the camera, which leaves nothing
+/// black, and light from all sides, with occlusion.
+scene::Illumination default_light() {
+  scene::Illumination setup;
+  setup.look = scene::Look::lit;
+  constexpr float kSides = 0.35f;
+  constexpr double kKey = 0.6, kFill = 0.2, kKeySize_deg = 15;
+  setup.lights = {{Vec3(1.2, -0.4, 1.2), {1, 1, 1}, kKey, false, kKeySize_deg}, {Vec3(0, 0, 1), {1, 1, 1}, kFill, true, 0}};
+  setup.environment_light = scene::EnvironmentLight{{kSides, kSides, kSides}, {kSides, kSides, kSides}};
+  setup.ambient_occlusion = scene::AmbientOcclusion{};
+  setup.shadows = true;
+  return setup;
+}
+
 /// Lights, environment, occlusion and shadows. An image without any light has a black one.
 void extract_light(const scene::Scene& scene, FramePacket& packet) {
-  for (const scene::Light& light : scene.lights) {
-    const auto i = static_cast<float>(light.intensity);
-    packet.lights.push_back(
-        {light.direction, {i * light.color.r, i * light.color.g, i * light.color.b}, light.follows_camera, light.angular_size_deg});
+  const scene::Illumination& stated = scene.illumination;
+  const scene::Illumination light = stated.look == scene::Look::lit && stated.is_unstated() ? default_light() : stated;
+  for (const scene::Light& one : light.lights) {
+    const auto i = static_cast<float>(one.intensity);
+    packet.lights.push_back({one.direction, {i * one.color.r, i * one.color.g, i * one.color.b}, one.follows_camera, one.angular_size_deg});
   }
   // those that cast shadows come first
-  if (scene.shadows) std::ranges::stable_partition(packet.lights, [](const LightItem& light) { return !light.camera_relative; });
+  if (light.shadows) std::ranges::stable_partition(packet.lights, [](const LightItem& one) { return !one.camera_relative; });
   IlluminationItem& item = packet.illumination;
-  item.shadows = scene.shadows;
-  const bool is_lit = scene.environment_light || scene.ambient_occlusion || scene.shadows;
-  item.is_linear = scene.look == scene::Look::lit || (scene.look == scene::Look::automatic && is_lit);
+  item.shadows = light.shadows;
+  const bool is_lit = light.environment_light || light.ambient_occlusion || light.shadows;
+  item.is_linear = light.look == scene::Look::lit || (light.look == scene::Look::automatic && is_lit);
   item.bounds = drawn_bounds(packet);
-  if (scene.ambient_occlusion) {
+  if (light.ambient_occlusion) {
     constexpr double kReachShare = 0.1;
-    const double own = packet.size_scale * scene.ambient_occlusion->reach;
+    const double own = packet.size_scale * light.ambient_occlusion->reach;
     item.occlusion_reach = own > 0 ? own : item.bounds.empty() ? 0 : kReachShare * item.bounds.diagonal();
-    item.occlusion_strength = scene.ambient_occlusion->strength;
+    item.occlusion_strength = light.ambient_occlusion->strength;
   }
   // occlusion is seen by the environment's share of the light
   constexpr float kOccludedShare = 0.5f, kHeadlightBeside = 0.6f;
-  if (scene.environment_light) {
-    item.sky = scene.environment_light->sky;
-    item.ground = scene.environment_light->ground;
-  } else if (scene.ambient_occlusion) {
+  if (light.environment_light) {
+    item.sky = light.environment_light->sky;
+    item.ground = light.environment_light->ground;
+  } else if (light.ambient_occlusion) {
     item.sky = item.ground = {kOccludedShare, kOccludedShare, kOccludedShare};
   }
-  if (!scene.lights.empty()) return;
-  if (!scene.has_headlight)
+  if (!light.lights.empty()) return;
+  if (!light.has_headlight)
     packet.lights.push_back({{0, 0, 1}, {0, 0, 0}, true});
-  else if (scene.ambient_occlusion && !scene.environment_light)
+  else if (light.ambient_occlusion && !light.environment_light)
     packet.lights.push_back({{0, 0, 1}, {kHeadlightBeside, kHeadlightBeside, kHeadlightBeside}, true});
 }
 

@@ -251,8 +251,7 @@ void each_surface(const FramePacket& packet, const Body& body) {
   const auto each = [&](const auto& items) {
     for (const auto& item : items) body(item);
   };
-  each(packet.isosurfaces), each(packet.meshes), each(packet.tubes), each(packet.arrows), each(packet.glyphs),
-      each(packet.spheres);
+  each(packet.isosurfaces), each(packet.meshes), each(packet.tubes), each(packet.arrows), each(packet.glyphs), each(packet.spheres);
 }
 
 }  // namespace

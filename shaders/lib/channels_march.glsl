@@ -88,7 +88,7 @@ Lighting light_of_channel(int channel, mat3x4 gradients, vec3 along_ray) {
   const vec3 normal = frame.grids[0].world_gradient * vec3(gradients[0][channel], gradients[1][channel], gradients[2][channel]);
   if (HAS_LIGHTS != 0u) return lighting_of(normal, -along_ray);
   const float along = dot(normal, along_ray), length2 = dot(normal, normal);
-  return length2 > 0.0 ? headlight_at(abs(along) * inversesqrt(length2), along * along / length2) : without_normal();
+  return length2 > 0.0 ? headlight_at(abs(along) * inversesqrt(length2), along * along / length2) : without_normal(-along_ray);
 }
 
 // Returns the premultiplied color along the ray of pixel coordinate q, up to depth `end`; with HALF_OPACITY_DEPTH that depth, and alpha 1

@@ -38,10 +38,10 @@ Lighting reflected_light(vec3 gradient, vec3 to_camera) {
 
 // Returns the mean light of a headlight over half a segment, along which the derivative goes from a to b. `across2`: squared length of the gradient's
 // component across the ray. The derivative is known better than the gradient's direction; both sides are shaded alike.
-Lighting headlight_between(float a, float b, float across2) {
+Lighting headlight_between(float a, float b, float across2, vec3 to_camera) {
   const float squares = (a * a + a * b + b * b) * (1.0 / 3.0), length2 = across2 + squares;
   const float sizes = a * b >= 0.0 ? 0.5 * abs(a + b) : 0.5 * (a * a + b * b) / abs(b - a);
-  return length2 > 0.0 ? headlight_at(min(1.0, sizes * inversesqrt(length2)), squares / length2) : without_normal();
+  return length2 > 0.0 ? headlight_at(min(1.0, sizes * inversesqrt(length2)), squares / length2) : without_normal(to_camera);
 }
 
 // Constant data of a march.
@@ -139,7 +139,7 @@ vec4 march_packed(vec2 q, float end) {
   // shading: the gradient, its component along the ray, the squared length of the rest, and what lights of the scene add there
   vec3 normal = vec3(0.0);
   float along = 0.0, across2 = 0.0;
-  Lighting light = without_normal();
+  Lighting light = without_normal(-along_ray);
   if (SHADED != 0u) {
     normal = normal_at(s);
     along = dot(normal, along_ray);
@@ -196,8 +196,8 @@ vec4 march_packed(vec2 q, float end) {
         l1 = mean_light(light_middle, light_end);
         light = light_end;
       } else {
-        l0 = headlight_between(along, along_middle, max(0.0, 0.5625 * across2 + 0.375 * both + 0.0625 * across2_end));
-        l1 = headlight_between(along_middle, along_end, max(0.0, 0.0625 * across2 + 0.375 * both + 0.5625 * across2_end));
+        l0 = headlight_between(along, along_middle, max(0.0, 0.5625 * across2 + 0.375 * both + 0.0625 * across2_end), -along_ray);
+        l1 = headlight_between(along_middle, along_end, max(0.0, 0.0625 * across2 + 0.375 * both + 0.5625 * across2_end), -along_ray);
       }
       normal = normal_end;
       along = along_end;

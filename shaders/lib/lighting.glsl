@@ -12,10 +12,10 @@ vec3 arriving_from = vec3(0.0);  // change of the environment's share with the d
 // Returns the share of light i that arrives.
 float arriving_share(uint i) { return i < 3u ? arriving[i] : 1.0; }
 
-// Returns what is scattered in all directions alike.
-Lighting without_normal() {
+// Returns what is scattered in all directions alike. Loop bounds are not uniform, as in as_nonuniform (rays.glsl).
+Lighting without_normal(vec3 to_camera) {
   Lighting sum = Lighting((frame.ground + 0.5 * (frame.sky - frame.ground)) * arriving.a, vec3(0.0));
-  const uint lights = frame.light_count * uint(frame.look.is_linear);
+  const uint lights = frame.light_count * uint(frame.look.is_linear) + uint(to_camera.x < -2.0);
   for (uint i = 0u; i < lights; ++i) sum.diffuse += frame.look.scattered * arriving_share(i) * frame.lights[i].color;
   return sum;
 }
@@ -27,10 +27,10 @@ vec3 environment_light(vec3 normal) {
 
 Lighting lighting_of(vec3 normal, vec3 to_camera) {
   const float size = max(max(abs(normal.x), abs(normal.y)), abs(normal.z));
-  if (!(size > 0.0)) return without_normal();
+  if (!(size > 0.0)) return without_normal(to_camera);
   normal /= size;  // gradients of 1e24 or 1e-24 would overflow or underflow when squared
   const float length2 = dot(normal, normal);
-  if (!(length2 > 0.0)) return without_normal();
+  if (!(length2 > 0.0)) return without_normal(to_camera);
   const vec3 facing = normal * (inversesqrt(length2) * (dot(normal, to_camera) < 0.0 ? -1.0 : 1.0));
   Lighting sum = Lighting(environment_light(facing), vec3(0.0));
   const uint lights = frame.light_count + uint(to_camera.x < -2.0);  // as in as_nonuniform (rays.glsl)
@@ -62,7 +62,7 @@ float phase(float g, float cosine) {
 // Returns what a volume scatters towards the camera by its phase function of anisotropy g: the environment, and a share of each light.
 Lighting scattered_light(float g, vec3 to_camera) {
   Lighting sum = Lighting((frame.ground + (0.5 - frame.look.zenith_share * g * dot(to_camera, frame.zenith)) * (frame.sky - frame.ground)) * arriving.a, vec3(0.0));
-  const uint lights = frame.light_count;
+  const uint lights = frame.light_count + uint(to_camera.x < -2.0);
   if (lights == 0u) sum.diffuse += frame.look.scattered * phase(g, -1.0);
   for (uint i = 0u; i < lights; ++i) {
     const float turned = phase(g, -dot(to_camera, frame.lights[i].direction));

@@ -47,7 +47,7 @@ Outcome check_shard_outputs(const RenderOptions& o) {
 }
 
 Outcome check_path_tracing(const RenderOptions& o, const scene::Scene& scene) {
-  if (scene.look == scene::Look::plain) return Error{"--quality path: light is linear radiance there; \"look\": \"lit\" was expected"};
+  if (scene.illumination.look == scene::Look::plain) return Error{"--quality path: light is linear radiance there; \"look\": \"lit\" was expected"};
   if (!o.layout.empty() || render::stereo_view_count(scene.stereo) > 1)
     return Error{"--quality path: a single view was expected, without --layout and stereo"};
   if (o.tile > 0 || o.antialias > 0)

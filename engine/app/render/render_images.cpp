@@ -119,7 +119,7 @@ Outcome RenderRun::resolve() {
   CATENA_TRY(quality_.path, parse_path_quality(quality_name_));
   if (quality_.path) {
     CATENA_CHECK(check_path_tracing(o_, *scene_));
-    scene_->look = scene::Look::lit;
+    scene_->illumination.look = scene::Look::lit;
   } else {
     CATENA_TRY(quality_, parse_quality(quality_name_));
   }

@@ -341,7 +341,7 @@ TEST_F(Document, EditsGoOnWhileADataFileIsMissing) {
 TEST_F(Document, MeshAndVectorFilesOpenAsScenes) {
   test::write_file(folder_ / "q.obj", kQuad);
   auto document = open(folder_ / "q.obj");
-  EXPECT_EQ(document.text(), "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": \"q.obj\"}]\n}\n");
+  EXPECT_EQ(document.text(), "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": \"q.obj\"}],\n  \"look\": \"lit\"\n}\n");
   EXPECT_NE(only<MeshSource>(value_of(document.read())).loaded, nullptr);
   const auto swirl = *field::make_analytic("circle");
   expect_done(field::write_vdb(folder_ / "f.vdb", {{{nullptr, field::sample_on_grid(*swirl.vector, 9, -2, 2)}, "Flow 2"}}));

@@ -13,8 +13,8 @@ TEST(SceneEnvironment, AidsAreBooleansOrObjects) {
   EXPECT_EQ(scene.axes->names[2], "w");
   EXPECT_EQ(scene.ground->z, -2.0);
   EXPECT_EQ(scene.fog->far, 9.0);
-  ASSERT_EQ(scene.lights.size(), 1u);
-  EXPECT_TRUE(scene.lights[0].follows_camera);
+  ASSERT_EQ(scene.illumination.lights.size(), 1u);
+  EXPECT_TRUE(scene.illumination.lights[0].follows_camera);
   const Scene none = value_of(parse(R"("bounding_box": false, "axes": false, "ground": false, "fog": false, "lights": [])"));
   EXPECT_FALSE(none.bounding_box || none.axes || none.ground || none.fog);
 }

@@ -247,7 +247,7 @@ TEST(WriteValues, WrittenValuesReadBack) {
   EXPECT_EQ(to_json(volume.transfer.opacities), to_json(opacities));
   EXPECT_EQ(scene.clip_planes.at(0).normal, Vec3(0.1, 0.2, 0.3));
   EXPECT_EQ(scene.background.color.r, 0.1f);
-  EXPECT_EQ(to_json(scene.lights.at(0)), to_json(Light{{1, 2, 3}, {1, 0.5f, 0.1f}, 0.7, true}));
+  EXPECT_EQ(to_json(scene.illumination.lights.at(0)), to_json(Light{{1, 2, 3}, {1, 0.5f, 0.1f}, 0.7, true}));
   EXPECT_EQ(to_json(Background{{}, true}), "\"transparent\"");
 }
 

@@ -49,7 +49,8 @@ TEST(LightSweep, APenumbraIsAsWideAsTheLight) {
 
 TEST(LightSweep, NothingIsDarkInEmptySpace) {
   const LightCells cells = make_cells(9, 7, 8);
-  for (const float share : sweep_environment(cells, 1)[0]) EXPECT_NEAR(share, 1, 1e-5);
+  const auto environment = sweep_environment(cells, 1);
+  for (const float share : environment[0]) EXPECT_NEAR(share, 1, 1e-5);
   for (const float share : sweep_light(cells, direction(Vec3(1, -2, 3)))) EXPECT_NEAR(share, 1, 1e-5);
 }
 

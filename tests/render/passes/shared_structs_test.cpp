@@ -37,29 +37,33 @@ TEST(SharedStructs, FrameAndGridData) {
                                          "volume.frag", "projection.frag",  "surface_color.frag", "isosurface.frag",
                                          "slice.frag",  "sample.comp"};
   Offsets grid{
-      MEMBER(GridData, origin),       MEMBER(GridData, origin_x),       MEMBER(GridData, origin_y),    MEMBER(GridData, direction),
-      MEMBER(GridData, direction_x),  MEMBER(GridData, direction_y),    MEMBER(GridData, lo),          MEMBER(GridData, hi),
-      MEMBER(GridData, domain_lo),    MEMBER(GridData, domain_hi),      MEMBER(GridData, texel),       MEMBER(GridData, world_gradient),
-      MEMBER(GridData, value_offset), MEMBER(GridData, value_scale),    MEMBER(GridData, value_table), MEMBER(GridData, gradient_table),
-      MEMBER(GridData, bound_lo),     MEMBER(GridData, bound_per_code), MEMBER(GridData, level),       MEMBER(GridData, opacity),
-      MEMBER(GridData, color),        MEMBER(GridData, is_clipped),     MEMBER(GridData, id),          MEMBER(GridData, nearest),
-      MEMBER(GridData, spread_labels)};
+      MEMBER(GridData, origin),        MEMBER(GridData, origin_x),       MEMBER(GridData, origin_y),     MEMBER(GridData, direction),
+      MEMBER(GridData, direction_x),   MEMBER(GridData, direction_y),    MEMBER(GridData, lo),           MEMBER(GridData, hi),
+      MEMBER(GridData, domain_lo),     MEMBER(GridData, domain_hi),      MEMBER(GridData, texel),        MEMBER(GridData, world_gradient),
+      MEMBER(GridData, value_offset),  MEMBER(GridData, value_scale),    MEMBER(GridData, value_table),  MEMBER(GridData, gradient_table),
+      MEMBER(GridData, bound_lo),      MEMBER(GridData, bound_per_code), MEMBER(GridData, level),        MEMBER(GridData, opacity),
+      MEMBER(GridData, color),         MEMBER(GridData, is_clipped),     MEMBER(GridData, id),           MEMBER(GridData, nearest),
+      MEMBER(GridData, spread_labels), MEMBER(GridData, anisotropy),     MEMBER(GridData, surface_share)};
   grid["[]"] = sizeof(GridData);
   expect_offsets(shaders, "GridData", grid);
   expect_offsets(
       shaders, "FrameData",
-      {MEMBER(FrameData, half_size),   MEMBER(FrameData, axis),       MEMBER(FrameData, clip_count), MEMBER(FrameData, light_count),
-       MEMBER(FrameData, lights),      MEMBER(FrameData, sky),        MEMBER(FrameData, ground),     MEMBER(FrameData, zenith),
-       MEMBER(FrameData, light_grid),  MEMBER(FrameData, fog),        MEMBER(FrameData, clips),      MEMBER(FrameData, slope),
-       MEMBER(FrameData, right),       MEMBER(FrameData, up),         MEMBER(FrameData, forward),    MEMBER(FrameData, reference_depth),
-       MEMBER(FrameData, front_depth), MEMBER(FrameData, depth_near), MEMBER(FrameData, depth_far),  MEMBER(FrameData, orthographic),
-       MEMBER(FrameData, spacing),     MEMBER(FrameData, first),      MEMBER(FrameData, step_world), MEMBER(FrameData, termination),
-       MEMBER(FrameData, grids)});
-  expect_offsets(shaders, "LightGridData",
-                 {MEMBER(LightGridData, origin), MEMBER(LightGridData, origin_x), MEMBER(LightGridData, origin_y),
-                  MEMBER(LightGridData, direction), MEMBER(LightGridData, direction_x), MEMBER(LightGridData, direction_y),
-                  MEMBER(LightGridData, from_view), MEMBER(LightGridData, from_normal), MEMBER(LightGridData, is_on),
-                  MEMBER(LightGridData, half_cell), MEMBER(LightGridData, half_plane), MEMBER(LightGridData, from_world), MEMBER(LightGridData, version)});
+      {MEMBER(FrameData, half_size),       MEMBER(FrameData, axis),        MEMBER(FrameData, clip_count), MEMBER(FrameData, light_count),
+       MEMBER(FrameData, lights),          MEMBER(FrameData, sky),         MEMBER(FrameData, ground),     MEMBER(FrameData, zenith),
+       MEMBER(FrameData, light_grid),      MEMBER(FrameData, look),        MEMBER(FrameData, fog),        MEMBER(FrameData, clips),
+       MEMBER(FrameData, slope),           MEMBER(FrameData, right),       MEMBER(FrameData, up),         MEMBER(FrameData, forward),
+       MEMBER(FrameData, reference_depth), MEMBER(FrameData, front_depth), MEMBER(FrameData, depth_near), MEMBER(FrameData, depth_far),
+       MEMBER(FrameData, orthographic),    MEMBER(FrameData, spacing),     MEMBER(FrameData, first),      MEMBER(FrameData, step_world),
+       MEMBER(FrameData, termination),     MEMBER(FrameData, grids)});
+  expect_offsets(
+      shaders, "LightGridData",
+      {MEMBER(LightGridData, origin), MEMBER(LightGridData, origin_x), MEMBER(LightGridData, origin_y), MEMBER(LightGridData, direction),
+       MEMBER(LightGridData, direction_x), MEMBER(LightGridData, direction_y), MEMBER(LightGridData, from_view),
+       MEMBER(LightGridData, from_normal), MEMBER(LightGridData, is_on), MEMBER(LightGridData, half_cell),
+       MEMBER(LightGridData, half_plane), MEMBER(LightGridData, from_world), MEMBER(LightGridData, version)});
+  expect_offsets(shaders, "LookData",
+                 {MEMBER(LookData, diffuse), MEMBER(LookData, specular), MEMBER(LookData, scattered), MEMBER(LookData, zenith_share),
+                  MEMBER(LookData, is_linear)});
   const Offsets table{MEMBER(TableData, start),       MEMBER(TableData, last),      MEMBER(TableData, control_points),
                       MEMBER(TableData, per_linear),  MEMBER(TableData, lo),        MEMBER(TableData, entries_per_unit),
                       MEMBER(TableData, first_value), MEMBER(TableData, last_value)};
@@ -92,13 +96,13 @@ TEST(SharedStructs, TubeRingData) {
 }
 
 TEST(SharedStructs, MeshFrameData) {
-  expect_offsets(
-      {"mesh.vert"}, "MeshFrameData",
-      {MEMBER(MeshFrameData, view_from_world), MEMBER(MeshFrameData, offset), MEMBER(MeshFrameData, offset_depth),
-       MEMBER(MeshFrameData, scale), MEMBER(MeshFrameData, shift), MEMBER(MeshFrameData, pixel), MEMBER(MeshFrameData, clip_count),
-       MEMBER(MeshFrameData, light_count), MEMBER(MeshFrameData, lights), MEMBER(MeshFrameData, sky), MEMBER(MeshFrameData, ground),
-       MEMBER(MeshFrameData, zenith), MEMBER(MeshFrameData, light_grid), MEMBER(MeshFrameData, fog), MEMBER(MeshFrameData, clips),
-       MEMBER(MeshFrameData, depth_near), MEMBER(MeshFrameData, depth_far), MEMBER(MeshFrameData, orthographic)});
+  expect_offsets({"mesh.vert"}, "MeshFrameData",
+                 {MEMBER(MeshFrameData, view_from_world), MEMBER(MeshFrameData, offset), MEMBER(MeshFrameData, offset_depth),
+                  MEMBER(MeshFrameData, scale), MEMBER(MeshFrameData, shift), MEMBER(MeshFrameData, pixel),
+                  MEMBER(MeshFrameData, clip_count), MEMBER(MeshFrameData, light_count), MEMBER(MeshFrameData, lights),
+                  MEMBER(MeshFrameData, sky), MEMBER(MeshFrameData, ground), MEMBER(MeshFrameData, zenith),
+                  MEMBER(MeshFrameData, light_grid), MEMBER(MeshFrameData, look), MEMBER(MeshFrameData, fog), MEMBER(MeshFrameData, clips),
+                  MEMBER(MeshFrameData, depth_near), MEMBER(MeshFrameData, depth_far), MEMBER(MeshFrameData, orthographic)});
 }
 
 TEST(SharedStructs, StereoComposeAndAnaglyphData) {

@@ -26,10 +26,16 @@ void draw_light(Edits& edits, const scene::Light& light, std::size_t index, bool
 }
 
 void draw_lights(PanelContext& context) {
-  const auto& lights = context.scene.scene().lights;
+  const auto& lights = context.scene.scene().illumination.lights;
   const scene::Scene& scene = context.scene.scene();
-  if (lights.empty()) ImGui::TextDisabled(scene.has_headlight ? "a headlight, as no light is stated" : "no light");
-  bool occludes = scene.ambient_occlusion.has_value(), shadows = scene.shadows;
+  const scene::Illumination& light = scene.illumination;
+  bool is_lit = light.look == scene::Look::lit || (light.look == scene::Look::automatic && !light.is_unstated());
+  if (ImGui::Checkbox("light as linear radiance", &is_lit)) context.edits.set("/look", is_lit ? R"("lit")" : R"("plain")", "look");
+  if (lights.empty()) {
+    const char* beside = light.look == scene::Look::lit && light.is_unstated() ? "the default light" : "a headlight";
+    ImGui::TextDisabled("%s", !light.has_headlight ? "no light" : fmt::format("{}, as no light is stated", beside).c_str());
+  }
+  bool occludes = light.ambient_occlusion.has_value(), shadows = light.shadows;
   if (ImGui::Checkbox("ambient occlusion", &occludes))
     context.edits.set("/ambient_occlusion", scene::to_json(occludes), "ambient occlusion");
   if (ImGui::Checkbox("shadows of the lights fixed to the scene", &shadows))
