@@ -33,7 +33,7 @@ void shade_surface(int s, int surface, float t) {
     const vec3 p = clamp(rays[i].origin + t * rays[i].direction, frame.grids[i].lo, frame.grids[i].hi);
     const float opacity = frame.grids[i].opacity;
     const vec3 gradient = world_gradient(i, p);
-    receive_on_surface(light_at(light_q, t), gradient, view_direction);
+    receive_on_level(light_at(light_q, t), gradient, dot(gradient, view_direction) > 0.0);
     color_sum += transmittance * opacity * fogged(lit(resolve_color(i, t, frame.grids[i].color), gradient, view_direction), t);
     surface_transmittance *= 1.0 - opacity;
     transmittance *= 1.0 - opacity;

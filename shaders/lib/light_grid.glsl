@@ -10,7 +10,7 @@ vec3 light_at(vec2 q, float t) {
          t * (frame.light_grid.direction + frame.light_grid.direction_x * q.x + frame.light_grid.direction_y * q.y);
 }
 
-#define LOOKUPS 3      // at a surface, each a cell farther from it, until one is open
+#define LAST_LOOKUP 4  // at a surface, cells in front of it; the first one that is open counts
 #define OPEN_ENOUGH 0.2
 
 // Sets `arriving` inside of a medium. Returns the openness.
@@ -23,14 +23,17 @@ float receive_in_volume(vec3 at) {
   return vector.a;
 }
 
-// Sets `arriving` at a surface, looked up in front of it, in the direction `outwards`. Loops with at most one iteration replace branches on
+// Sets `arriving` at a surface, looked up in front of it, in the direction `outwards`, from `first` cells on. Loops with at most one iteration replace branches on
 // uniforms (rays.glsl).
-void receive_in_front(vec3 at, vec3 outwards) {
+void receive_in_front(vec3 at, vec3 outwards, int first) {
   float on = frame.light_grid.is_on + float(at.x < -1e30);
   const vec3 step = frame.light_grid.from_normal * normalize(outwards);
-  for (int k = 1; on > 0.0; ++k)
-    if (receive_in_volume(at + float(k) * step) > OPEN_ENOUGH || k == LOOKUPS) on = 0.0;
+  for (int k = first; on > 0.0; ++k)
+    if (receive_in_volume(at + float(k) * step) > OPEN_ENOUGH || k >= LAST_LOOKUP) on = 0.0;
 }
 
 // The same, with a normal that is turned towards the camera.
-void receive_on_surface(vec3 at, vec3 normal, vec3 to_camera) { receive_in_front(at, dot(normal, to_camera) < 0.0 ? -normal : normal); }
+void receive_on_surface(vec3 at, vec3 normal, vec3 to_camera) { receive_in_front(at, dot(normal, to_camera) < 0.0 ? -normal : normal, 1); }
+
+// Sets `arriving` at an isosurface, seen from its higher side or not: the cells of the higher side are filled.
+void receive_on_level(vec3 at, vec3 gradient, bool from_above) { receive_in_front(at, from_above ? gradient : -gradient, from_above ? 2 : 1); }

@@ -31,7 +31,7 @@ void main() {
     const vec3 gradient = world_gradient(0, p), to_camera = -normalize(world_direction(q));
     // the side on which the ray comes, which the gradient over several cells may miss
     const float before = sample_value(0, p - 0.05 * normalize(ray.direction));
-    receive_in_front(light_at(q, t), before < frame.grids[0].level ? -gradient : gradient);
+    receive_on_level(light_at(q, t), gradient, before >= frame.grids[0].level);
     color = fogged(lit(frame.grids[0].color, gradient, to_camera), t);
   }
   if (t >= NO_DEPTH) discard;

@@ -30,7 +30,7 @@ void main() {
   const vec3 p = clamp(ray.origin + t * ray.direction, frame.grids[0].lo, frame.grids[0].hi);
   const vec3 gradient = frame.grids[0].world_gradient * smooth_gradient(p, sample_packed(p));
   const vec3 to_camera = -normalize(world_direction(q));
-  receive_on_surface(light_at(q, t), gradient, to_camera);
+  receive_on_level(light_at(q, t), gradient, dot(gradient, to_camera) > 0.0);
   out_color = vec4(fogged(lit(frame.grids[0].color, gradient, to_camera), t), 1.0);
   out_depth = t;
   out_id = frame.grids[0].id;

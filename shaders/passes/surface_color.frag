@@ -26,6 +26,6 @@ void main() {
   const vec3 p = clamp(ray.origin + t * ray.direction, frame.grids[0].lo, frame.grids[0].hi);
   const vec3 color = color_at(1, other.origin + t * other.direction, frame.grids[0].color);
   const vec3 gradient = world_gradient(0, p), to_camera = -normalize(world_direction(q));
-  receive_on_surface(light_at(q, t), gradient, to_camera);
+  receive_on_level(light_at(q, t), gradient, dot(gradient, to_camera) > 0.0);
   out_color = vec4(fogged(lit(color, gradient, to_camera), t), 1.0);
 }
