@@ -113,9 +113,10 @@ Part look_part() {
                       .with_default("lit if the scene has environment, ambient_occlusion or shadows");
   return {{"look", "Space in which colours and light are added.", Section::Layout::value, {key}},
           [](Scene& scene, const json::Node& node) -> Outcome {
-            bool is_plain = false;
-            CATENA_CHECK(schema::read_value(schema::choice("look", {"lit", "plain"}, ""), node, is_plain));
-            scene.illumination.look = is_plain ? Look::plain : Look::lit;
+            const bool is_word = node.kind == json::Kind::string;
+            if (!is_word || (node.string != "lit" && node.string != "plain"))
+              return json::error_at(node, "\"look\" is not known; \"lit\" or \"plain\" was expected");
+            scene.illumination.look = node.string == "plain" ? Look::plain : Look::lit;
             return Done{};
           }};
 }

@@ -173,7 +173,7 @@ scene::Illumination default_light() {
   scene::Illumination setup;
   setup.look = scene::Look::lit;
   constexpr float kSides = 0.35f;
-  constexpr double kKey = 0.6, kFill = 0.2, kKeySize_deg = 15;
+  constexpr double kKey = 0.6, kFill = 0.2, kKeySize_deg = 8;
   setup.lights = {{Vec3(1.2, -0.4, 1.2), {1, 1, 1}, kKey, false, kKeySize_deg}, {Vec3(0, 0, 1), {1, 1, 1}, kFill, true, 0}};
   setup.environment_light = scene::EnvironmentLight{{kSides, kSides, kSides}, {kSides, kSides, kSides}};
   setup.ambient_occlusion = scene::AmbientOcclusion{};

@@ -14,6 +14,9 @@ TEST(SceneEnvironment, AidsAreBooleansOrObjects) {
   EXPECT_EQ(scene.ground->z, -2.0);
   EXPECT_EQ(scene.fog->far, 9.0);
   ASSERT_EQ(scene.illumination.lights.size(), 1u);
+  EXPECT_EQ(value_of(parse(R"("look": "plain")")).illumination.look, Look::plain);
+  EXPECT_EQ(value_of(parse(R"("look": "lit")")).illumination.look, Look::lit);
+  EXPECT_FALSE(parse(R"("look": "bright")"));
   EXPECT_TRUE(scene.illumination.lights[0].follows_camera);
   const Scene none = value_of(parse(R"("bounding_box": false, "axes": false, "ground": false, "fog": false, "lights": [])"));
   EXPECT_FALSE(none.bounding_box || none.axes || none.ground || none.fog);
