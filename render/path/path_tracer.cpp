@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kPi = std::numbers::pi;
-constexpr int kRouletteFrom = 4;  // scatterings after which paths may end by chance
+// Scatterings after which paths may end by chance: those that carry little, then all, so that white cavities end too.
+constexpr int kRouletteFrom = 4, kRouletteForAll = 256;
 constexpr std::uint32_t kPassSamples = 4;
 
 double luminance(const double rgb[3]) { return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]; }
@@ -158,7 +159,7 @@ PathImage::Sample PathImage::trace(PathRay ray, Random& random) const {
       break;
     }
     if (scattered >= kRouletteFrom) {
-      const double survival = std::min(0.98, std::max({weight[0], weight[1], weight[2]}));
+      const double survival = std::min(scattered >= kRouletteForAll ? 0.98 : 1.0, std::max({weight[0], weight[1], weight[2]}));
       if (random.uniform() >= survival) break;
       for (double& w : weight) w /= survival;
     }
