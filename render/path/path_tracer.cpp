@@ -15,7 +15,7 @@ namespace {
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kPi = std::numbers::pi;
 // Scatterings after which paths may end by chance: those that carry little, then all, so that white cavities end too.
-constexpr int kRouletteFrom = 4, kRouletteForAll = 256;
+constexpr int kRouletteFrom = 4, kRouletteForAll = 8192;
 constexpr std::uint32_t kPassSamples = 4;
 
 double luminance(const double rgb[3]) { return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]; }
