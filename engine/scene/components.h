@@ -524,6 +524,7 @@ struct Illumination {
   std::optional<AmbientOcclusion> ambient_occlusion;  ///< Empty: none
   bool shadows = false;                               ///< The lights cast shadows
   Look look = Look::automatic;                        ///< Space in which light is added
+  std::optional<bool> line_halos;                     ///< Lines darken what is behind them, beside them; empty: with the default light
   /// Returns whether the scene states no light, so that the look `lit` has its default one.
   bool is_unstated() const { return lights.empty() && has_headlight && !environment_light && !ambient_occlusion && !shadows; }
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Reads what lights the scene: "look", "lights", "environment", "ambient_occlusion" and "shadows".
+/// Reads what lights the scene: "look", "lights", "environment", "ambient_occlusion", "shadows" and "line_halos".
 #include "engine/base/camera_limits.h"
 #include "engine/base/text.h"
 #include "engine/scene/readers.h"
@@ -125,6 +125,13 @@ Part shadows_part() {
   const Key key = schema::boolean("shadows", "Shadows of the lights that are fixed to the scene.").with_default("false");
   return {{"shadows", "Shadows of lights that are fixed to the scene, of all that is drawn.", Section::Layout::value, {key}},
           [](Scene& scene, const json::Node& node) { return read_boolean(node, scene.illumination.shadows); }};
+}
+
+Part line_halos_part() {
+  const Key key = schema::boolean("line_halos", "Streamlines and curves darken what lies behind them, beside them.")
+                      .with_default("true with the default light of `lit`");
+  return {{"line_halos", "Halos of streamlines and curves, which show what is in front.", Section::Layout::value, {key}},
+          [](Scene& scene, const json::Node& node) { return read_boolean(node, scene.illumination.line_halos.emplace(false)); }};
 }
 
 std::string to_json(const Light& light) { return light_table().write({}, light); }

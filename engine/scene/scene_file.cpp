@@ -14,9 +14,9 @@ namespace catena::scene {
 // all sections except the drawables, each defined in the file of its reader
 Part time_part(), fields_part(), chain_part(), modes_part(), coupling_part(), workspace_part(), device_part(), widgets_part(),
     indicator_part(), clip_part(), camera_part(), lights_part(), environment_part(), ambient_occlusion_part(), shadows_part(), look_part(),
-    stereo_part(), screens_part(), background_part(), quality_part(), jitter_part(), stretch_part(), orthogonal_views_part(), cursor_part(),
-    unit_length_part(), bounding_box_part(), axes_part(), ground_part(), fog_part(), scalar_bars_part(), labels_part(), title_part(),
-    orientation_marker_part(), status_part(), overlay_part();
+    line_halos_part(), stereo_part(), screens_part(), background_part(), quality_part(), jitter_part(), stretch_part(),
+    orthogonal_views_part(), cursor_part(), unit_length_part(), bounding_box_part(), axes_part(), ground_part(), fog_part(),
+    scalar_bars_part(), labels_part(), title_part(), orientation_marker_part(), status_part(), overlay_part();
 
 namespace {
 
@@ -27,15 +27,34 @@ const std::vector<Part>& parts() {
     std::vector<Part> made{time_part(),  fields_part(),   chain_part(),     widgets_part(),
                            modes_part(), coupling_part(), workspace_part(), device_part()};
     for (const Drawable& kind : drawables()) made.push_back(kind.part());
-    for (Part (*part)() : {indicator_part, cursor_part,      scalar_bars_part,
-                           labels_part,    title_part,       orientation_marker_part,
-                           status_part,    overlay_part,     camera_part,
-                           stereo_part,    background_part,  quality_part,
-                           clip_part,      jitter_part,      bounding_box_part,
-                           axes_part,      ground_part,      fog_part,
-                           lights_part,    environment_part, ambient_occlusion_part,
-                           shadows_part,   look_part,        unit_length_part,
-                           screens_part,   stretch_part,     orthogonal_views_part})
+    for (Part (*part)() : {indicator_part,
+                           cursor_part,
+                           scalar_bars_part,
+                           labels_part,
+                           title_part,
+                           orientation_marker_part,
+                           status_part,
+                           overlay_part,
+                           camera_part,
+                           stereo_part,
+                           background_part,
+                           quality_part,
+                           clip_part,
+                           jitter_part,
+                           bounding_box_part,
+                           axes_part,
+                           ground_part,
+                           fog_part,
+                           lights_part,
+                           environment_part,
+                           ambient_occlusion_part,
+                           shadows_part,
+                           look_part,
+                           line_halos_part,
+                           unit_length_part,
+                           screens_part,
+                           stretch_part,
+                           orthogonal_views_part})
       made.push_back(part());
     return made;
   }();

@@ -178,13 +178,16 @@ scene::Illumination default_light() {
   setup.environment_light = scene::EnvironmentLight{{kSides, kSides, kSides}, {kSides, kSides, kSides}};
   setup.ambient_occlusion = scene::AmbientOcclusion{};
   setup.shadows = true;
+  setup.line_halos = true;
   return setup;
 }
 
 /// Lights, environment, occlusion and shadows. An image without any light has a black one.
 void extract_light(const scene::Scene& scene, FramePacket& packet) {
   const scene::Illumination& stated = scene.illumination;
-  const scene::Illumination light = stated.look == scene::Look::lit && stated.is_unstated() ? default_light() : stated;
+  scene::Illumination light = stated.look == scene::Look::lit && stated.is_unstated() ? default_light() : stated;
+  if (stated.line_halos) light.line_halos = stated.line_halos;
+  packet.has_line_halos = light.line_halos.value_or(false);
   for (const scene::Light& one : light.lights) {
     const auto i = static_cast<float>(one.intensity);
     packet.lights.push_back({one.direction, {i * one.color.r, i * one.color.g, i * one.color.b}, one.follows_camera, one.angular_size_deg});

@@ -345,6 +345,7 @@ struct FramePacket {
   std::vector<Plane> clip_planes;               ///< a point is visible if it is inside all of them; at most kMaxClipPlanes
   std::vector<LightItem> lights;                ///< empty: a headlight; at most kMaxLights
   IlluminationItem illumination;                ///< environment's light, occlusion, shadows
+  bool has_line_halos = false;                  ///< streamlines and curves darken what is behind them, beside them
   std::optional<FogItem> fog;                   ///< none: no fog
   double vignette = 0;  ///< strength of the vignette that reduces the peripheral view while the view moves around the user, 0..1; 0: off
   EnvironmentItems environment;     ///< bounding boxes, axes, the ground

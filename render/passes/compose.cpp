@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "engine/base/result.h"
+#include "render/passes/hand_shadow.h"
 #include "render/passes/passes.h"
 #include "render/raycast/fast_volume.h"
 #include "render/vk/commands.h"
@@ -15,8 +18,12 @@ constexpr std::uint32_t kComposeVertexShader[] = {
 constexpr std::uint32_t kComposeFragmentShader[] = {
 #include "spirv/compose.frag.inc"
 };
+constexpr std::uint32_t kComposeHandFragmentShader[] = {
+#include "spirv/compose_hand.frag.inc"
+};
 
-constexpr int kMaxStep = 16;  ///< pixels searched along a step of a contour in each direction
+constexpr std::size_t kBindings = 6;  ///< without those of the hand's shadow
+constexpr int kMaxStep = 16;          ///< pixels searched along a step of a contour in each direction
 
 class ComposePass final : public Pass {
  public:
@@ -29,6 +36,7 @@ class ComposePass final : public Pass {
   PassUse use(const Frame& frame) const override {
     TargetSet reads = target::opaque_color | target::volume | target::occluded_overlay;
     if (smooths_edges(frame)) reads |= target::opaque_depth | target::opaque_id;
+    if (has_hand_shadow(frame)) reads |= target::opaque_depth;
     return {frame.written_targets & reads, target::output, true};
   }
   Outcome prepare(Frame&) override { return Done{}; }
@@ -39,24 +47,27 @@ class ComposePass final : public Pass {
   static bool smooths_edges(const Frame& frame) {
     return frame.settings.smooth_edges && frame.has(target::opaque_id) && frame.half_resolution_volume == nullptr;
   }
-  Result<const vk::Pipeline*> pipeline(Frame& frame, bool ghost);
+  static bool has_hand_shadow(const Frame& frame) { return frame.hand_shadow && frame.hand_shadow->area().extent.width > 0; }
+  Result<const vk::Pipeline*> pipeline(Frame& frame, bool ghost, bool hand);
   Upsampler upsample_;
   std::map<std::pair<VkFormat, std::uint32_t>, vk::Pipeline> pipelines_;
   vk::Buffer uniform_;
   vk::Image placeholder_id_;  ///< bound where the id image is not used
 };
 
-Result<const vk::Pipeline*> ComposePass::pipeline(Frame& frame, bool ghost) {
+Result<const vk::Pipeline*> ComposePass::pipeline(Frame& frame, bool ghost, bool hand) {
   const VkFormat format = frame.targets.output_format;
   const bool opaque = frame.has(target::opaque_color), volume = frame.has(target::volume);
   const bool smooth = smooths_edges(frame);
-  vk::Pipeline& pipeline = pipelines_[{format, (opaque ? 1u : 0u) | (volume ? 2u : 0u) | (ghost ? 4u : 0u) | (smooth ? 8u : 0u)}];
+  vk::Pipeline& pipeline =
+      pipelines_[{format, (opaque ? 1u : 0u) | (volume ? 2u : 0u) | (ghost ? 4u : 0u) | (smooth ? 8u : 0u) | (hand ? 16u : 0u)}];
   if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = kComposeVertexShader;
-    info.fragment = kComposeFragmentShader;
+    info.fragment = hand ? vk::Spirv(kComposeHandFragmentShader) : vk::Spirv(kComposeFragmentShader);
     info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::texture}, {2, vk::DescriptorKind::texture},
                             {3, vk::DescriptorKind::texture}, {4, vk::DescriptorKind::texture}, {5, vk::DescriptorKind::texture}};
+    if (hand) std::ranges::copy(HandShadow::layout(), std::back_inserter(info.layout_bindings));
     info.constants = {opaque, volume, ghost, smooth};
     info.colors = {format};
     CATENA_TRY(pipeline, vk::Pipeline::create(frame.device, info));
@@ -64,7 +75,7 @@ Result<const vk::Pipeline*> ComposePass::pipeline(Frame& frame, bool ghost) {
   return &pipeline;
 }
 
-/// Composites the image without the ghost, then the ghost's area once more with it.
+/// Composites the image, then the areas of the hand's shadow and of the ghost once more with them.
 Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
   Targets& targets = frame.targets;
   const bool opaque = frame.has(target::opaque_color), volume = frame.has(target::volume), smooth = smooths_edges(frame);
@@ -76,11 +87,7 @@ Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
     return upsample_.record(commands, *frame.half_resolution_volume, opaque ? &targets.opaque_color : nullptr, targets.placeholder,
                             background, is_linear, frame.half_resolution_area, targets.output);
   }
-  CATENA_TRY(const vk::Pipeline* plain, pipeline(frame, false));
-  const vk::Pipeline* with_ghost = nullptr;
-  if (ghost) {
-    CATENA_TRY(with_ghost, pipeline(frame, true));
-  }
+  const bool hand = has_hand_shadow(frame);
   shared::ComposeData data{};
   data.background = background_data(background, is_linear);
   data.is_linear = is_linear ? 1 : 0;
@@ -89,20 +96,25 @@ Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
   data.max_step = kMaxStep;
   CATENA_CHECK(vk::write_uniform(frame.device, uniform_, data));
   targets.begin(commands, target::output, target::output);
-  const vk::Binding bindings[] = {
+  std::vector<vk::Binding> bindings{
       {0, vk::DescriptorKind::uniform, &uniform_, nullptr, nullptr},
       {1, vk::DescriptorKind::texture, nullptr, opaque ? &targets.opaque_color : &targets.placeholder, nullptr},
       {2, vk::DescriptorKind::texture, nullptr, volume ? &targets.volume : &targets.placeholder, nullptr},
       {3, vk::DescriptorKind::texture, nullptr, ghost ? &targets.occluded_overlay : &targets.placeholder, nullptr},
-      {4, vk::DescriptorKind::texture, nullptr, smooth ? &targets.opaque_depth : &targets.placeholder, nullptr},
+      {4, vk::DescriptorKind::texture, nullptr, smooth || (hand && opaque) ? &targets.opaque_depth : &targets.placeholder, nullptr},
       {5, vk::DescriptorKind::texture, nullptr, smooth ? &targets.opaque_id : &placeholder_id_, nullptr}};
-  commands.bind(*plain, bindings);
-  commands.draw_triangle();
-  if (with_ghost) {
-    commands.set_scissor(frame.occluded_area);
-    commands.bind(*with_ghost, bindings);
+  if (hand) std::ranges::copy(frame.hand_shadow->bindings(targets), std::back_inserter(bindings));
+  const auto draw = [&](const VkRect2D& area, bool with_ghost, bool with_hand) -> Outcome {
+    CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame, with_ghost, with_hand));
+    const std::size_t count = with_hand ? bindings.size() : kBindings;
+    commands.set_scissor(area);
+    commands.bind(*pipe, std::span(bindings).first(count));
     commands.draw_triangle();
-  }
+    return Done{};
+  };
+  CATENA_CHECK(draw({{0, 0}, {frame.packet.width, frame.packet.height}}, false, false));
+  if (hand) CATENA_CHECK(draw(frame.hand_shadow->area(), false, true));
+  if (ghost) CATENA_CHECK(draw(frame.occluded_area, true, hand));
   commands.end_pass();
   return Done{};
 }

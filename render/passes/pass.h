@@ -79,6 +79,7 @@ struct Targets {
   void begin(vk::Commands& commands, TargetSet writes, TargetSet cleared, const std::optional<VkRect2D>& area = {});
 };
 
+class HandShadow;
 class Triangles;
 
 /// State of one image while it is rendered, shared by its passes.
@@ -105,6 +106,8 @@ struct Frame {
   std::uint32_t occluded_index_count = 0;
   VkRect2D occluded_area{};  ///< pixels of target::occluded_overlay that are valid; the others were never cleared
 
+  HandShadow* hand_shadow = nullptr;  ///< valid in record()
+
   /// Returns whether any of the targets has been written.
   bool has(TargetSet targets_) const { return (written_targets & targets_) != 0; }
   /// Returns the resident grid (GPU copy) in the texel format for this packet. It is cached while packets refer to the grid.
@@ -124,8 +127,9 @@ class RaySampler {
   /// Renders the rays of every `spacing`-th pixel in each direction into `target` (kVolumeFormat).
   virtual Outcome record_ray_samples(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) = 0;
   /// Renders the depth t (shaders/shared/frame.h) at which the alpha of these rays exceeds 0.5 into the red channel of `target`
-  /// (kVolumeFormat); NO_DEPTH where it never does. To be called after the image is rendered.
-  virtual Outcome record_half_opacity_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) = 0;
+  /// (kVolumeFormat), within `area` of it; NO_DEPTH where it never does. Not to be recorded together with the image.
+  virtual Outcome record_half_opacity_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target,
+                                            const VkRect2D& area) = 0;
   /// Returns whether record_half_opacity_depth() can be used with the prepared items.
   virtual bool has_half_opacity_depth() const = 0;
   /// Returns whether the fast raycast was prepared last and its rays skip empty space.

@@ -26,6 +26,10 @@ extern const PassEntry kSurfaceColorPass;
 /// Opaque slices (slice.h).
 extern const PassEntry kSlicePass;
 
+/// Halos of streamlines and curves (FramePacket::has_line_halos): what lies behind a line is darkened beside it, the more the farther it is
+/// behind (shaders/passes/line_halos.frag). Depth and id images are not affected.
+extern const PassEntry kLineHaloPass;
+
 /// Translucent meshes and slices as layers, by depth peeling from front to back: layer k holds, at every pixel, the k-th nearest fragment
 /// in front of the opaque depth; the raycast blends the layers in depth order with volumes and translucent isosurfaces (Frame::layers).
 ///   layer k: all items are rendered; fragments not behind layer k - 1 are discarded, the depth buffer keeps the nearest

@@ -88,7 +88,8 @@ class RaycastPass final : public Pass, public RaySampler {
 
   RaySampler* ray_sampler() override { return this; }
   Outcome record_ray_samples(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) override;
-  Outcome record_half_opacity_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) override;
+  Outcome record_half_opacity_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target,
+                                    const VkRect2D& area) override;
   bool has_half_opacity_depth() const override { return fast_ || (any_ && !projected_ && exact_pass_->has_half_opacity_depth()); }
   bool skips_empty_space() const override { return fast_ && fast_pass_->skips_empty_space(); }
   bool reused_previous() const override {
@@ -313,13 +314,14 @@ Outcome RaycastPass::record_ray_samples(vk::Commands& commands, Frame& frame, st
   return Done{};
 }
 
-Outcome RaycastPass::record_half_opacity_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) {
+Outcome RaycastPass::record_half_opacity_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target,
+                                               const VkRect2D& area) {
   constexpr double kHalf = 0.5;  // termination opacity: samples behind half opacity do not change the depth
   const vk::Image* opaque = frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr;
   if (fast_) {
     FastSettings settings = fast_settings_;
     settings.termination = kHalf;
-    return fast_pass_->record_half_opacity_depth(commands, frame.rays, settings, spacing, target, opaque, frame.targets.placeholder);
+    return fast_pass_->record_half_opacity_depth(commands, frame.rays, settings, spacing, target, area, opaque, frame.targets.placeholder);
   }
   CameraRays rays = frame.rays;
   rays.spacing = spacing;
@@ -327,8 +329,7 @@ Outcome RaycastPass::record_half_opacity_depth(vk::Commands& commands, Frame& fr
   settings.termination = kHalf;
   const vk::ColorTarget depth{&target, std::array<float, 4>{NO_DEPTH, 0, 0, 0}};
   commands.begin_pass({&depth, 1}, {});
-  const VkExtent3D& extent = target.info().extent;
-  CATENA_CHECK(exact_pass_->record_half_opacity_depth(commands, rays, settings, {{0, 0}, {extent.width, extent.height}}, ray_scene(frame)));
+  CATENA_CHECK(exact_pass_->record_half_opacity_depth(commands, rays, settings, area, ray_scene(frame)));
   commands.end_pass();
   return Done{};
 }

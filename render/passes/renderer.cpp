@@ -15,10 +15,10 @@ namespace catena::render {
 namespace {
 
 /// All passes, in drawing order.
-constexpr const PassEntry* kPasses[] = {&kEnvironmentPass,     &kWidgetPass,  &kMeshPass,     &kStreamlinePass,
-                                        &kGlyphPass,           &kSpherePass,  &kCursorPass,   &kIsosurfacePass,
-                                        &kSurfaceColorPass,    &kSlicePass,   &kLayersPass,   &kRaycastPass,
-                                        &kOccludedOverlayPass, &kComposePass, &kVignettePass, &kOverlayPass};
+constexpr const PassEntry* kPasses[] = {&kEnvironmentPass, &kWidgetPass, &kMeshPass,       &kStreamlinePass,      &kGlyphPass,
+                                        &kSpherePass,      &kCursorPass, &kIsosurfacePass, &kSurfaceColorPass,    &kSlicePass,
+                                        &kLineHaloPass,    &kLayersPass, &kRaycastPass,    &kOccludedOverlayPass, &kComposePass,
+                                        &kVignettePass,    &kOverlayPass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t max_size = device.limits.maxImageDimension2D;
@@ -176,6 +176,8 @@ Outcome Renderer::Impl::draw(const FramePacket& packet, const RenderSettings& se
   frame.eye_count = eyes;
   CATENA_CHECK(prepare(frame));
   rendered_passes.clear();
+  CATENA_CHECK(hand_shadow.update(frame, ray_sampler()));
+  frame.hand_shadow = &hand_shadow;
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device));
   CATENA_CHECK(record(commands, frame, active_passes(&rendered_passes)));
   commands.transition(targets.output, vk::kTransferRead);
@@ -187,20 +189,23 @@ Outcome Renderer::Impl::draw(const FramePacket& packet, const RenderSettings& se
   return draw_ray_depth(frame);
 }
 
+RaySampler* Renderer::Impl::ray_sampler() const {
+  for (Pass* pass : active_passes())
+    if (RaySampler* rays = pass->ray_sampler()) return rays;
+  return nullptr;
+}
+
 Outcome Renderer::Impl::draw_ray_depth(Frame& frame) {
   ray_depth_spacing = 0;
   const std::uint32_t spacing = frame.settings.ray_depth_spacing;
-  if (spacing == 0) return Done{};
-  for (Pass* pass : active_passes()) {
-    RaySampler* rays = pass->ray_sampler();
-    if (!rays || !rays->has_half_opacity_depth()) continue;
-    CATENA_CHECK(vk::ensure_image(*device, ray_depth, kVolumeFormat, (frame.packet.width + spacing - 1) / spacing,
-                                  (frame.packet.height + spacing - 1) / spacing));
-    CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device));
-    CATENA_CHECK(rays->record_half_opacity_depth(commands, frame, spacing, ray_depth));
-    CATENA_CHECK(commands.finish());
-    ray_depth_spacing = spacing;
-  }
+  RaySampler* rays = ray_sampler();
+  if (spacing == 0 || !rays || !rays->has_half_opacity_depth()) return Done{};
+  const std::uint32_t width = (frame.packet.width + spacing - 1) / spacing, height = (frame.packet.height + spacing - 1) / spacing;
+  CATENA_CHECK(vk::ensure_image(*device, ray_depth, kVolumeFormat, width, height));
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device));
+  CATENA_CHECK(rays->record_half_opacity_depth(commands, frame, spacing, ray_depth, {{0, 0}, {width, height}}));
+  CATENA_CHECK(commands.finish());
+  ray_depth_spacing = spacing;
   return Done{};
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/light/light_grid.h"
+#include "render/passes/hand_shadow.h"
 #include "render/passes/pass.h"
 #include "render/passes/renderer.h"
 #include "render/passes/stereo_compose.h"
@@ -18,6 +19,7 @@ struct Renderer::Impl {
   std::unique_ptr<vk::Device> device;  // declared first, destroyed last
   std::optional<ResidencyManager> residency;
   LightGrid light;
+  HandShadow hand_shadow;
   Targets targets;
   std::vector<vk::Image>
       /// target::volume of the eyes that are not being rendered; the first eye's volume is in `targets` at the end of a frame.
@@ -47,6 +49,8 @@ struct Renderer::Impl {
   std::uint64_t reserved_bytes(const Frame& frame) const;
   /// Returns the existing passes in order, and optionally their names.
   std::vector<Pass*> active_passes(std::vector<std::string>* names = nullptr) const;
+  /// Returns the ray sampler of the existing passes; null: there is none.
+  RaySampler* ray_sampler() const;
   vk::Image& output_image() { return is_composed ? stereo_composer->image() : targets.output; }
   /// Destroys all passes with their pipelines; the next image re-creates them.
   void drop_passes();
@@ -77,6 +81,7 @@ Outcome_ Renderer::Impl::reset_on_error(Outcome_ result) {
   drop_passes();
   residency->clear();
   light.clear();
+  hand_shadow = HandShadow{};
   targets = Targets{};
   eye_volumes.clear();
   return result;

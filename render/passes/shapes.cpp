@@ -6,9 +6,15 @@
 #include <numbers>
 
 #include "engine/base/result.h"
+#include "render/passes/cursor_parts.h"
 #include "shaders/shared/frame.h"
 
 namespace catena::render {
+
+Vec3 any_perpendicular(const Vec3& t) {
+  const Vec3 axis = std::fabs(t.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
+  return direction(cross(t, axis));
+}
 
 namespace {
 
@@ -22,11 +28,6 @@ std::uint32_t add_vertex(ShapeMesh& shape, const Vec3& position, const Vec3& nor
 
 void add_triangle(ShapeMesh& shape, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   shape.triangles.insert(shape.triangles.end(), {a, b, c});
-}
-
-Vec3 any_perpendicular(const Vec3& t) {
-  const Vec3 axis = std::fabs(t.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
-  return direction(cross(t, axis));
 }
 
 /// Applies the smallest rotation from unit `from` to unit `to` (not opposite) to a vector v perpendicular to `from`.
@@ -279,135 +280,40 @@ void add_cone(ShapeMesh& shape, const Vec3& base, const Vec3& tip, double radius
   add_fan(shape, add_ring(shape, ring, radius, 0, 0, -1, sides, color), add_vertex(shape, base, -t, color), sides, false);
 }
 
-Color link_color(std::size_t i, bool active) {
-  static constexpr Color kSequence[8] = {{0.90f, 0.62f, 0.00f}, {0.34f, 0.71f, 0.91f}, {0.00f, 0.62f, 0.45f}, {0.94f, 0.89f, 0.26f},
-                                         {0.80f, 0.47f, 0.65f}, {0.84f, 0.37f, 0.00f}, {0.00f, 0.45f, 0.70f}, {0.60f, 0.60f, 0.60f}};
-  const Color c = kSequence[i % 8];
-  return active ? c : Color{0.4f * c.r, 0.4f * c.g, 0.4f * c.b};
-}
-
-Color release_color(double leaving) {
-  constexpr Color on{0.65f, 0.65f, 0.65f}, near{0.90f, 0.62f, 0.00f}, gone{0.84f, 0.15f, 0.00f};
-  const auto t = static_cast<float>(std::clamp(leaving, 0.0, 1.0));
-  const auto mix = [](const Color& a, const Color& b, float f) {
-    return Color{a.r + (b.r - a.r) * f, a.g + (b.g - a.g) * f, a.b + (b.b - a.b) * f};
-  };
-  return t < 0.5f ? mix(on, near, 2 * t) : mix(near, gone, 2 * t - 1);
-}
-
-double cursor_arrow_length(double force_n, double size) {
-  if (!(force_n > 1e-9) || !(size > 0)) return 0;
-  return size * std::clamp(2.5 * force_n, 2.0, 16.0);
-}
-
 namespace {
-/// Adds three perpendicular rings, visible from any side, that mark a released link.
-void add_rings(ShapeMesh& shape, const Vec3& centre, double radius, double thickness, const Color& color) {
+/// Adds three perpendicular rings, visible from any side.
+void add_rings(ShapeMesh& shape, const CursorPart& rings) {
   constexpr int steps = 32;
   for (int axis = 0; axis < 3; ++axis) {
-    TubeItem ring{{}, thickness, color, {}};
+    TubeItem ring{{}, rings.thickness, rings.color, {}};
     for (int k = 0; k <= steps; ++k) {
       const double angle = 2 * kPi * (k % steps) / steps;
       Vec3 p(0.0);
-      p[(axis + 1) % 3] = radius * std::cos(angle);
-      p[(axis + 2) % 3] = radius * std::sin(angle);
-      ring.points.push_back(centre + p);
+      p[(axis + 1) % 3] = rings.radius * std::cos(angle);
+      p[(axis + 2) % 3] = rings.radius * std::sin(angle);
+      ring.points.push_back(rings.from + p);
     }
     add_tube(shape, ring, 8);
-  }
-}
-/// Interpolates blue, amber and red for a force ratio of 0, 0.5 and 1.
-Color strain_color(double strain) {
-  const auto share = static_cast<float>(std::clamp(strain, 0.0, 1.0));
-  const Color calm{0.35f, 0.72f, 1.0f}, amber{1.0f, 0.75f, 0.2f}, red{1.0f, 0.15f, 0.1f};
-  const bool low = share < 0.5f;
-  const Color &a = low ? calm : amber, &b = low ? amber : red;
-  const float t = low ? 2 * share : 2 * share - 1;
-  return {a.r + t * (b.r - a.r), a.g + t * (b.g - a.g), a.b + t * (b.b - a.b)};
-}
-
-/// Adds the arrow of the force at its point of application.
-void add_force(ShapeMesh& shape, const CursorItem& cursor, const Vec3& from) {
-  const Color lime{0.60f, 0.95f, 0.25f};
-  const double length = is_finite(cursor.force_n) ? cursor_arrow_length(norm(cursor.force_n), cursor.radius) : 0;
-  if (!(length > 0)) return;
-  const Vec3 along = direction(cursor.force_n), tip = from + length * along, neck = tip - 1.1 * cursor.radius * along;
-  add_cylinder(shape, from, neck, 0.25 * cursor.radius, lime);
-  add_cone(shape, neck, tip, 0.55 * cursor.radius, lime);
-}
-
-/// Adds a pseudo-haptic cursor: a ball at the last proxy, with a tether to the probe that lags behind.
-void add_pseudo_haptic(ShapeMesh& shape, const CursorItem& cursor) {
-  Vec3 held = cursor.probe, before = cursor.probe;
-  const Color color = strain_color(*cursor.force_ratio);
-  const double tether = (0.12 + 0.3 * std::clamp(*cursor.force_ratio, 0.0, 1.0)) * cursor.radius;
-  for (std::size_t i = 0; i < cursor.proxies.size(); ++i) {
-    if (!is_finite(cursor.proxies[i])) continue;
-    const bool active = i < cursor.link_active.size() && cursor.link_active[i];
-    const double leaving = i < cursor.release_ratios.size() ? cursor.release_ratios[i] : 0;
-    if (!active && leaving >= 1) add_rings(shape, cursor.proxies[i], cursor.radius * 1.5, 0.12 * cursor.radius, release_color(1));
-    if (!active) continue;
-    held = cursor.proxies[i];
-    add_cylinder(shape, before, held, tether, color);
-    if (held != before) add_sphere(shape, held, 0.5 * cursor.radius, link_color(i, true));
-    before = held;
-  }
-  // white without a force; reaches the force color at 1/8 of the maximum, because a force along the view hides the tether behind the ball
-  const Color calm{0.95f, 0.95f, 0.95f};
-  const auto t = static_cast<float>(std::clamp(8 * *cursor.force_ratio, 0.0, 1.0));
-  add_sphere(shape, held, cursor.radius,
-             {calm.r + t * (color.r - calm.r), calm.g + t * (color.g - calm.g), calm.b + t * (color.b - calm.b)});
-  add_force(shape, cursor, held);
-  if (held != cursor.probe) add_sphere(shape, cursor.probe, 0.45 * cursor.radius, {0.6f, 0.62f, 0.66f});
-}
-
-/// Adds a line from the probe to its foot, and a cross there.
-void add_drop_line(ShapeMesh& shape, const CursorItem& cursor) {
-  if (!is_finite(*cursor.foot_point) || *cursor.foot_point == cursor.probe) return;
-  const Color grey{0.62f, 0.62f, 0.62f};
-  const double radius = 0.15 * cursor.radius, reach = 1.5 * cursor.radius;
-  add_cylinder(shape, cursor.probe, *cursor.foot_point, radius, grey);
-  const Vec3 down = direction(*cursor.foot_point - cursor.probe), one = any_perpendicular(down), other = cross(down, one);
-  for (const Vec3& arm : {one, other})
-    add_cylinder(shape, *cursor.foot_point - reach * arm, *cursor.foot_point + reach * arm, radius, grey);
-}
-
-/// Adds a cross along the world axes; dark and thin, to be visible on bright backgrounds and on lines.
-void add_crosshair(ShapeMesh& shape, const CursorItem& cursor) {
-  const Color dark{0.05f, 0.05f, 0.08f};
-  for (int axis = 0; axis < 3; ++axis) {
-    Vec3 arm(0.0);
-    arm[axis] = cursor.radius;
-    add_cylinder(shape, cursor.probe - arm, cursor.probe + arm, 0.06 * cursor.radius, dark);
   }
 }
 
 }  // namespace
 
 void add_cursor(ShapeMesh& shape, const CursorItem& cursor) {
-  if (!(cursor.radius > 0) || !is_finite(cursor.probe)) return;
-  if (cursor.foot_point) add_drop_line(shape, cursor);
-  if (cursor.is_crosshair) return add_crosshair(shape, cursor);
-  if (cursor.force_ratio) return add_pseudo_haptic(shape, cursor);
-  const Color white{0.95f, 0.95f, 0.95f};
-  add_sphere(shape, cursor.probe, cursor.radius, white);
-
-  // each proxy, joined to the previous one; decreasing radii avoid z-fighting of balls at one position
-  Vec3 before = cursor.probe;
-  for (std::size_t i = 0; i < cursor.proxies.size(); ++i) {
-    if (!is_finite(cursor.proxies[i])) continue;
-    const bool active = i < cursor.link_active.size() && cursor.link_active[i];
-    const double radius = cursor.radius * (0.9 - 0.03 * static_cast<double>(std::min<std::size_t>(i, 8)));
-    add_sphere(shape, cursor.proxies[i], radius, link_color(i, active));
-    const double leaving = i < cursor.release_ratios.size() ? cursor.release_ratios[i] : 0;
-    add_cylinder(shape, before, cursor.proxies[i], (0.18 + 0.2 * std::clamp(leaving, 0.0, 1.0)) * cursor.radius,
-                 active ? release_color(leaving) : Color{0.3f, 0.3f, 0.3f});
-    if (!active && leaving >= 1)
-      add_rings(shape, cursor.proxies[i], cursor.radius * (1.5 + 0.35 * static_cast<double>(i)), 0.12 * cursor.radius, release_color(1));
-    before = cursor.proxies[i];
-  }
-
-  add_force(shape, cursor, cursor.probe);
+  for (const CursorPart& part : cursor_parts(cursor)) switch (part.kind) {
+      case CursorPart::Kind::sphere:
+        add_sphere(shape, part.from, part.radius, part.color);
+        break;
+      case CursorPart::Kind::cylinder:
+        add_cylinder(shape, part.from, part.to, part.radius, part.color);
+        break;
+      case CursorPart::Kind::cone:
+        add_cone(shape, part.from, part.to, part.radius, part.color);
+        break;
+      case CursorPart::Kind::rings:
+        add_rings(shape, part);
+        break;
+    }
 }
 
 }  // namespace catena::render

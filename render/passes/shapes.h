@@ -28,6 +28,9 @@ struct ShapeMesh {
   std::vector<std::uint32_t> triangles;  ///< three indices per triangle
 };
 
+/// Returns a unit vector perpendicular to a unit vector.
+Vec3 any_perpendicular(const Vec3& t);
+
 /// Assigns the vertices from index `first` on to an object.
 void assign_object(ShapeMesh& shape, std::size_t first, std::uint32_t id, bool clipped);
 
@@ -61,22 +64,7 @@ void add_cylinder(ShapeMesh& shape, const Vec3& a, const Vec3& b, double radius,
 /// Appends a cone with a closed base.
 void add_cone(ShapeMesh& shape, const Vec3& base, const Vec3& tip, double radius, const Color& color, int sides = 16);
 
-/// Returns the color of link i's proxy: a color-blind-safe sequence (Okabe and Ito); dimmed while the link is not active.
-Color link_color(std::size_t i, bool active);
-
-/// Returns the color of the link between a proxy and the probe for a release ratio of 0 (gray: on the feature) over amber to 1 (red: about
-/// to release); distinguishable for the color-blind (Okabe and Ito).
-Color release_color(double leaving);
-
-/// Appends the cursor: the probe sphere, one sphere per proxy (larger than a tube of the fitted radius, so that it covers the line it is
-/// on), cylinders probe -> p1 -> p2 .., and an arrow for the force: cursor_arrow_length() long, along F, from the probe, or from the last
-/// active proxy if CursorItem::force_ratio is set. The cylinder of a link close to release gets release_color() and is thicker; a released
-/// link is shown by three rings of release_color(1) around its proxy. With a foot point: a gray line of 0.15 size from the probe to it, and
-/// a cross of 1.5 size to each side, perpendicular to the line. A crosshair is three bars and nothing else, apart from the line to the foot
-/// point.
+/// Appends the parts of the cursor (cursor_parts.h).
 void add_cursor(ShapeMesh& shape, const CursorItem& cursor);
-/// Returns the length of the force arrow: 2.5 cursor radii (`size`) per newton, between 2 (so that any perceptible force is visible) and 16
-/// radii; 0 without a force.
-double cursor_arrow_length(double force_n, double size);
 
 }  // namespace catena::render

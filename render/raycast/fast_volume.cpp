@@ -378,15 +378,20 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
 Outcome FastVolumeRaycast::record_ray_samples(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings,
                                               std::uint32_t spacing, vk::Image& target, const vk::Image* opaque_depth,
                                               const vk::Image& none) {
+  const VkExtent3D& extent = target.info().extent;
   return record_samples(commands, rays, settings, spacing,
-                        {.target = &target, .shading = shading(settings), .opaque_depth = opaque_depth, .placeholder = &none});
+                        {.target = &target,
+                         .shading = shading(settings),
+                         .area = {{0, 0}, {extent.width, extent.height}},
+                         .opaque_depth = opaque_depth,
+                         .placeholder = &none});
 }
 
 Outcome FastVolumeRaycast::record_half_opacity_depth(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings,
-                                                     std::uint32_t spacing, vk::Image& target, const vk::Image* opaque_depth,
-                                                     const vk::Image& none) {
+                                                     std::uint32_t spacing, vk::Image& target, const VkRect2D& area,
+                                                     const vk::Image* opaque_depth, const vk::Image& none) {
   return record_samples(commands, rays, settings, spacing,
-                        {.target = &target, .opaque_depth = opaque_depth, .placeholder = &none, .half_opacity_depth = true});
+                        {.target = &target, .area = area, .opaque_depth = opaque_depth, .placeholder = &none, .half_opacity_depth = true});
 }
 
 /// Draws rays of a single ray grid, without refinement.
@@ -398,9 +403,7 @@ Outcome FastVolumeRaycast::record_samples(vk::Commands& commands, const CameraRa
   commands.transition(sample_grid_.marks, vk::kFragmentRead);
   CATENA_CHECK(vk::write_uniform(*device_, sample_grid_.data,
                                  shared::RayGridData{float(spacing), 0, 0, {}, {}, 1, 1, resources_.gradient_nodes(), 0, 0, 0, 0}));
-  const VkExtent3D& extent = params.target->info().extent;
   params.skips_empty = settings.skip_empty;
-  params.area = {{0, 0}, {extent.width, extent.height}};
   if (resources_.pages()) resources_.pages()->begin_image(rays, false);
   CATENA_CHECK(draw(commands, sample_grid_, params));
   if (resources_.pages()) resources_.pages()->finish_visits(commands);

@@ -62,9 +62,10 @@ class FastVolumeRaycast {
   /// Renders the rays of every `spacing`-th pixel only into `target` (kVolumeFormat).
   Outcome record_ray_samples(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
                              vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none);
-  /// Renders, for the same rays, the depth t at which alpha exceeds 0.5 into the red channel; NO_DEPTH where it never does.
+  /// Renders, for those of these rays that are in `area`, the depth t at which alpha exceeds 0.5 into the red channel; NO_DEPTH where it
+  /// never does.
   Outcome record_half_opacity_depth(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
-                                    vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none);
+                                    vk::Image& target, const VkRect2D& area, const vk::Image* opaque_depth, const vk::Image& none);
   /// Returns the volume at every 2nd pixel, the input of Upsampler.
   vk::Image& half_resolution() { return eye_state().half.color; }
   /// Returns whether enough of the volume is homogeneous that rays skip it.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "render/passes/cursor_parts.h"
 #include "render/passes/shapes.h"
 
 #include <gtest/gtest.h>

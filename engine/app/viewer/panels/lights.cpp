@@ -40,6 +40,8 @@ void draw_lights(PanelContext& context) {
     context.edits.set("/ambient_occlusion", scene::to_json(occludes), "ambient occlusion");
   if (ImGui::Checkbox("shadows of the lights fixed to the scene", &shadows))
     context.edits.set("/shadows", scene::to_json(shadows), "shadows");
+  bool halos = light.line_halos.value_or(light.look == scene::Look::lit && light.is_unstated());
+  if (ImGui::Checkbox("halos of lines", &halos)) context.edits.set("/line_halos", scene::to_json(halos), "halos of lines");
   for (std::size_t i = 0; i < lights.size(); ++i) draw_light(context.edits, lights[i], i, lights.size() == 1);
   if (ImGui::Button("Add a light"))
     context.edits.set("/lights/-", R"({"direction": [-0.5, 0.7, 1], "fixed_to": "camera", "intensity": 0.8})", "add a light");
