@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kCastingLights = 3;  // as in shaders/lib/lighting.glsl
 constexpr std::uint32_t kSpacing = 4;      // pixels between the rays that find the depths of volumes
 constexpr double kFaintest = 1.0 / 500;    // share of a light: shadows of less are not seen
-constexpr double kSharpPixels = 0.7;       // least half width of a penumbra
+constexpr double kSharpPixels = 0.5;       // least half width of a penumbra
 
 std::vector<CursorPart> casting_parts(const FramePacket& packet) {
   std::vector<CursorPart> casting;

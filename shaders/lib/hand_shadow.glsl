@@ -35,12 +35,12 @@ float covered_by_part(vec4 from, vec4 to, vec3 view, vec3 to_light, float tangen
   const vec3 flat_a = a - height_a * to_light, axis = b - height_b * to_light - flat_a;
   const float axis_length = length(axis);
   if (axis_length < 0.1 * max(from.w, to.w)) {
-    const float height = max(height_a, height_b), disc = tangent * height + sharp;
+    const float height = max(height_a, height_b), disc = length(vec2(tangent * height, sharp));
     return height > 0.0 ? covered_by_disc(max(from.w, to.w) / disc, length(flat_a) / disc) : 0.0;
   }
   const vec3 along = axis / axis_length;
   const float place = -dot(flat_a, along), t = clamp(place / axis_length, 0.0, 1.0);
-  const float height = mix(height_a, height_b, t), radius = mix(from.w, to.w, t), disc = tangent * height + sharp;
+  const float height = mix(height_a, height_b, t), radius = mix(from.w, to.w, t), disc = length(vec2(tangent * height, sharp));
   const float aside = length(flat_a + place * along);
   const float across = disc_share((radius - aside) / disc) - disc_share((-radius - aside) / disc);
   return height > 0.0 ? across * (disc_share((axis_length - place) / disc) - disc_share(-place / disc)) : 0.0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Cost of light on a grid of 256^3 voxels: filling the cells, one light, the environment; and images of 1024 x 768 by the fast raycast,
-/// under the headlight and lit. Compare with --benchmark_enable_random_interleaving --benchmark_repetitions=9.
+/// under the headlight and lit; a moving hand with and without its shadow. Compare with --benchmark_enable_random_interleaving
+/// --benchmark_repetitions=9.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -79,6 +80,36 @@ void image(benchmark::State& state, bool is_shaded, bool is_lit) {
   }
 }
 
+/// A moving hand over a volume or an isosurface that are lit and otherwise unchanged.
+void hand(benchmark::State& state, bool is_volume, bool casts) {
+  auto renderer = Renderer::create({});
+  if (!renderer) return state.SkipWithError("no device");
+  FramePacket packet = packet_of(true, true);
+  packet.illumination.shadows = casts;
+  packet.lights[0].angular_size_deg = 5;
+  if (!is_volume) {
+    packet.volumes.clear();
+    packet.isosurfaces.push_back({body(), 0.5, {0.8f, 0.8f, 0.8f}});
+  }
+  CursorItem cursor;
+  cursor.radius = 3.5;
+  cursor.proxies.resize(3);
+  cursor.link_active.assign(3, true);
+  cursor.force_n = {1, -1, 1};
+  packet.cursors.push_back(cursor);
+  RenderSettings settings;
+  settings.fast.emplace();
+  settings.reuse_rays = true;
+  double angle = 0;
+  for (auto _ : state) {
+    angle += 0.02;
+    CursorItem& moved = packet.cursors[0];
+    moved.probe = Vec3(127.5) + 115.0 * direction(Vec3(1, 0.8 * std::sin(angle) - 0.6, 0.8 * std::cos(angle)));
+    for (std::size_t k = 0; k < 3; ++k) moved.proxies[k] = moved.probe - Vec3(0, 0, 4.0 * double(k + 1));
+    if (const auto drawn = (*renderer)->draw(packet, settings); !drawn) return state.SkipWithError(drawn.error().message.c_str());
+  }
+}
+
 BENCHMARK(cells)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(shadow)->Arg(0)->Arg(5)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(environment)->Unit(benchmark::kMillisecond)->UseRealTime();
@@ -86,5 +117,9 @@ BENCHMARK_CAPTURE(image, plain_headlight, false, false)->Unit(benchmark::kMillis
 BENCHMARK_CAPTURE(image, plain_lit, false, true)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(image, shaded_headlight, true, false)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(image, shaded_lit, true, true)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(hand, volume, true, false)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(hand, volume_shadow, true, true)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(hand, surface, false, false)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(hand, surface_shadow, false, true)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
