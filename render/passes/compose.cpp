@@ -23,7 +23,17 @@ constexpr std::uint32_t kComposeHandFragmentShader[] = {
 };
 
 constexpr std::size_t kBindings = 6;  ///< without those of the hand's shadow
-constexpr int kMaxStep = 16;          ///< pixels searched along a step of a contour in each direction
+VkRect2D common_area(const VkRect2D& a, const VkRect2D& b) {
+  const auto length = [](std::int32_t a0, std::uint32_t an, std::int32_t b0, std::uint32_t bn) {
+    const std::int64_t end = std::min(std::int64_t(a0) + an, std::int64_t(b0) + bn);
+    return std::uint32_t(std::max<std::int64_t>(0, end - std::max(a0, b0)));
+  };
+  return {
+      {std::max(a.offset.x, b.offset.x), std::max(a.offset.y, b.offset.y)},
+      {length(a.offset.x, a.extent.width, b.offset.x, b.extent.width), length(a.offset.y, a.extent.height, b.offset.y, b.extent.height)}};
+}
+
+constexpr int kMaxStep = 16;  ///< pixels searched along a step of a contour in each direction
 
 class ComposePass final : public Pass {
  public:
@@ -63,7 +73,7 @@ Result<const vk::Pipeline*> ComposePass::pipeline(Frame& frame, bool ghost, bool
       pipelines_[{format, (opaque ? 1u : 0u) | (volume ? 2u : 0u) | (ghost ? 4u : 0u) | (smooth ? 8u : 0u) | (hand ? 16u : 0u)}];
   if (!pipeline) {
     vk::GraphicsInfo info;
-    info.vertex = kComposeVertexShader;
+    info.vertex = hand ? HandShadow::vertex_shader() : vk::Spirv(kComposeVertexShader);
     info.fragment = hand ? vk::Spirv(kComposeHandFragmentShader) : vk::Spirv(kComposeFragmentShader);
     info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::texture}, {2, vk::DescriptorKind::texture},
                             {3, vk::DescriptorKind::texture}, {4, vk::DescriptorKind::texture}, {5, vk::DescriptorKind::texture}};
@@ -95,6 +105,7 @@ Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
   data.ends = 2;
   data.max_step = kMaxStep;
   CATENA_CHECK(vk::write_uniform(frame.device, uniform_, data));
+  if (hand) CATENA_CHECK(frame.hand_shadow->record_mask(commands, frame));
   targets.begin(commands, target::output, target::output);
   std::vector<vk::Binding> bindings{
       {0, vk::DescriptorKind::uniform, &uniform_, nullptr, nullptr},
@@ -109,12 +120,16 @@ Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
     const std::size_t count = with_hand ? bindings.size() : kBindings;
     commands.set_scissor(area);
     commands.bind(*pipe, std::span(bindings).first(count));
-    commands.draw_triangle();
+    if (with_hand)
+      commands.draw(6, frame.hand_shadow->tile_count());
+    else
+      commands.draw_triangle();
     return Done{};
   };
   CATENA_CHECK(draw({{0, 0}, {frame.packet.width, frame.packet.height}}, false, false));
+  if (ghost) CATENA_CHECK(draw(frame.occluded_area, true, false));
   if (hand) CATENA_CHECK(draw(frame.hand_shadow->area(), false, true));
-  if (ghost) CATENA_CHECK(draw(frame.occluded_area, true, hand));
+  if (ghost && hand) CATENA_CHECK(draw(common_area(frame.occluded_area, frame.hand_shadow->area()), true, true));
   commands.end_pass();
   return Done{};
 }

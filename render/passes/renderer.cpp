@@ -176,10 +176,12 @@ Outcome Renderer::Impl::draw(const FramePacket& packet, const RenderSettings& se
   frame.eye_count = eyes;
   CATENA_CHECK(prepare(frame));
   rendered_passes.clear();
-  CATENA_CHECK(hand_shadow.update(frame, ray_sampler()));
+  const std::vector<Pass*> active = active_passes(&rendered_passes);
+  const auto writes_depth = [&](const Pass* pass) { return (pass->use(frame).writes & target::opaque_depth) != 0; };
+  CATENA_CHECK(hand_shadow.update(frame, std::ranges::any_of(active, writes_depth), ray_sampler()));
   frame.hand_shadow = &hand_shadow;
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device));
-  CATENA_CHECK(record(commands, frame, active_passes(&rendered_passes)));
+  CATENA_CHECK(record(commands, frame, active));
   commands.transition(targets.output, vk::kTransferRead);
   CATENA_CHECK(commands.finish());
   drawn_targets = frame.written_targets;

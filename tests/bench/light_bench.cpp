@@ -100,6 +100,8 @@ void hand(benchmark::State& state, bool is_volume, bool casts) {
   RenderSettings settings;
   settings.fast.emplace();
   settings.reuse_rays = true;
+  for (int k = 0; k < 2; ++k)
+    if (const auto drawn = (*renderer)->draw(packet, settings); !drawn) return state.SkipWithError(drawn.error().message.c_str());
   double angle = 0;
   for (auto _ : state) {
     angle += 0.02;
