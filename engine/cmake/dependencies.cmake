@@ -12,6 +12,7 @@ find_package(glslang CONFIG REQUIRED)
 find_package(Boost REQUIRED)  # headers: Boost.Math, Boost.Beast
 find_program(GLSLANG_VALIDATOR glslangValidator REQUIRED)
 
+pkg_check_modules(MUPARSER REQUIRED IMPORTED_TARGET muparser)
 pkg_check_modules(IMATH REQUIRED IMPORTED_TARGET Imath)
 pkg_check_modules(OPENEXR REQUIRED IMPORTED_TARGET OpenEXR)
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)

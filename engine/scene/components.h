@@ -17,6 +17,7 @@
 #include "engine/geometry/flow/vortex_cores.h"
 #include "engine/io/curves/load_curves.h"
 #include "engine/io/curves/load_points.h"
+#include "engine/field/derived/quantities.h"
 #include "engine/io/mesh/load_mesh.h"
 #include "engine/io/volume/load_field.h"
 #include "engine/scene/entity_store.h"
@@ -42,7 +43,25 @@ struct LabelSource {
   bool operator==(const LabelSource&) const = default;
 };
 
-/// A field of the scene: its source (exactly one of `file`, `analytic`, `label`) and the field itself, which is loaded on first use.
+/// Source of a field that is derived from other fields of the scene (engine/field/derived).
+struct DerivedSource {
+  /// How it is derived: a quantity of one field, or one of its components; a smoothed field; a field at another one's nodes; a vector of
+  /// three scalar fields; expressions of variables.
+  enum class Kind { quantity, component, smooth, resample, vector, expression };
+  Kind kind = Kind::quantity;
+  field::Quantity quantity = field::Quantity::magnitude;  ///< Kind::quantity
+  std::vector<std::string> sources;                       ///< Names of the fields; Kind::expression: one per variable
+  std::vector<std::string> variables;                     ///< Kind::expression: their names
+  std::vector<int> components;                            ///< Kind::expression: component of each, 0 to 2; -1: a scalar field
+  int component = 0;                                      ///< Kind::component
+  int order = 2;                                          ///< Of the differences between nodes, 2 or 4
+  double sigma = 0;                                       ///< Kind::smooth: standard deviation, world units
+  std::string on;                                         ///< Field whose nodes are used; empty: chosen
+  std::vector<std::string> expressions;                   ///< One or three
+  bool operator==(const DerivedSource&) const = default;
+};
+
+/// A field of the scene: its source (exactly one of `file`, `analytic`, `label`, `derived`) and the field itself, which is loaded on first use.
 struct FieldSource {
   json::Node where;                        ///< Node in the scene file
   std::optional<field::LoadRequest> file;  ///< File to load; empty: the source is no file
@@ -60,6 +79,7 @@ struct FieldSource {
   int resolution = 128;                    ///< Nodes per axis of the grid that represents an analytic field in images
   std::array<double, 2> box{-2, 2};        ///< Min and max coordinate of the cube in which an analytic field is sampled, on each axis
   std::optional<LabelSource> label;        ///< Labels to surround; empty: the source is no label surface
+  std::optional<DerivedSource> derived;    ///< How it is derived from other fields; empty: it is not
   std::string labels_file;                 ///< File with the names and colors of a label map; empty: rows of the scene file
   LabelTable labels_table;                 ///< Names and colors of labels, values rising; empty: none
   std::shared_ptr<const LabelMap> labels;  ///< Labels of `loaded`; null: not loaded, or not a label map

@@ -8,6 +8,7 @@
 #include "engine/io/volume/units.h"
 #include "engine/scene/auto_transfer.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/derived_fields.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/reader_bindings.h"
 #include "engine/scene/streamlines.h"
@@ -107,6 +108,15 @@ Result<field::AnyField> resolve_field(Scene& scene, Entity field, const json::No
     CATENA_TRY(field::AnyField surface, resolve_label_surface(scene, field));
     scene.entities.get<FieldSource>(field).loaded = surface;
     return surface;
+  }
+  if (source.derived) {
+    CATENA_TRY(const field::AnyField derived, resolve_derived(scene, field));
+    FieldSource& made = scene.entities.get<FieldSource>(field);
+    made.loaded = derived;
+    const std::string name = scene.entities.get<Name>(field).value;
+    for (const std::string& note : derived.notes) scene.notes.push_back("field " + in_quotes(name) + ": " + note);
+    note_outliers(scene, name, made);
+    return derived;
   }
   auto loaded = load_source(source);
   if (!loaded) {

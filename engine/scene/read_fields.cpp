@@ -26,12 +26,6 @@ std::string field_fault(const std::string& path) {
 
 // ---- fields from files ----
 
-Key unit_key() {
-  return schema::text("unit", "Unit shown after values, such as `\"m/s\"`. Values are not converted.")
-      .with_size(0, 24)
-      .with_default("the unit in the file");
-}
-
 Key file_key(bool with_layout) {
   std::vector<std::string_view> endings;
   for (const std::string_view ending : io::readable_extensions(io::DataKind::volume))
@@ -175,7 +169,6 @@ Outcome read_file_source(const Scene& scene, const json::Node& node, bool replac
 Keys formula_keys() {
   std::vector<std::string> names;
   for (const std::string_view name : field::analytic_names()) names.emplace_back(name);
-  const FieldSource defaults;
   return {schema::choice("analytic", std::move(names), "Name of the formula.").required(),
           schema::number("scale", "", "Factor by which the values are multiplied.").with_range_text("not 0").with_default("1"),
           schema::direction("direction", "Direction of the field `uniform`, the only one that accepts this key.").with_default("[1, 0, 0]"),
@@ -188,11 +181,8 @@ Keys formula_keys() {
               .with_default("3"),
           schema::text("part", "Grid of a formula that has several: `density`, `transmural` or `fibre` of `left-ventricle`."),
           schema::text("grid", "Synonym of `part`."),
-          schema::integer("resolution", "nodes", "Nodes per axis of the grid that stands for the formula in images.", 2, kMaxNodes)
-              .with_default(std::to_string(defaults.resolution)),
-          schema::vector("box", 2, "world", "Minimum and maximum coordinate, on each axis, of the cube that is sampled for images.")
-              .with_range_text("increasing")
-              .with_default("[-2, 2]"),
+          sampling_keys()[0],
+          sampling_keys()[1],
           unit_key()};
 }
 
@@ -239,25 +229,21 @@ Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
     if (word != source.analytic) source.parameters.part = word;
   }
 
-  CATENA_TRY(source.resolution, json::get_integer(node, "resolution", source.resolution, 2, kMaxNodes));
-  if (const json::Node* box = node.find("box")) {
-    const bool pair = box->kind == json::Kind::array && box->items.size() == 2 && box->items[0].kind == json::Kind::number &&
-                      box->items[1].kind == json::Kind::number;
-    if (!pair || !(box->items[0].number < box->items[1].number))
-      return json::error_at(*box, "\"box\" is not an interval; two finite numbers [LO, HI] with LO < HI were expected");
-    source.box = {box->items[0].number, box->items[1].number};
-  }
-  return Done{};
+  return read_sampling(node, source);
 }
 
 Outcome read_source(const Scene& scene, const json::Node& node, bool replaced, FieldSource& source) {
   CATENA_CHECK(json::expect_object(node, node.label));
   source.where = node;
   const bool file = node.find("file") != nullptr, analytic = node.find("analytic") != nullptr, label = node.find("label") != nullptr;
-  if (label && !file && !analytic) return read_label_source(node, source);
-  if (file == analytic || label)
-    return json::error_at(node, "field " + in_quotes(node.label) + " has " + (file || analytic ? "several" : "none") +
-                                    " of \"file\", \"analytic\" and \"label\"; exactly one of them was expected");
+  const bool derived = node.find("derived") != nullptr, expression = node.find("expression") != nullptr;
+  const int given = int(file) + int(analytic) + int(label) + int(derived) + int(expression);
+  if (given != 1)
+    return json::error_at(node,
+                          "field " + in_quotes(node.label) + " has " + (given > 1 ? "several" : "none") +
+                              " of \"file\", \"analytic\", \"label\", \"derived\" and \"expression\"; exactly one of them was expected");
+  if (label) return read_label_source(node, source);
+  if (derived || expression) return read_derived_source(node, source);
   return file ? read_file_source(scene, node, replaced, source) : read_analytic_source(node, source);
 }
 
@@ -281,6 +267,7 @@ Outcome take_in_memory_field(Scene& scene, const FieldOverride& with) {
   const FieldSource defaults;
   source.file.reset();
   source.label.reset();
+  source.derived.reset();
   source.analytic.clear();
   source.loaded = with.in_memory_field;
   source.rendered = {};
@@ -310,11 +297,39 @@ Outcome apply_override(Scene& scene, const FieldOverride& with) {
   source.file = request;
   source.analytic.clear();
   source.label.reset();
+  source.derived.reset();
   source.where = json::Node{};
   return Done{};
 }
 
 }  // namespace
+
+Key unit_key() {
+  return schema::text("unit", "Unit shown after values, such as `\"m/s\"`. Values are not converted.")
+      .with_size(0, 24)
+      .with_default("the unit in the file");
+}
+
+Keys sampling_keys() {
+  const FieldSource defaults;
+  return {schema::integer("resolution", "nodes", "Nodes per axis of the grid that stands for the formula in images.", 2, kMaxNodes)
+              .with_default(std::to_string(defaults.resolution)),
+          schema::vector("box", 2, "world", "Minimum and maximum coordinate, on each axis, of the cube that is sampled for images.")
+              .with_range_text("increasing")
+              .with_default("[-2, 2]")};
+}
+
+Outcome read_sampling(const json::Node& node, FieldSource& source) {
+  CATENA_TRY(source.resolution, json::get_integer(node, "resolution", source.resolution, 2, kMaxNodes));
+  if (const json::Node* box = node.find("box")) {
+    const bool pair = box->kind == json::Kind::array && box->items.size() == 2 && box->items[0].kind == json::Kind::number &&
+                      box->items[1].kind == json::Kind::number;
+    if (!pair || !(box->items[0].number < box->items[1].number))
+      return json::error_at(*box, "\"box\" is not an interval; two finite numbers [LO, HI] with LO < HI were expected");
+    source.box = {box->items[0].number, box->items[1].number};
+  }
+  return Done{};
+}
 
 std::string resolve_path(const std::string& scene_path, const std::string& file) {
   const fs::path path(file);
@@ -347,13 +362,14 @@ Outcome read_fields(Scene& scene, const json::Node* fields, const std::vector<Fi
     }
   }
   for (const FieldOverride& with : overrides) CATENA_CHECK(apply_override(scene, with));
+  CATENA_CHECK(check_derived_sources(scene));
   return check_label_sources(scene);
 }
 
 Part fields_part() {
   schema::Section component{"fields",
                             "Map of names to fields: grids from files, formulas and surfaces of labels. A field has exactly one of "
-                            "`file`, `analytic` and `label`.",
+                            "`file`, `analytic`, `label`, `derived` and `expression`.",
                             schema::Section::Layout::map};
   component.variants = {
       {"file", "Grid from a file that describes its own layout.", grid_keys()},
@@ -362,7 +378,9 @@ Part fields_part() {
       {"label",
        "Surface of labels of a label map, for images and haptics: the field is 1 inside the labels and 0 outside, with the surface at "
        "level 0.5.",
-       label_keys()}};
+       label_keys()},
+      {"derived", "Quantity of another field, made when something needs it: of a grid at its nodes, of a formula exactly.", derived_keys()},
+      {"expression", "Expression of other fields, of the position and of the time, evaluated at nodes.", expression_keys()}};
   return {component, nullptr};
 }
 

@@ -85,6 +85,16 @@ Key transform_key();
 /// Reads "transform"; `out` is empty if the field has none.
 Outcome read_transform(const std::string& scene_path, const json::Node& node, std::optional<field::FieldTransform>& out);
 Outcome read_grid_source(const std::string& scene_path, const json::Node& node, FieldSource& source);
+/// Key "unit" of a field. Keys "resolution" and "box" of a field that is sampled, as read by read_sampling().
+Key unit_key();
+Keys sampling_keys();
+Outcome read_sampling(const json::Node& node, FieldSource& source);
+/// Keys of a field that is derived from others, and of one that is an expression of them.
+Keys derived_keys();
+Keys expression_keys();
+Outcome read_derived_source(const json::Node& node, FieldSource& source);
+/// Checks, after all fields are read, that the sources of derived fields exist and that none is derived from itself.
+Outcome check_derived_sources(const Scene& scene);
 /// Keys of a label surface as a source: "label", "of", "smooth".
 Keys label_keys();
 Outcome read_label_source(const json::Node& node, FieldSource& source);

@@ -21,13 +21,25 @@ bool same_request(const field::LoadRequest& a, const field::LoadRequest& b) {
 }
 
 bool same_source(const FieldSource& a, const FieldSource& b) {
-  if (a.file.has_value() != b.file.has_value() || a.label != b.label) return false;
+  if (a.file.has_value() != b.file.has_value() || a.label != b.label || a.derived != b.derived) return false;
   if (a.file) return a.grid_is_optional == b.grid_is_optional && same_request(*a.file, *b.file);
   return a.analytic == b.analytic && a.parameters == b.parameters;
 }
 
+/// Returns whether everything that a field is derived from is unchanged, down to files and formulas.
+bool same_sources_of(const Scene& old, const FieldSource& before, const Scene& reloaded, const FieldSource& source) {
+  if (!same_source(before, source) || !source.derived) return same_source(before, source);
+  std::vector<std::string> names = source.derived->sources;
+  if (!source.derived->on.empty()) names.push_back(source.derived->on);
+  return std::ranges::all_of(names, [&](const std::string& name) {
+    const Entity was = find_field(old, name), is = find_field(reloaded, name);
+    return was && is && same_sources_of(old, old.entities.get<FieldSource>(was), reloaded, reloaded.entities.get<FieldSource>(is));
+  });
+}
+
 /// Returns whether the label map of a label surface is unchanged; the surface is then unchanged as well.
 bool same_map(const Scene& old, const FieldSource& before, const Scene& reloaded, const FieldSource& source) {
+  if (source.derived) return same_sources_of(old, before, reloaded, source);
   if (!source.label) return true;
   const Entity old_map = find_field(old, source.label->label_map), new_map = find_field(reloaded, source.label->label_map);
   if (!old_map || !new_map) return false;

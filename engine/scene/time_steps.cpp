@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "engine/scene/derived_fields.h"
+
 namespace catena::scene {
 namespace {
 
@@ -157,6 +159,7 @@ bool set_step(Scene& scene, int step) {
     shape.loaded = {};
     changed = true;
   });
+  changed = drop_derived(scene) || changed;
   if (changed) scene.cache = EntityStore{};
   return changed;
 }

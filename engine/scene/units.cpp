@@ -3,6 +3,7 @@
 
 #include "engine/base/text.h"
 #include "engine/io/volume/units.h"
+#include "engine/scene/derived_fields.h"
 #include "engine/scene/readers.h"
 
 namespace catena::scene {
@@ -21,6 +22,7 @@ std::string unit_of(const Scene& scene, Entity field) {
   if (scene.entities.has<Unit>(field)) return scene.entities.get<Unit>(field).symbol;
   if (!scene.entities.has<FieldSource>(field)) return {};
   const FieldSource& source = scene.entities.get<FieldSource>(field);
+  if (source.derived) return derived_unit(scene, *source.derived);
   return source.file ? field::read_units(source.file->path, source.file->grid).value : std::string();
 }
 

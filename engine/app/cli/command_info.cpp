@@ -21,6 +21,7 @@
 #include "engine/io/volume/load_field.h"
 #include "engine/io/volume/units.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/derived_fields.h"
 #include "engine/scene/drawable.h"
 #include "engine/scene/ruler.h"
 #include "engine/scene/scene.h"
@@ -80,9 +81,7 @@ Outcome describe_scene(const std::string& path) {
     CATENA_TRY(const field::AnyField any, scene::resolve_field(scene, entity, where));
     const scene::FieldSource& source = scene.entities.get<scene::FieldSource>(entity);
     fmt::print("field {}: {} {}, L = {}", sanitize_for_terminal(scene.entities.get<scene::Name>(entity).value),
-               any.scalar ? "scalar" : "vector",
-               sanitize_for_terminal(source.file ? source.file->path + (source.file->grid.empty() ? "" : ":" + source.file->grid)
-                                                 : source.analytic),
+               any.scalar ? "scalar" : "vector", sanitize_for_terminal(scene::source_text(source)),
                format_readable(any.get()->domain_length()));
     if (any.scalar) fmt::print(", values {}", format_range(field::display_range(*any.scalar)));
     if (const std::string unit = scene::unit_of(scene, entity); !unit.empty()) fmt::print(", in {}", sanitize_for_terminal(unit));

@@ -13,6 +13,7 @@
 #include "engine/io/curves/load_points.h"
 #include "engine/io/formats.h"
 #include "engine/io/volume/units.h"
+#include "engine/scene/derived_fields.h"
 #include "engine/scene/drawable.h"
 #include "engine/scene/time_steps.h"
 #include "engine/scene/units.h"
@@ -128,7 +129,7 @@ Result<std::string> json_of_scene(const std::string& path) {
     CATENA_TRY(const field::AnyField any, scene::resolve_field(scene, e, scene.entities.get<scene::FieldSource>(e).where));
     const scene::FieldSource& source = scene.entities.get<scene::FieldSource>(e);
     JsonObject field;
-    field.add("name", name_of(e)).add("source", source.file ? source.file->path : source.analytic);
+    field.add("name", name_of(e)).add("source", source.file ? source.file->path : scene::source_text(source));
     if (source.file) field.add_if_not_empty("grid", source.file->grid);
     field.add("vector", any.vector != nullptr).add("length", any.get()->domain_length());
     if (any.scalar) field.add_raw("range", json_array({to_json_value(any.scalar->min_value()), to_json_value(any.scalar->max_value())}));

@@ -9,6 +9,7 @@
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/color_widgets.h"
 #include "engine/field/field_display_range.h"
+#include "engine/scene/derived_fields.h"
 
 namespace catena::app {
 
@@ -37,7 +38,7 @@ void draw_facts(const scene::FieldSource& source, const field::AnyField& shown) 
     row("file", std::filesystem::path(source.file->path).filename().string());
     show_short_tooltip(source.file->path.c_str());
   } else {
-    row("formula", source.analytic);
+    row(source.analytic.empty() ? "made of" : "formula", scene::source_text(source));
   }
   if (shown.get() == nullptr) return;
   const field::Field& field = *shown.get();
