@@ -113,6 +113,8 @@ class CATENA_EXPORT ScalarField : public Field {
  public:
   /// Returns value and gradient at a position: one evaluation. Any thread, each with its own Cursor; no allocation, lock or throw.
   virtual ScalarSample sample(const Vec3& world, Cursor& cursor) const noexcept = 0;
+  /// Returns the same without a gradient, where one takes longer.
+  virtual ScalarSample sample_value(const Vec3& world, Cursor& cursor) const noexcept { return sample(world, cursor); }
   /// Returns the minimum of the field: over the active (and valid) voxels of a grid; over all space for a formula (may be -infinity).
   virtual double min_value() const noexcept = 0;
   /// Returns the maximum of the field, over the same set as min_value().

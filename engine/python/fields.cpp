@@ -3,7 +3,10 @@
 #include <limits>
 #include <optional>
 
+#include "engine/base/text.h"
 #include "engine/field/analytic/analytic.h"
+#include "engine/field/derived/derive.h"
+#include "engine/field/derived/node_function.h"
 #include "engine/io/volume/load_field.h"
 #include "engine/python/module.h"
 
@@ -53,6 +56,37 @@ Field analytic(const std::string& name, double scale, const std::string& part, c
   return {unwrap(field::make_analytic(name, parameters))};
 }
 
+Field derived(const Field& field, const std::string& quantity, int order) {
+  if (order != 2 && order != 4) throw Failure(Error{"order: 2 or 4 was expected"});
+  std::vector<std::string_view> names;
+  for (const field::QuantityInfo& info : field::quantities()) {
+    if (info.name == quantity) {
+      const py::gil_scoped_release unlocked;
+      return {unwrap(field::derive(field.any, info.quantity, order, quantity))};
+    }
+    names.push_back(info.name);
+  }
+  throw Failure(Error{in_quotes(quantity) + " is not known; one of " + join_words(names) + " was expected" + suggestion(quantity, names)});
+}
+
+Field component(const Field& field, int component) {
+  if (component < 0 || component > 2) throw Failure(Error{"component: 0, 1 or 2 was expected"});
+  const py::gil_scoped_release unlocked;
+  return {unwrap(field::derive_component(field.any, component, field.any.get()->name()))};
+}
+
+Field smoothed(const Field& field, double sigma) {
+  if (!(sigma > 0)) throw Failure(Error{"sigma: a number > 0 was expected"});
+  const py::gil_scoped_release unlocked;
+  return {unwrap(field::smooth(field.any, sigma, field.any.get()->name()))};
+}
+
+Field resampled(const Field& field, const Field& on) {
+  if (!on.any.get()->is_grid()) throw Failure(Error{"on: a formula has no nodes; a grid was expected"});
+  const py::gil_scoped_release unlocked;
+  return {unwrap(field::resample(field.any, {on.any}, field.any.get()->name()))};
+}
+
 void save(const Field& field, const py::object& to) {
   const std::string path = to_path(to);
   if (!field.any.get()->is_grid()) throw Failure(Error{"a formula has no voxels to write; a grid was expected"});
@@ -77,6 +111,13 @@ void add_fields(py::module_& m) {
       .def("gradient", gradient, py::arg("points"),
            "Gradients of a scalar field at world places: exact derivatives of what sample() gives.\n\npoints: (N, 3) or (3,), world "
            "units.\nReturns (N, 3), field units per world unit; NaN outside of the domain.")
+      .def(
+          "derived", derived, py::arg("quantity"), py::arg("order") = 2,
+          "A quantity of the field: \"gradient\", \"vorticity\", \"q_criterion\", ... (docs/reference/derived.md). Of a grid at its nodes, "
+          "of a formula at any place.\n\norder: of the differences between nodes, 2 or 4.")
+      .def("component", component, py::arg("component"), "A component of a vector field: 0, 1 or 2, along the world's axes.")
+      .def("smoothed", smoothed, py::arg("sigma"), "A grid smoothed by a Gaussian.\n\nsigma: standard deviation, world units.")
+      .def("resampled", resampled, py::arg("on"), "The field at the nodes of another one, which is a grid.")
       .def("save", save, py::arg("path"), "Writes a grid to a .vdb file, whole or not at all.")
       .def_property_readonly(
           "name", [](const Field& f) { return f.any.get()->name(); }, "The grid's or the formula's name.")

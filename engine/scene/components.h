@@ -14,10 +14,10 @@
 #include "engine/base/plane.h"
 #include "engine/base/threshold.h"
 #include "engine/field/analytic/analytic.h"
+#include "engine/field/derived/quantities.h"
 #include "engine/geometry/flow/vortex_cores.h"
 #include "engine/io/curves/load_curves.h"
 #include "engine/io/curves/load_points.h"
-#include "engine/field/derived/quantities.h"
 #include "engine/io/mesh/load_mesh.h"
 #include "engine/io/volume/load_field.h"
 #include "engine/scene/entity_store.h"
@@ -48,7 +48,7 @@ struct DerivedSource {
   /// How it is derived: a quantity of one field, or one of its components; a smoothed field; a field at another one's nodes; a vector of
   /// three scalar fields; expressions of variables.
   enum class Kind { quantity, component, smooth, resample, vector, expression };
-  Kind kind = Kind::quantity;
+  Kind kind = Kind::quantity;                             ///< How it is derived
   field::Quantity quantity = field::Quantity::magnitude;  ///< Kind::quantity
   std::vector<std::string> sources;                       ///< Names of the fields; Kind::expression: one per variable
   std::vector<std::string> variables;                     ///< Kind::expression: their names
@@ -61,7 +61,8 @@ struct DerivedSource {
   bool operator==(const DerivedSource&) const = default;
 };
 
-/// A field of the scene: its source (exactly one of `file`, `analytic`, `label`, `derived`) and the field itself, which is loaded on first use.
+/// A field of the scene: its source (exactly one of `file`, `analytic`, `label`, `derived`) and the field itself, which is loaded on first
+/// use.
 struct FieldSource {
   json::Node where;                        ///< Node in the scene file
   std::optional<field::LoadRequest> file;  ///< File to load; empty: the source is no file

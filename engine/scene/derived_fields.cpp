@@ -86,6 +86,12 @@ Result<field::AnyField> resolve_derived(Scene& scene, Entity entity) {
   const auto time = current_step_time(scene);
   auto made = make(derived, fields, nodes_of(fields, on.get() ? &on : nullptr, source), time ? time->value : scene.time.step, name);
   if (!made) return with_cause(json::error_at(source.where, "field " + in_quotes(name) + ": " + made.error().message), made.error());
+  if (!made->get()->is_grid()) {  // images sample it as they sample its source
+    const FieldSource& of = scene.entities.get<FieldSource>(find_field(scene, derived.sources.front()));
+    const auto [resolution, box] = std::pair(of.resolution, of.box);
+    scene.entities.get<FieldSource>(entity).resolution = resolution;
+    scene.entities.get<FieldSource>(entity).box = box;
+  }
   return made;
 }
 

@@ -118,6 +118,22 @@ class Fields(unittest.TestCase):
         np.testing.assert_allclose(v.sample([1.5, 2.5, 0.5]), [[1.5, 25, 50]])
         self.assertTrue(np.isnan(f.sample([[99, 0, 0]])).all())
 
+    def test_fields_are_derived_from_fields(self):
+        z, y, x = np.meshgrid(np.arange(9.0), np.arange(8.0), np.arange(7.0), indexing="ij")
+        flow = catena.field(np.stack([-y, x, 0 * z], axis=-1))
+        np.testing.assert_allclose(flow.derived("vorticity").sample([3, 3, 3]), [[0, 0, 2]])
+        np.testing.assert_allclose(flow.derived("q_criterion", order=4).sample([3, 3, 3]), [1])
+        np.testing.assert_allclose(flow.component(1).derived("gradient").sample([3, 3, 3]), [[1, 0, 0]])
+        np.testing.assert_allclose(flow.smoothed(1).sample([3, 4, 3]), [[-4, 3, 0]], atol=0.01)
+        abc = catena.analytic("abc")
+        np.testing.assert_allclose(abc.derived("vorticity").sample([0.1, 0.2, 0.3]), abc.sample([0.1, 0.2, 0.3]), rtol=1e-11)
+        np.testing.assert_allclose(abc.resampled(flow).sample([2, 3, 4]), abc.sample([2, 3, 4]), rtol=1e-6)
+        for wrong, part in ((lambda: flow.derived("curl"), "is not known"), (lambda: flow.derived("gradient"), "a scalar field was expected"),
+                            (lambda: flow.derived("vorticity", 3), "2 or 4"), (lambda: abc.smoothed(1), "a field on a grid"),
+                            (lambda: flow.resampled(abc), "no nodes")):
+            with self.assertRaisesRegex(catena.Error, part):
+                wrong()
+
     def test_one_copy_is_all(self):
         # a program apart: the peak of this one is already higher
         code = ("import numpy as np, catena, resource\n"

@@ -22,9 +22,10 @@ CATENA_EXPORT Result<AnyField> derive(const AnyField& field, Quantity quantity, 
 CATENA_EXPORT Result<AnyField> derive_component(const AnyField& field, int component, const std::string& name);
 
 /// Returns a grid smoothed by a Gaussian of standard deviation `sigma` along each index axis, world units, truncated at 4 sigma. Nodes
-/// without a value have no weight, and stay without one. Error: the field is no grid, `sigma` is more than kMaxSmoothing voxels, or there is
-/// no memory.
+/// without a value have no weight, and stay without one. Error: the field is no grid, `sigma` is more than kMaxSmoothing voxels, or there
+/// is no memory.
 CATENA_EXPORT Result<AnyField> smooth(const AnyField& field, double sigma, const std::string& name);
+/// Largest standard deviation of smooth(), voxels.
 inline constexpr double kMaxSmoothing = 64;
 
 }  // namespace catena::field

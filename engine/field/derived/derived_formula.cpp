@@ -60,6 +60,12 @@ class ScalarOfFormula final : public ScalarField {
     sample.inside = of_.scalar ? of_.scalar->sample(world, cursor).inside : of_.vector->sample(world, cursor).inside;
     return sample;
   }
+  ScalarSample sample_value(const Vec3& world, Cursor& cursor) const noexcept override {
+    if (!is_finite(world)) return {};
+    const double value = evaluate_(world).x;
+    if (!std::isfinite(value)) return {};
+    return {value, Vec3(0.0), of_.scalar ? of_.scalar->sample_value(world, cursor).inside : of_.vector->sample(world, cursor).inside};
+  }
   double min_value() const noexcept override { return -std::numeric_limits<double>::infinity(); }
   double max_value() const noexcept override { return std::numeric_limits<double>::infinity(); }
 

@@ -61,7 +61,7 @@ class NodeInput {
     }
     const Vec3 world = lattice_.mapping.world_from_index(Vec3(x, y, z));
     if (field_.scalar) {
-      const ScalarSample sample = field_.scalar->sample(world, cursor);
+      const ScalarSample sample = field_.scalar->sample_value(world, cursor);
       value.x = sample.value;
       return sample.inside;
     }

@@ -18,9 +18,9 @@ namespace catena::field {
 
 /// Variable of an expression: a scalar field, or a component (0 to 2) of a vector field.
 struct NodeVariable {
-  std::string name;
-  AnyField field;
-  int component = 0;
+  std::string name;   ///< as in the expression
+  AnyField field;     ///< its values
+  int component = 0;  ///< of a vector field
 };
 
 /// Nodes at which a field is made: those of a grid, or of a cube.
@@ -32,8 +32,8 @@ struct Nodes {
 
 /// Why an expression is not usable, and the column of its text, from 1; an empty message: it is usable.
 struct ExpressionFault {
-  std::string message;
-  int column = 0;
+  std::string message;  ///< empty: none
+  int column = 0;       ///< from 1
 };
 
 /// Checks an expression with the given variables.

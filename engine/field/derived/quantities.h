@@ -23,25 +23,25 @@ namespace catena::field {
 
 /// Quantity that depends on a field and its derivatives at one position.
 enum class Quantity {
-  magnitude,
-  gradient,
-  divergence,
-  vorticity,
-  helicity,
-  strain_rate,
-  q_criterion,
-  lambda2,
-  swirling_strength,
-  laplacian,
-  max_curvature,
-  min_curvature,
-  mean_curvature,
-  gaussian_curvature
+  magnitude,          ///< |v| or |s|
+  gradient,           ///< g
+  divergence,         ///< tr J
+  vorticity,          ///< curl v
+  helicity,           ///< v . curl v
+  strain_rate,        ///< sqrt(2 S:S)
+  q_criterion,        ///< -tr(J^2) / 2
+  lambda2,            ///< middle eigenvalue of S^2 + W^2
+  swirling_strength,  ///< imaginary part of J's complex eigenvalues
+  laplacian,          ///< tr H
+  max_curvature,      ///< k1 of the level set
+  min_curvature,      ///< k2
+  mean_curvature,     ///< (k1 + k2) / 2
+  gaussian_curvature  ///< k1 k2
 };
 
 /// Properties of a quantity.
 struct QuantityInfo {
-  Quantity quantity;
+  Quantity quantity;                          ///< the quantity
   std::string_view name;                      ///< as in scene files
   bool of_scalar = false, of_vector = false;  ///< kinds of fields that have it
   bool is_vector = false;                     ///< the quantity is a vector; `laplacian`: of a scalar field it is not
@@ -56,19 +56,20 @@ CATENA_EXPORT const QuantityInfo& info_of(Quantity quantity);
 
 /// Value and derivatives of a scalar field.
 struct ScalarJet {
-  double value = 0;
-  Vec3 gradient{0.0};
-  Mat3 hessian{0.0};
+  double value = 0;    ///< in the field's unit
+  Vec3 gradient{0.0};  ///< per world unit
+  Mat3 hessian{0.0};   ///< second derivatives
 };
 /// Value and derivatives of a vector field.
 struct VectorJet {
-  Vec3 value{0.0};
-  Mat3 jacobian{0.0};  ///< column j is dv / dx_j
-  Vec3 laplacian{0.0};
+  Vec3 value{0.0};      ///< components in world axes
+  Mat3 jacobian{0.0};   ///< column j is dv / dx_j
+  Vec3 laplacian{0.0};  ///< of each component
 };
 
-/// Evaluates a quantity of a scalar or of a vector field; scalar results are the first component.
+/// Evaluates a quantity of a scalar field; scalar results are the first component.
 CATENA_EXPORT Vec3 evaluate(Quantity quantity, const ScalarJet& jet) noexcept;
+/// Evaluates a quantity of a vector field; scalar results are the first component.
 CATENA_EXPORT Vec3 evaluate(Quantity quantity, const VectorJet& jet) noexcept;
 
 /// Returns the unit of a quantity: "1/s" for the vorticity of "m/s" with lengths in "m"; "m/s/mm" where the lengths do not cancel; empty if

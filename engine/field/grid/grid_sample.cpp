@@ -26,6 +26,9 @@ void store(const VectorSample& s, float* out) {
   for (int a = 0; a < 3; ++a) out[a] = static_cast<float>(s.value[a]);
 }
 
+ScalarSample sampled_at(const ScalarField& field, const Vec3& world, Cursor& cursor) { return field.sample_value(world, cursor); }
+VectorSample sampled_at(const VectorField& field, const Vec3& world, Cursor& cursor) { return field.sample(world, cursor); }
+
 /// Evaluates the field at the nodes, in parallel over rows along x.
 template <class Field>
 DenseSource samples_of(const Field& field, const Nodes& n) {
@@ -37,7 +40,7 @@ DenseSource samples_of(const Field& field, const Nodes& n) {
               for (std::size_t row = begin; row < end; ++row)
                 for (int x = 0; x < n.size.x; ++x) {
                   const double y = static_cast<double>(row % n.size.y), layer = z + static_cast<double>(row / n.size.y);
-                  const auto sample = field.sample(n.mapping.world_from_index(Vec3(x, y, layer)), cursor);
+                  const auto sample = sampled_at(field, n.mapping.world_from_index(Vec3(x, y, layer)), cursor);
                   const std::size_t at = row * n.size.x + x;
                   store(sample, &values[components * at]);
                   valid[at] = sample.inside;
