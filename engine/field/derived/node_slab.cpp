@@ -43,7 +43,7 @@ template <class Grid>
 NodeSlab<Grid>::NodeSlab(const Grid& grid, int derivatives, int order)
     : grid_(grid),
       order_(order),
-      halo_((derivatives > 0 ? 3 : 0) + (grid.has_mask() ? 1 : 0)),  // reach of one-sided second derivatives; cells beside
+      halo_((derivatives > 0 ? derivatives + 1 : 0) + (grid.has_mask() ? 1 : 0)),  // reach of one-sided derivatives; cells beside
       origin_{int(grid.index_box().lo.x), int(grid.index_box().lo.y), int(grid.index_box().lo.z)},
       size_(size_of(grid.index_box())) {
   stride_ = {1, size_.x, std::ptrdiff_t(size_.x) * size_.y};
