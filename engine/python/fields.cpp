@@ -3,7 +3,6 @@
 #include <limits>
 #include <optional>
 
-#include "engine/base/text.h"
 #include "engine/field/analytic/analytic.h"
 #include "engine/field/derived/derive.h"
 #include "engine/field/derived/node_function.h"
@@ -58,15 +57,9 @@ Field analytic(const std::string& name, double scale, const std::string& part, c
 
 Field derived(const Field& field, const std::string& quantity, int order) {
   if (order != 2 && order != 4) throw Failure(Error{"order: 2 or 4 was expected"});
-  std::vector<std::string_view> names;
-  for (const field::QuantityInfo& info : field::quantities()) {
-    if (info.name == quantity) {
-      const py::gil_scoped_release unlocked;
-      return {unwrap(field::derive(field.any, info.quantity, order, quantity))};
-    }
-    names.push_back(info.name);
-  }
-  throw Failure(Error{in_quotes(quantity) + " is not known; one of " + join_words(names) + " was expected" + suggestion(quantity, names)});
+  const field::Quantity found = unwrap(field::find_quantity(quantity));
+  const py::gil_scoped_release unlocked;
+  return {unwrap(field::derive(field.any, found, order, quantity))};
 }
 
 Field component(const Field& field, int component) {

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
-#include "engine/base/result.h"
+#include "engine/base/text.h"
 
 namespace catena::field {
 namespace {
@@ -106,6 +107,15 @@ double curvature(Quantity quantity, const ScalarJet& jet) {
 std::span<const QuantityInfo> quantities() { return kQuantities; }
 
 const QuantityInfo& info_of(Quantity quantity) { return kQuantities[static_cast<std::size_t>(quantity)]; }
+
+Result<Quantity> find_quantity(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const QuantityInfo& info : kQuantities) {
+    if (info.name == name) return info.quantity;
+    names.push_back(info.name);
+  }
+  return Error{in_quotes(name) + " is not known; one of " + join_words(names) + " was expected" + suggestion(name, names)};
+}
 
 Vec3 evaluate(Quantity quantity, const ScalarJet& jet) noexcept {
   switch (quantity) {

@@ -17,6 +17,7 @@
 #include <string_view>
 
 #include "engine/base/export.h"
+#include "engine/base/result.h"
 #include "engine/base/vec.h"
 
 namespace catena::field {
@@ -53,6 +54,9 @@ struct QuantityInfo {
 CATENA_EXPORT std::span<const QuantityInfo> quantities();
 /// Returns the properties of a quantity.
 CATENA_EXPORT const QuantityInfo& info_of(Quantity quantity);
+
+/// Returns the quantity of a name; an Error lists the known ones.
+CATENA_EXPORT Result<Quantity> find_quantity(std::string_view name);
 
 /// Value and derivatives of a scalar field.
 struct ScalarJet {
