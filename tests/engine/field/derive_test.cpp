@@ -227,4 +227,26 @@ TEST(Derive, ExpressionsAreEvaluatedAtNodes) {
     EXPECT_NE(fault(wrong), "") << wrong;
 }
 
+TEST(Derive, ExpressionsOfAnyTextAreRefusedOrEvaluated) {
+  const std::vector<std::string> words{"u",    "x",     "(", ")",     ",",    "+",  "-",  "*",  "/",  "^",  "?", ":",  "sin",
+                                       "max(", "sqrt(", "1", "1e308", ".",    "e",  "=",  "==", "<",  "&&", "!", "\"", " ",
+                                       "_pi",  "0x",    "$", "avg(",  "rint", "u_", "\\", "#",  "1e", "t",  "%"};
+  test::Random random(11);
+  int usable = 0;
+  for (int k = 0; k < 20000; ++k) {
+    std::string text;
+    for (int n = int(random.uniform(0, 12)); n >= 0; --n) text += words[std::size_t(random.uniform(0, double(words.size()) - 1e-9))];
+    const ExpressionFault fault = check_expression(text, {"u"});
+    if (fault.message.empty()) {
+      ++usable;
+      Nodes nodes{{}, 2, {-1, 1}};
+      const auto made = evaluate_expressions({text}, {{"u", test::value_of(make_analytic("plane")), 0}}, 0, nodes, "e");
+      EXPECT_TRUE(made || made.error().message.find("finite") != std::string::npos) << text;
+    } else {
+      EXPECT_TRUE(fault.column >= 1 && fault.column <= int(text.size()) + 1) << text;
+    }
+  }
+  EXPECT_GT(usable, 100);
+}
+
 }  // namespace catena::field::derive_test
