@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// catena.trace: streamlines through seeds, the same curves that the haptic links use and the image shows.
+/// catena.trace and catena.trace_unsteady: lines through seeds, the same curves that the haptic links use and the image shows.
 #include <cmath>
 
 #include "engine/geometry/flow/curve.h"
+#include "engine/geometry/flow/pathlines.h"
 #include "engine/python/module.h"
 
 namespace catena::python {
@@ -38,6 +39,52 @@ std::vector<Curve> trace(const Field& field, const Points& seeds, double length,
   return curves;
 }
 
+std::vector<std::vector<Curve>> trace_unsteady(const std::vector<Field>& steps, const std::vector<double>& times, const Points& seeds,
+                                               const std::string& lines, std::optional<double> start, std::optional<double> end,
+                                               bool cubic) {
+  const std::vector<Vec3> places = to_points(seeds, "seeds");
+  if (steps.size() < 2 || times.size() != steps.size()) throw Failure(Error{"two or more steps, and as many times, were expected"});
+  if (lines != "path" && lines != "streak") throw Failure(Error{"lines is \"" + lines + "\"; path or streak was expected"});
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (!steps[i].any.vector || !steps[i].any.get()->is_grid())
+      throw Failure(Error{"steps[" + std::to_string(i) + "] is no vector grid; vector grids were expected"});
+    if (!std::isfinite(times[i]) || (i > 0 && !(times[i] > times[i - 1])))
+      throw Failure(Error{"times[" + std::to_string(i) + "] does not rise; rising finite times were expected"});
+  }
+  flow::PathlineOptions options;
+  options.start = start.value_or(times.front());
+  options.end = end.value_or(times.back());
+  for (const double time : {options.start, options.end})
+    if (!(time >= times.front() && time <= times.back())) throw Failure(Error{"start and end within the times were expected"});
+  if (options.start == options.end || (lines == "streak" && options.end < options.start))
+    throw Failure(Error{"an end other than the start, and for streak lines after it, was expected"});
+  flow::UnsteadyField field;
+  field.name = "the field";
+  field.times = times;
+  field.is_cubic_in_time = cubic;
+  field.load = [&](std::size_t step) -> Result<field::VectorFieldPtr> { return steps[step].any.vector; };
+  const py::gil_scoped_release unlocked;
+  std::vector<std::vector<Curve>> lists;
+  const auto add = [&](std::size_t i, const auto& result, const auto& take) {
+    if (!result) throw Failure(Error{"seeds[" + std::to_string(i) + "]: " + result.error().message});
+    take(lists.emplace_back(), *result);
+  };
+  if (lines == "path") {
+    const auto traced = flow::trace_pathlines(field, places, options);
+    if (!traced) throw Failure(traced.error());
+    for (std::size_t i = 0; i < places.size(); ++i)
+      add(i, (*traced)[i], [](auto& list, const flow::CurvePtr& curve) { list.push_back({curve}); });
+    return lists;
+  }
+  const auto traced = flow::trace_streaklines(field, places, options);
+  if (!traced) throw Failure(traced.error());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    add(i, (*traced)[i], [](auto& list, const std::vector<flow::CurvePtr>& pieces) {
+      for (const flow::CurvePtr& piece : pieces) list.push_back({piece});
+    });
+  return lists;
+}
+
 py::array_t<double> at(const Curve& curve, const py::object& lengths) {
   const NumberArray s = to_numbers(lengths, "s");
   std::vector<Vec3> places;
@@ -65,13 +112,17 @@ void add_curves(py::module_& m) {
           },
           "(K,): arc length of the knots from the seed, signed, world units.")
       .def_property_readonly(
+          "times",
+          [](const Curve& c) { return py::array_t<double>(static_cast<py::ssize_t>(c.curve->times().size()), c.curve->times().data()); },
+          "(K,): times of the knots of a path line or streak line; empty for a streamline.")
+      .def_property_readonly(
           "closed", [](const Curve& c) { return c.curve->is_closed(); }, "True where it came back to its seed.")
       .def_property_readonly(
           "ends",
           [](const Curve& c) {
             return py::make_tuple(flow::to_string(c.curve->first_end().termination), flow::to_string(c.curve->last_end().termination));
           },
-          "How it ends upstream and downstream: BOUNDARY, CRITICAL, LENGTH, LAP or INCOHERENT.")
+          "How it ends upstream and downstream: BOUNDARY, CRITICAL, LENGTH, LAP, INCOHERENT or TIME.")
       .def(
           "at", at, py::arg("s"),
           "Places at arc lengths.\n\ns: (N,), world units.\nReturns (N, 3); beyond the ends the ends, round and round where it is closed.");
@@ -81,6 +132,12 @@ void add_curves(py::module_& m) {
         "way, world units; 0: ten times the domain.\nline: v and -v mean the same (fibres). min_speed: slower counts as zero, field units. "
         "tolerance: error of a step, of the domain's length; 0: 1e-10.\nReturns a list of N curves. A seed that starts nothing raises "
         "Error.");
+  m.def("trace_unsteady", trace_unsteady, py::arg("steps"), py::arg("times"), py::arg("seeds"), py::arg("lines") = "path",
+        py::arg("start") = py::none(), py::arg("end") = py::none(), py::arg("cubic") = false,
+        "Path lines or streak lines of a flow that changes with time.\n\nsteps: vector grids over the same nodes. times: rising, one per "
+        "step. seeds: (N, 3) or (3,), world units.\nlines: path or streak. start, end: release and end of the path (the end may be "
+        "first), or first release and time of the streak line; None: the first and last time. cubic: interpolation between steps.\n"
+        "Returns a list of N lists of curves: one path each, or the pieces of a streak line. A seed that starts nothing raises Error.");
 }
 
 }  // namespace catena::python

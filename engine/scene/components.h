@@ -299,6 +299,15 @@ struct Slice {
     double width = 1;            ///< Width of the lines, pixels
   };
   std::optional<Contours> contours;  ///< Empty: no contour lines
+  /// Line integral convolution: a texture of streaks along the streamlines of a vector field's part in the plane.
+  struct FlowTexture {
+    Entity field;              ///< Vector field
+    json::Node where;          ///< Node in the scene file
+    double length = 0;         ///< Length of a streak, world units; 0: fitted to the plane
+    double strength = 0.6;     ///< Contrast of the texture, 0 to 1
+    bool is_animated = false;  ///< The streaks move downstream with Scene::animation_phase
+  };
+  std::optional<FlowTexture> flow_texture;  ///< Empty: no texture
 };
 inline constexpr int kMaxContours = 1000;  ///< Maximum number of contour lines on a slice.
 
@@ -329,7 +338,11 @@ struct Seeds {
   int count = 1;                       ///< Number of points along a rake
 };
 
-/// Streamlines of a vector field, rendered as tubes.
+/// Kind of the lines of a vector field: streamlines of one time step; path lines, along which particles move; streak lines, on which the
+/// particles are that have passed a position.
+enum class LineKind { stream, path, streak };
+
+/// Streamlines, path lines or streak lines of a vector field, rendered as tubes.
 struct StreamlineSet {
   Entity field;                     ///< Vector field
   json::Node where;                 ///< Node in the scene file
@@ -344,7 +357,10 @@ struct StreamlineSet {
   double arrow_spacing = 0;         ///< Distance between arrowheads along a line, world units; 0: none
   /// Length of the animated bands, world units; they advance by one length while Scene::animation_phase goes from 0 to 1; 0: none.
   double band_length = 0;
-  bool clipped = true;  ///< Cut by the clip planes
+  bool clipped = true;                           ///< Cut by the clip planes
+  LineKind lines = LineKind::stream;             ///< Kind of the lines
+  std::optional<std::array<double, 2>> times{};  ///< Start and end of path lines and streak lines; empty: all times
+  bool is_cubic_in_time = false;                 ///< Interpolation between the time steps: cubic, else linear
 };
 
 /// Arrows of a vector field at evenly spaced points; rods for a line field.
@@ -552,8 +568,10 @@ struct Illumination {
 
 /// Current time step and playback speed (time_steps.h).
 struct TimeLine {
-  int step = 0;                 ///< Current step, counted from 0
-  double steps_per_second = 5;  ///< Steps per second during playback
+  int step = 0;                       ///< Current step, counted from 0
+  double steps_per_second = 5;        ///< Steps per second during playback
+  std::array<double, 2> range{0, 1};  ///< Times of the first and the last step where no data have steps
+  int steps = 0;                      ///< Number of steps where no data have steps; 0: none
 };
 
 /// Background of the image.

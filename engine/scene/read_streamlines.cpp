@@ -45,6 +45,16 @@ const Table<StreamlineSet>& streamlines_table() {
     t.bind(
         schema::number("animated_bands", "world", "Length of the animated bands, which move downstream.").positive().with_default("none"),
         &StreamlineSet::band_length);
+    t.bind(schema::choice(
+               "lines", {"stream", "path", "streak"},
+               "`stream`: streamlines of one time step; `path`: ways of particles; `streak`: the particles that have passed a seed."),
+           &StreamlineSet::lines);
+    t.bind(schema::vector("times", 2, "time",
+                          "Start and end of `path` and `streak`: release of the particle, or of the first one, and end of the lines.")
+               .with_default("all times; `streak` ends at the current one"),
+           &StreamlineSet::times);
+    t.bind(schema::choice("time_interpolation", {"linear", "cubic"}, "`path` and `streak`: interpolation between time steps."),
+           &StreamlineSet::is_cubic_in_time);
     t.bind(clip_key(), &StreamlineSet::clipped);
     t.companion(visible_key());
     return t;

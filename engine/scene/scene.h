@@ -67,6 +67,18 @@ struct Scene {
     auto operator<=>(const CurveKey&) const = default;
   };
   std::map<CurveKey, flow::CurvePtr> traced_curves;  ///< Curves in use, or recently used
+
+  /// Key of a traced path line: field, times, interpolation in time, number of steps, and seed. Tubes and links share the curves.
+  struct PathKey {
+    std::uint32_t field;          ///< Entity
+    std::array<double, 2> times;  ///< Start and end
+    double tolerance;             ///< Error of a step, relative to L; 0: the default
+    bool is_cubic_in_time;        ///< Interpolation between the time steps
+    std::size_t steps;            ///< Number of steps of the field; 0: a formula
+    std::array<double, 3> seed;   ///< World
+    auto operator<=>(const PathKey&) const = default;
+  };
+  std::map<PathKey, flow::CurvePtr> traced_paths;  ///< Path lines in use, or recently used
 };
 
 /// Replaces the source of a named field, or adds a field: the option "--field NAME=FILE[:GRID]", or a field that the calling program owns.

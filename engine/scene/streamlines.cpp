@@ -14,6 +14,7 @@
 #include "engine/field/clipped_field.h"
 #include "engine/geometry/flow/seeds.h"
 #include "engine/scene/classify_vector.h"
+#include "engine/scene/unsteady_lines.h"
 
 namespace catena::scene {
 namespace {
@@ -245,11 +246,43 @@ Result<Curves> lines_in_blocks(const Seeds& seeds, std::span<const Vec3> positio
 
 }  // namespace
 
+/// Traces path lines or streak lines. `where`: the set, or its seeds.
+static Result<Curves> unsteady_lines(Scene& scene, const Seeds& seeds, std::vector<Vec3> positions, const LineRequest& request,
+                                     const json::Node& where) {
+  if (seeds.pattern && seeds.pattern->kind == SeedPattern::Kind::evenly_spaced)
+    return json::error_at(seeds.pattern->where, "evenly spaced path lines and streak lines cannot be traced; another pattern was expected");
+  std::vector<Vec3> some;
+  for (std::size_t i = request.first_seed; i < positions.size(); i += request.seed_stride) some.push_back(positions[i]);
+  UnsteadyLineRequest unsteady{request.lines, request.times, request.is_cubic_in_time};
+  if (request.progress)
+    unsteady.progress = [&](double share) {
+      request.progress(static_cast<std::size_t>(share * static_cast<double>(some.size())), some.size());
+    };
+  unsteady.tolerance = request.tolerance;
+  std::vector<std::size_t> of;
+  unsteady.line_positions = &of;
+  unsteady.skips_unusable_positions = seeds.pattern || seeds.widget;
+  const json::Node& items = json::member_or_parent(where, "seeds");
+  unsteady.node_of = [&](std::size_t i) {
+    const std::size_t item = request.seed_index(i);
+    return seeds.points.empty() || item >= items.items.size() ? items : items.items[item];
+  };
+  CATENA_TRY(Curves curves, trace_unsteady_lines(scene, request.field, some, unsteady, where));
+  if (curves.empty() && request.lines == LineKind::path && !some.empty() && !seeds.widget && request.seed_stride == 1)
+    return json::error_at(items, "none of the " + std::to_string(some.size()) + " seeds starts a path line");
+  for (const std::size_t i : of) report_line_seed(request, i);
+  std::size_t knots = 0;
+  for (const flow::CurvePtr& curve : curves) knots += curve->knots().size();
+  if (knots > request.max_knots) return json::error_at(items, too_many_knots_message(some.size(), some.size(), request.max_knots));
+  return all_at_once(std::move(curves), request);
+}
+
 Result<Curves> trace_lines(Scene& scene, const Seeds& seeds, const LineRequest& original, const json::Node& where) {
   std::vector<Vec3> positions = seeds.points;
   if (seeds.pattern) {
     CATENA_TRY(positions, places_of(scene, *seeds.pattern));
   }
+  if (original.lines != LineKind::stream) return unsteady_lines(scene, seeds, positions, original, where);
   LineRequest request = original;
   std::optional<field::ClippedVectorField> bounded;
   if (ends_at_box(seeds, positions, request)) {
@@ -315,6 +348,10 @@ Result<MadeLines*> made_lines(Scene& scene, Entity entity, const std::function<O
   }
   LineRequest request{{any.vector.get(), set.is_line_field, set.min_speed}, set.length, set.tolerance};
   request.box = scene.entities.get<FieldSource>(set.field).box;
+  request.lines = set.lines;
+  request.field = set.field;
+  request.times = set.times;
+  request.is_cubic_in_time = set.is_cubic_in_time;
   const std::string& name = scene.entities.get<Name>(set.field).value;
   if (while_tracing) request.progress = [&](std::size_t seeds, std::size_t of) { while_tracing(name, seeds, of); };
   MadeLines new_lines{any.vector->version(), set.seeds.points, {}, 0, false, {}};
@@ -338,7 +375,8 @@ Result<MadeLines*> made_lines(Scene& scene, Entity entity, const std::function<O
     };
     request.max_cached_knots = max_cached_knots;
   }
-  auto lines = trace_lines(scene, set.seeds, request, json::member_or_parent(set.where, "seeds"));
+  const json::Node where = set.lines == LineKind::stream ? json::member_or_parent(set.where, "seeds") : set.where;
+  auto lines = trace_lines(scene, set.seeds, request, where);
   if (while_tracing) while_tracing(name, 0, 0);
   CATENA_TRY(new_lines.curves, std::move(lines));
   if (!visit) count(new_lines.curves);
@@ -395,6 +433,7 @@ bool same_seeds(const Scene& a_scene, const Seeds& a, const Scene& b_scene, cons
 
 bool same_lines(const Scene& a_scene, const StreamlineSet& a, const Scene& b_scene, const StreamlineSet& b) {
   return a.is_line_field == b.is_line_field && a.min_speed == b.min_speed && a.length == b.length && a.tolerance == b.tolerance &&
+         a.lines == b.lines && a.times == b.times && a.is_cubic_in_time == b.is_cubic_in_time &&
          loaded_version(a_scene, a.field) == loaded_version(b_scene, b.field) &&
          a_scene.entities.get<FieldSource>(a.field).box == b_scene.entities.get<FieldSource>(b.field).box &&
          same_seeds(a_scene, a.seeds, b_scene, b.seeds);

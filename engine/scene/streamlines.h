@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Streamlines of a set of seeds: points, or a pattern (line, plane, sphere, isosurface, evenly spaced).
+/// Streamlines of a set of seeds: points, or a pattern (line, plane, sphere, isosurface, evenly spaced); path lines and streak lines of the
+/// same seeds are in unsteady_lines.h.
 ///   points     exact tracer, with the curves cached in the scene: a link in haptic contact with such a line uses the same object
 ///   widget     a seed widget is a point, a rake a pattern
 ///   patterns   batch tracer (engine/geometry/flow/batch_tracer.h); seeds of a pattern that start no line are left out
@@ -44,6 +45,10 @@ struct LineRequest {
   std::size_t max_cached_knots = knot_limit();       ///< With `visit`: a set of more knots is not returned
   std::size_t first_seed = 0, seed_stride = 1;       ///< Only every `seed_stride`-th seed is traced, from `first_seed` on
   std::vector<std::size_t>* line_seeds = nullptr;    ///< Receives the index of each line's seed; null: not reported
+  LineKind lines = LineKind::stream;                 ///< Kind of the lines
+  Entity field{};                                    ///< Path lines and streak lines: field of the scene
+  std::optional<std::array<double, 2>> times{};      ///< Path lines and streak lines: as in StreamlineSet
+  bool is_cubic_in_time = false;                     ///< Path lines and streak lines: as in StreamlineSet
 
   /// Index among all seeds of the k-th seed that is traced.
   std::size_t seed_index(std::size_t k) const { return first_seed + k * seed_stride; }

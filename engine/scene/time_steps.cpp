@@ -79,7 +79,7 @@ int step_count(const Scene& scene) {
   each_shape(scene, [&](const auto& shape) {
     max_steps = std::max(max_steps, static_cast<int>(std::max(shape.steps.series.size(), shape.steps.times.size())));
   });
-  return max_steps;
+  return max_steps > 1 ? max_steps : std::max(1, scene.time.steps);
 }
 
 std::optional<StepTime> current_step_time(const Scene& scene) {
@@ -95,6 +95,8 @@ std::optional<StepTime> current_step_time(const Scene& scene) {
   each_shape(scene, [&](const auto& shape) {
     if (!time && step < shape.steps.times.size()) time = {shape.steps.times[step], {}};
   });
+  if (const TimeLine& line = scene.time; !time && line.steps > 1 && step_count(scene) == line.steps)
+    time = {line.range[0] + (line.range[1] - line.range[0]) * std::min(scene.time.step, line.steps - 1) / (line.steps - 1), {}};
   return time;
 }
 

@@ -118,6 +118,15 @@ Outcome read_value(const Key& key, const json::Node& object, std::vector<double>
   return Done{};
 }
 
+Outcome read_value(const Key& key, const json::Node& object, std::array<double, 2>& out) {
+  std::vector<double> values;
+  CATENA_CHECK(read_value(key, object, values));
+  if (values.empty()) return Done{};
+  if (values.size() != 2) return json::error_at(*object.find(key.name), list_error(key, "two numbers [a, b]"));
+  out = {values[0], values[1]};
+  return Done{};
+}
+
 Outcome read_points(const json::Node& node, std::string_view what, std::vector<Vec3>& out) {
   if (node.kind != json::Kind::array || node.items.empty())
     return json::error_at(node, in_quotes(what) + " is not a list of positions or is empty; at least one [x, y, z] was expected");

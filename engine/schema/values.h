@@ -25,6 +25,7 @@ Outcome read_value(const Key& key, const json::Node& object, Vec3& out);
 Outcome read_value(const Key& key, const json::Node& object, Mat3& out);
 Outcome read_value(const Key& key, const json::Node& object, std::array<std::string, 3>& out);
 Outcome read_value(const Key& key, const json::Node& object, std::vector<double>& out);
+Outcome read_value(const Key& key, const json::Node& object, std::array<double, 2>& out);
 Outcome read_value(const Key& key, const json::Node& object, std::vector<Vec3>& out);
 Outcome read_value(const Key& key, const json::Node& object, Color& out);
 /// Reads a list of at least one [x, y, z].

@@ -12,6 +12,7 @@
 #include "engine/base/text.h"
 #include "engine/field/bricks/paged_grid.h"
 #include "engine/scene/labels.h"
+#include "engine/scene/unsteady_lines.h"
 #include "haptics/constraints/common/link_schema.h"
 #include "haptics/constraints/presets/mode_presets.h"
 
@@ -86,6 +87,13 @@ Result<Link> build_link(const json::Node& from, const Coupling& coupling, const 
     recipe.add(mesh->version());
     return mesh;
   };
+  if (context.pathline)
+    noting.pathline = [&](const json::Node& where, const std::string& name, const PathlineSpec& spec) -> Result<flow::CurvePtr> {
+      CATENA_TRY(flow::CurvePtr curve, context.pathline(where, name, spec));
+      for (const flow::Knot& knot : {curve->knots().front(), curve->knots().back()})
+        for (const double number : {knot.s, knot.p.x, knot.p.y, knot.p.z}) recipe.add(number);
+      return curve;
+    };
   noting.curves = [&](const json::Node& where, const std::string& name) -> Result<curves::CurveSetPtr> {
     CATENA_TRY(curves::CurveSetPtr set, context.curves(where, name));
     recipe.add(set->version);
@@ -203,6 +211,9 @@ Result<std::shared_ptr<const HapticProgram>> build_program(scene::Scene& scene, 
   };
   context.curve = [&scene](const json::Node& where, const std::string&, const flow::Flow& flow, const Vec3& seed) {
     return scene::resolve_streamline(scene, flow, seed, where);
+  };
+  context.pathline = [&scene](const json::Node& where, const std::string& name, const PathlineSpec& spec) {
+    return scene::resolve_pathline(scene, name, spec.seed, {scene::LineKind::path, spec.times, spec.is_cubic_in_time}, where);
   };
   context.mesh = [&scene](const json::Node& where, const std::string& name) { return scene::resolve_mesh(scene, name, where); };
 

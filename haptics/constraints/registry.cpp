@@ -48,6 +48,7 @@ std::vector<ConstraintType>& list_of_types() {
       viscosity_constraint(),           //
       gradient_force_constraint(),      //
       vortex_core_constraint(),         //
+      pathline_constraint(),            //
   };
   return list;
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// Registry of all constraint types. A new built-in type is one file with one ConstraintType and one line in registry.cpp.
 #pragma once
+#include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +19,13 @@
 
 namespace catena::haptics {
 
+/// Path line that a link asks for.
+struct PathlineSpec {
+  Vec3 seed{0.0};                                ///< position at which the particle is released, world units
+  std::optional<std::array<double, 2>> times{};  ///< release and end of the path; empty: all times of the field
+  bool is_cubic_in_time = false;                 ///< interpolation between time steps
+};
+
 /// Scene data that a constraint may look up while it is built (off the tick). Errors name the file and line of the node `where`.
 struct CATENA_EXPORT BuildContext {
   /// Returns the loaded field of that name.
@@ -24,6 +33,8 @@ struct CATENA_EXPORT BuildContext {
   /// Returns the traced curve of (field, flow, seed): the same object that is rendered.
   std::function<Result<flow::CurvePtr>(const json::Node& where, const std::string& field_name, const flow::Flow& flow, const Vec3& seed)>
       curve;
+  /// Returns the path line of a particle in a field that changes with time: the same object that is rendered. Null: there are none.
+  std::function<Result<flow::CurvePtr>(const json::Node& where, const std::string& field_name, const PathlineSpec& spec)> pathline;
   /// Returns the mesh of that name: the same object that is rendered.
   std::function<Result<mesh::MeshPtr>(const json::Node& where, const std::string& name)> mesh;
   /// Returns the curve set (curves from a file) of that name: the same object that is rendered.

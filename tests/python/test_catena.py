@@ -220,6 +220,16 @@ class Curves(unittest.TestCase):
         np.testing.assert_allclose(np.abs(curve.at([np.pi / 2])), [[0.5, 0, 0]], atol=1e-7)
 
 
+    def test_a_particle_in_a_turning_flow(self):
+        steps = [catena.field(np.tile(v, (9, 9, 9, 1)).astype("f4"), vectors=True) for v in ([1, 0, 0], [0, 1, 0])]
+        path = catena.trace_unsteady(steps, [0, 2], [2, 2, 2])[0][0]
+        np.testing.assert_allclose(path.points[-1], [3, 3, 2], atol=1e-9)
+        np.testing.assert_allclose(path.points[:, 1], 2 + path.times ** 2 / 4, atol=1e-9)
+        streak = catena.trace_unsteady(steps, [0, 2], [[2, 2, 2]], lines="streak")[0][0]
+        np.testing.assert_allclose(streak.points[:, 1], 3 - streak.times ** 2 / 4, atol=1e-9)
+        self.says("times[1] does not rise", lambda: catena.trace_unsteady(steps, [0, 0], [2, 2, 2]))
+
+
 class Chains(unittest.TestCase):
     def probe(self, name):
         with open(f"{SOURCE}/assets/probes/{name}.csv", encoding="utf-8") as file:

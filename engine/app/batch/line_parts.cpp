@@ -28,7 +28,9 @@ class SeedRows {
   Outcome open() {
     std::string_view header;
     CATENA_TRY(const bool is_there, lines_.next(header));
-    if (!is_there || std::string(header) + "\n" != curves::kPolylineTableHeader) return wrong("the header of a table of lines");
+    is_timed_ = is_there && std::string(header) + "\n" == curves::kTimedPolylineTableHeader;
+    if (!is_there || (!is_timed_ && std::string(header) + "\n" != curves::kPolylineTableHeader))
+      return wrong("the header of a table of lines");
     return advance();
   }
   /// Goes to the next row. Error: its seed is not one of the shard, or precedes that of the row before.
@@ -46,6 +48,7 @@ class SeedRows {
     return Done{};
   }
   bool has_row() const { return has_row_; }
+  bool is_timed() const { return is_timed_; }  ///< The rows have times.
   std::size_t seed() const { return seed_; }
   /// The cells after the first, with the comma before them; valid until advance().
   std::string_view cells() const { return cells_; }
@@ -56,7 +59,7 @@ class SeedRows {
   }
 
   PartLines lines_;
-  bool has_row_ = false;
+  bool has_row_ = false, is_timed_ = false;
   std::size_t seed_ = 0;
   std::string_view cells_;
 };
@@ -64,7 +67,7 @@ class SeedRows {
 }  // namespace
 
 void write_line_part(PartWriter& part, const SeededLines& lines) {
-  part.write(curves::kPolylineTableHeader);
+  part.write(curves::polyline_table_header(lines.curves));
   std::string rows;
   for (std::size_t i = 0; i < lines.curves.size(); ++i) {
     rows.clear();
@@ -94,7 +97,8 @@ Result<MergedLines> merge_line_parts(const std::string& path) {
 
   CATENA_TRY(OutputFile out, OutputFile::open(path));
   MergedLines merged{0, 0, parts.size()};
-  std::string text = curves::kPolylineTableHeader;
+  const bool is_timed = std::ranges::any_of(rows, [](const SeedRows& part) { return part.is_timed(); });
+  std::string text = is_timed ? curves::kTimedPolylineTableHeader : curves::kPolylineTableHeader;
   for (; !queue.empty(); ++merged.lines) {
     const auto [seed, index] = queue.top();
     queue.pop();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// catena trace SCENE|FILE --field NAME --seeds CSV|PATTERN -o LINES.{csv,vtp} [--tolerance T] [--shard I/N]
+/// catena trace SCENE|FILE --field NAME --seeds CSV|PATTERN -o LINES.{csv,vtp} [--lines stream|path|streak] [--tolerance T] [--shard I/N]
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -25,6 +25,7 @@
 #include "engine/io/volume/load_field.h"
 #include "engine/scene/streamlines.h"
 #include "engine/scene/time_steps.h"
+#include "engine/scene/unsteady_lines.h"
 
 namespace catena::app {
 
@@ -34,6 +35,8 @@ struct TraceOptions {
   std::string source, field, seeds, output, kind = "vector", stats;
   std::optional<std::string> shard;
   int repeat = 1, time_step = -1;
+  std::string lines = "stream", time_interpolation = "linear";
+  std::vector<double> times;
   double length = 0, min_speed = 0, tolerance = 0, step = 0;
 };
 
@@ -63,6 +66,10 @@ scene::Entity add_grid(scene::Scene& scene, const std::string& grid) {
   request.path = scene.path;
   request.grid = grid;
   source.file = scene::request_at(request, scene.time.step);
+  if (scene::is_pattern(scene.path)) {
+    source.pattern = scene.path;
+    source.series = scene::expand_pattern(scene.path);
+  }
   source.where.file = std::make_shared<const std::string>(scene.path);
   scene.entities.emplace<scene::Name>(entity, {grid});
   scene.entities.emplace<scene::FieldSource>(entity, std::move(source));
@@ -195,10 +202,58 @@ Result<SeededLines> trace_pattern(const TraceOptions& options, const json::Node&
   return lines;
 }
 
+/// Traces path lines or streak lines, which need all time steps of the field.
+Result<SeededLines> trace_unsteady(const TraceOptions& options, const json::Node& pattern, const flow::Flow& flow, const SeedShare& share,
+                                   scene::Scene& scene, Timing& timing) {
+  scene::Seeds seeds;
+  if (is_pattern(options.seeds)) {
+    CATENA_TRY(seeds, scene::read_seeds(scene, pattern));
+  } else {
+    CATENA_TRY(seeds.points, read_seeds(options.seeds));
+  }
+  SeededLines lines;
+  std::optional<ProgressLine> shown;
+  scene::LineRequest request{flow};
+  request.progress = [&](std::size_t done, std::size_t of) {
+    if (!shown) shown.emplace("trace", static_cast<double>(of));
+    shown->update(static_cast<double>(done));
+  };
+  request.first_seed = share.first;
+  request.seed_stride = share.stride;
+  request.line_seeds = &lines.seeds;
+  request.lines = options.lines == "path" ? scene::LineKind::path : scene::LineKind::streak;
+  request.field = scene::find_field(scene, options.field);
+  if (!request.field) request.field = add_grid(scene, options.field);
+  if (!options.times.empty()) request.times = std::array{options.times[0], options.times[1]};
+  request.is_cubic_in_time = options.time_interpolation == "cubic";
+  request.tolerance = options.tolerance;
+  if (request.lines == scene::LineKind::streak && !request.times && options.time_step < 0 && scene.time.step == 0) {
+    CATENA_CHECK(scene::resolve_field(scene, request.field, pattern));
+    const std::vector<double> times = scene::times_of_field(scene, request.field);
+    if (times.size() > 1) request.times = std::array{times.front(), times.back()};
+  }
+  json::Node where = pattern;
+  if (!is_pattern(options.seeds)) where.file = std::make_shared<const std::string>(options.seeds);
+  for (int n = 1; n < options.repeat; ++n) {
+    scene.traced_paths.clear();
+    lines.seeds.clear();
+    CATENA_CHECK(timing.measure([&] { return scene::trace_lines(scene, seeds, request, where); }));
+  }
+  scene.traced_paths.clear();
+  lines.seeds.clear();
+  CATENA_TRY(lines.curves, timing.measure([&] { return scene::trace_lines(scene, seeds, request, where); }));
+  return lines;
+}
+
 /// Key of a run with these inputs.
 std::string run_key_of(const TraceOptions& options, const IoConflictChecker& files) {
   RunKey key("trace");
-  key.add(options.field).add(options.kind).add(options.seeds.starts_with("{") ? options.seeds : "");
+  key.add(options.field)
+      .add(options.kind)
+      .add(options.lines)
+      .add(options.time_interpolation)
+      .add(options.seeds.starts_with("{") ? options.seeds : "");
+  for (const double time : options.times) key.add(time);
   for (const double number : {options.length, options.min_speed, options.tolerance, options.step, double(options.time_step)})
     key.add(number);
   return key.add_files(files.inputs()).text();
@@ -221,6 +276,10 @@ Outcome trace_lines(const TraceOptions& given) {
     return Error{options.output + ": expected an output that ends in " + io::writable_extensions(io::DataKind::curves)};
   if (shard && (!options.output.ends_with(".csv") || options.output.starts_with("/dev/")))
     return Error{options.output + ": with --shard, a file that ends in .csv was expected, which catena merge makes of the parts"};
+  if (shard && options.lines == "streak")
+    return Error{"--shard: streak lines may have several pieces; streamlines or path lines were expected"};
+  if (options.lines == "stream" && (!options.times.empty() || options.time_interpolation != "linear"))
+    return Error{"--times and --time-interpolation: --lines path or --lines streak was expected with them"};
   CATENA_TRY(scene::Scene scene, scene_of(options));
   IoConflictChecker files(scene);
   if (!options.seeds.starts_with("{")) files.add_input(options.seeds);
@@ -237,7 +296,8 @@ Outcome trace_lines(const TraceOptions& given) {
   const flow::Flow flow{field.get(), options.kind == "line", options.min_speed};
   const SeedShare share = shard ? SeedShare{shard->first_item(), shard->count} : SeedShare{};
   Timing timing;
-  CATENA_TRY(const SeededLines lines, is_pattern(options.seeds)
+  CATENA_TRY(const SeededLines lines, options.lines != "stream" ? trace_unsteady(options, pattern, flow, share, scene, timing)
+                                      : is_pattern(options.seeds)
                                           ? timing.measure([&] { return trace_pattern(options, pattern, flow, share, scene); })
                                           : trace_table(options, flow, share, timing));
   const Curves& curves = lines.curves;
@@ -287,7 +347,8 @@ Outcome trace_lines(const TraceOptions& given) {
 
 void add_trace(CLI::App& program, CommandAction& chosen) {
   auto options = std::make_shared<TraceOptions>();
-  CLI::App* command = program.add_subcommand("trace", "traces streamlines from seeds as curves parametrized by arc length");
+  CLI::App* command =
+      program.add_subcommand("trace", "traces streamlines, path lines or streak lines from seeds as curves parametrized by arc length");
   add_source(*command, "SOURCE", options->source, "scene (.json) or data file")->type_name("FILE")->required();
   command->add_option("--field", options->field, "vector field of the scene, or grid of the data file")->type_name("FIELD")->required();
   command
@@ -301,7 +362,8 @@ void add_trace(CLI::App& program, CommandAction& chosen) {
       ->check(number_above_zero());
   command
       ->add_option("--tolerance", options->tolerance,
-                   "error of a step; above 1e-9, lines are traced in batches with one knot per step (default: 1e-10; for patterns 1e-7)")
+                   "error of a step; above 1e-9, lines are traced in batches with one knot per step (default: 1e-10; for patterns 1e-7; "
+                   "for path lines and streak lines 1e-11)")
       ->type_name("TOLERANCE")
       ->check(CLI::Range(0.0, 0.01));
   command
@@ -324,6 +386,21 @@ void add_trace(CLI::App& program, CommandAction& chosen) {
   command->add_option("--min-speed", options->min_speed, "speed at or below which a streamline ends (default: 0)")
       ->type_name("SPEED")
       ->check(number_at_least(0));
+  command
+      ->add_option("--lines", options->lines,
+                   "stream: streamlines of one time step; path: ways of particles; streak: the particles that have passed a seed")
+      ->type_name("WORD")
+      ->check(CLI::IsMember({"stream", "path", "streak"}))
+      ->capture_default_str();
+  command
+      ->add_option("--times", options->times,
+                   "start and end of path lines (backward in time if the end is first) and streak lines (default: all time steps)")
+      ->type_name("START END")
+      ->expected(2);
+  command->add_option("--time-interpolation", options->time_interpolation, "between time steps, of path lines and streak lines")
+      ->type_name("WORD")
+      ->check(CLI::IsMember({"linear", "cubic"}))
+      ->capture_default_str();
   add_shard_option(*command, options->shard, "seeds");
   command->callback([&chosen, options] { chosen = [options] { return trace_lines(*options); }; });
 }

@@ -37,6 +37,7 @@ constexpr OptionType kOptionTypes[] = {
     {"VOXELS", "number", "voxels", "", "0.25", true},
     {"X Y Z", "3 numbers", "", "", "0.5 0.5 1", true},
     // numbers that the commands check themselves
+    {"START END", "2 numbers", "time", "", "0 10"},
     {"LO HI", "2 numbers", "", "LO < HI", "-1 1"},
     {"LO,HI", "2 numbers, 4, or one", "unit of the field", "rising", "-8,-3,3,8"},
     {"LABELS=OPACITY", "labels and a number", "", "0 to 1", "1-20=0.2"},

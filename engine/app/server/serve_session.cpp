@@ -76,6 +76,7 @@ Outcome ServeSession::run() {
       send_note_on_error(scene_.apply(ended.edits, ended.undo_label));
     if (const auto more = step_follower_.poll(scene_, playback_); !more) send_note(more.error().message);
     if (!viewers_.empty()) send_note_on_error(playback_.advance(scene_));
+    if (!viewers_.empty()) send_note_on_error(playback_.follow_proxy(scene_, haptics_));
     if (recording_.must_end(haptics_)) end_recording();
     if (scene_.take_changed()) {
       send_note_on_error(apply_scene_target(tuning_, scene_, scheduler_));

@@ -67,6 +67,8 @@ Expressions::~Expressions() = default;
 
 void Expressions::set(std::size_t i, double value) { parsers_->values[i] = value; }
 
+void Expressions::set_time(double time) { parsers_->values.back() = time; }
+
 void Expressions::evaluate(const Vec3& world, Vec3& result) {
   double* position = parsers_->values.data() + parsers_->values.size() - 4;
   for (int a = 0; a < 3; ++a) position[a] = world[a];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Expressions of one thread, evaluated by muParser. Private to this module.
+/// Expressions of one thread, evaluated by muParser. Not part of the library's interface.
 #pragma once
 #include <memory>
 #include <string>
@@ -18,6 +18,8 @@ class Expressions {
   Expressions(Expressions&&) = delete;
   /// Sets variable i.
   void set(std::size_t i, double value);
+  /// Sets the variable t.
+  void set_time(double time);
   /// Evaluates the expressions at a position: the first components of `result`.
   void evaluate(const Vec3& world, Vec3& result);
 

@@ -21,6 +21,8 @@ const char* to_string(Termination end) {
       return "LAP";
     case Termination::incoherent:
       return "INCOHERENT";
+    case Termination::time:
+      return "TIME";
   }
   return "LENGTH";
 }
@@ -51,9 +53,22 @@ double Hermite::foot(const Vec3& x, double g0, double g1) const noexcept {
   return theta;
 }
 
-Curve::Curve(std::vector<Knot> knots, bool closed, LineEnd first_end, LineEnd last_end, double domain_length)
-    : knots_(std::move(knots)), closed_(closed), first_end_(first_end), last_end_(last_end), domain_length_(domain_length) {
-  CATENA_ASSERT(knots_.size() >= 2);
+double Hermite::length() const noexcept {
+  constexpr double abscissae[] = {0.0, 0.5384693101056831, 0.9061798459386640};
+  constexpr double weights[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+  double sum = weights[0] * norm(derivative(0.5));
+  for (int i = 1; i < 3; ++i) sum += weights[i] * (norm(derivative(0.5 - 0.5 * abscissae[i])) + norm(derivative(0.5 + 0.5 * abscissae[i])));
+  return 0.5 * sum;
+}
+
+Curve::Curve(std::vector<Knot> knots, bool closed, LineEnd first_end, LineEnd last_end, double domain_length, std::vector<double> times)
+    : knots_(std::move(knots)),
+      closed_(closed),
+      first_end_(first_end),
+      last_end_(last_end),
+      domain_length_(domain_length),
+      times_(std::move(times)) {
+  CATENA_ASSERT(knots_.size() >= 2 && (times_.empty() || times_.size() == knots_.size()));
   for (std::size_t k = 1; k < knots_.size(); ++k) CATENA_ASSERT(knots_[k].s > knots_[k - 1].s);
 }
 
@@ -70,6 +85,12 @@ std::size_t Curve::find_interval(double s) const noexcept {
   const auto after = std::upper_bound(knots_.begin(), knots_.end(), s, [](double value, const Knot& knot) { return value < knot.s; });
   const auto index = after - knots_.begin();
   return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(index - 1, 0, static_cast<std::ptrdiff_t>(knots_.size()) - 2));
+}
+
+double Curve::time(double s) const noexcept {
+  const std::size_t k = find_interval(s);
+  const double theta = std::clamp((s - knots_[k].s) / (knots_[k + 1].s - knots_[k].s), 0.0, 1.0);
+  return times_[k] + theta * (times_[k + 1] - times_[k]);
 }
 
 Vec3 Curve::position(double s) const noexcept {

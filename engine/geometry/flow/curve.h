@@ -57,6 +57,8 @@ struct CATENA_EXPORT Hermite {
   Vec3 evaluate(double theta) const { return c0 + theta * (c1 + theta * (c2 + theta * c3)); }
   Vec3 derivative(double theta) const { return c1 + theta * (2.0 * c2 + theta * (3.0 * c3)); }  ///< Derivative with respect to theta.
 
+  /// Arc length of the piece, by the Gauss-Legendre rule of five points; units of the positions.
+  double length() const noexcept;
   /// Returns the theta where g = (x - c).c' = 0, given g(0) and g(1), which have opposite signs (or one is 0): the foot of x on this piece,
   /// up to the rounding of g. Newton's method on the quintic g, with bisection where a step would leave the bracket or hardly moves.
   /// Bounded and bitwise repeatable.
@@ -80,9 +82,10 @@ struct Knot {
   }
 };
 
-/// Reason for the end of a line: at the domain boundary, at a critical point, at the maximum length, after a lap, or in an incoherent cell.
-enum class Termination { boundary, critical, length, lap, incoherent };
-CATENA_EXPORT const char* to_string(Termination end);  ///< One of BOUNDARY, CRITICAL, LENGTH, LAP, INCOHERENT.
+/// Reason for the end of a line: at the domain boundary, at a critical point, at the maximum length, after a lap, in an incoherent cell, or
+/// at the end of the time of a path line or streak line.
+enum class Termination { boundary, critical, length, lap, incoherent, time };
+CATENA_EXPORT const char* to_string(Termination end);  ///< One of BOUNDARY, CRITICAL, LENGTH, LAP, INCOHERENT, TIME.
 
 /// Reason for the end of a line, and the sample status there: boundary (box, mask or not_finite), critical (zero), incoherent, or ok.
 struct LineEnd {
@@ -101,8 +104,9 @@ struct LineEnd {
 /// haptics agree. Arc lengths and positions in world units. Immutable; any thread; reading does not allocate.
 class CATENA_EXPORT Curve {
  public:
-  /// Creates a curve from at least two knots with increasing s; `closed`: the last knot repeats the position of the first.
-  Curve(std::vector<Knot> knots, bool closed, LineEnd first_end, LineEnd last_end, double domain_length);
+  /// Creates a curve from at least two knots with increasing s; `closed`: the last knot repeats the position of the first. `times`: empty,
+  /// or one per knot.
+  Curve(std::vector<Knot> knots, bool closed, LineEnd first_end, LineEnd last_end, double domain_length, std::vector<double> times = {});
 
   /// All knots, s increasing.
   const std::vector<Knot>& knots() const { return knots_; }
@@ -113,6 +117,10 @@ class CATENA_EXPORT Curve {
   const LineEnd& first_end() const { return first_end_; }
   /// End of the line at the largest s.
   const LineEnd& last_end() const { return last_end_; }
+  /// Times of the knots: when the particle of a path line is there, or when that of a streak line was released; empty: a streamline.
+  const std::vector<double>& times() const { return times_; }
+  /// Time at s, linear between the knots; s clamped to the ends. Not for a streamline.
+  double time(double s) const noexcept;
   /// L of the field in which the line was traced, world units.
   double domain_length() const { return domain_length_; }
 
@@ -127,6 +135,7 @@ class CATENA_EXPORT Curve {
   bool closed_;
   LineEnd first_end_, last_end_;
   double domain_length_;
+  std::vector<double> times_;
 };
 /// Shared, immutable curve.
 using CurvePtr = std::shared_ptr<const Curve>;

@@ -36,6 +36,21 @@ double first_passage(double c0, double c1, double c2, double c3, double face, do
 
 }  // namespace
 
+bool find_exit_of_box(const Hermite& piece, const Vec3& lower, const Vec3& upper, CellExit& exit) {
+  exit.theta = 2;
+  // the piece is within the hull of its Bezier points
+  const Vec3 b1 = piece.c0 + piece.c1 / 3.0, b2 = b1 + (piece.c1 + piece.c2) / 3.0, b3 = piece.c0 + piece.c1 + piece.c2 + piece.c3;
+  const Vec3 lo = glm::min(glm::min(piece.c0, b1), glm::min(b2, b3)), hi = glm::max(glm::max(piece.c0, b1), glm::max(b2, b3));
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = -1; side <= 1; side += 2) {
+      const double face = side < 0 ? lower[axis] : upper[axis];
+      if (side < 0 ? lo[axis] >= face : hi[axis] <= face) continue;
+      const double theta = first_passage(piece.c0[axis], piece.c1[axis], piece.c2[axis], piece.c3[axis], face, side);
+      if (theta < exit.theta) exit = {theta, axis, face, side};
+    }
+  return exit.theta <= 1;
+}
+
 CellFlowSource::CellFlowSource(const Flow& flow, field::Cursor* cursor)
     : flow_(flow),
       grid_(flow.field->grid()),
@@ -136,42 +151,13 @@ StopReason CellFlowSource::seed_tangent_at(const Vec3& position, Vec3& u) {
     w = mapping_.index_from_world_linear * u;
     return stop;
   }
-  const auto& c = polynomial_;
-  const Vec3 v = cubic_ ? sign_ * field::cubic_vector_within(samples_, f)
-                        : (c[0] + f.x * c[1]) + f.y * (c[2] + f.x * c[3]) + f.z * ((c[4] + f.x * c[5]) + f.y * (c[6] + f.x * c[7]));
-  const StopReason stop = unit_direction(v, flow_.min_speed, u);
+  const StopReason stop = unit_direction(velocity(q), flow_.min_speed, u);
   w = mapping_.index_from_world_linear * u;
   return stop;
 }
 
 CellAdvance CellFlowSource::advance_cell(Vec3& q, const Vec3& w) {
-  CellAdvance result = CellAdvance::here;
-  for (int crossings = 0; crossings < 6; ++crossings) {
-    int axis = 0, side = 0;
-    for (; axis < 3; ++axis) {
-      side =
-          q[axis] < lo_[axis] || (q[axis] == lo_[axis] && w[axis] < 0) ? -1 : q[axis] > hi_[axis] || (q[axis] == hi_[axis] && w[axis] > 0);
-      if (side != 0) break;
-    }
-    if (axis == 3) return result;
-    if (!cross_face({0, axis, 0, side})) {
-      q[axis] = side < 0 ? lo_[axis] : hi_[axis];
-      return CellAdvance::boundary;
-    }
-    result = CellAdvance::moved;
-  }
-  return result;
-}
-
-bool CellFlowSource::find_exit(const Hermite& piece, CellExit& exit) const {
-  exit.theta = 2;
-  for (int axis = 0; axis < 3; ++axis)
-    for (int side = -1; side <= 1; side += 2) {
-      const double face = side < 0 ? lo_[axis] : hi_[axis];
-      const double theta = first_passage(piece.c0[axis], piece.c1[axis], piece.c2[axis], piece.c3[axis], face, side);
-      if (theta < exit.theta) exit = {theta, axis, face, side};
-    }
-  return exit.theta <= 1;
+  return advance_through_faces(q, w, lo_, hi_, [&](const CellExit& exit) { return cross_face(exit); });
 }
 
 bool CellFlowSource::cross_face(const CellExit& exit) {

@@ -66,6 +66,32 @@ class FormulaFlowSource {
   SampleStatus outside_status_ = SampleStatus::ok;
 };
 
+/// Finds the first point where a Hermite piece leaves the box from `lower` to `upper`. Returns false when it stays inside.
+bool find_exit_of_box(const Hermite& piece, const Vec3& lower, const Vec3& upper, CellExit& exit);
+
+/// Moves to the cells that the motion w enters while q lies on (or beyond) a face of the current cell, whose faces are `lower` and `upper`.
+/// `cross` enters the neighbor behind an exit, which changes these faces, or returns false. At the boundary q is put onto the face.
+template <class Cross>
+CellAdvance advance_through_faces(Vec3& q, const Vec3& w, const Vec3& lower, const Vec3& upper, Cross&& cross) {
+  CellAdvance result = CellAdvance::here;
+  for (int crossings = 0; crossings < 6; ++crossings) {
+    int axis = 0, side = 0;
+    for (; axis < 3; ++axis) {
+      side = q[axis] < lower[axis] || (q[axis] == lower[axis] && w[axis] < 0)
+                 ? -1
+                 : q[axis] > upper[axis] || (q[axis] == upper[axis] && w[axis] > 0);
+      if (side != 0) break;
+    }
+    if (axis == 3) return result;
+    if (!cross(CellExit{0, axis, 0, side})) {
+      q[axis] = side < 0 ? lower[axis] : upper[axis];
+      return CellAdvance::boundary;
+    }
+    result = CellAdvance::moved;
+  }
+  return result;
+}
+
 /// A sampled field: within a cell every stage uses the polynomial of that cell (line fields: its dyads), extrapolated as far as a stage
 /// reaches. Index coordinates are relative to the grid's first voxel where indices are far from 0, so that they stay exact.
 class CellFlowSource {
@@ -80,10 +106,20 @@ class CellFlowSource {
   /// Rounding error of world(q) where the position is so far from the origin that it exceeds about 1e-13 L; else 0.
   glm::vec3 rounding_error(const Vec3& q) const;
   StopReason rate(const Vec3& q, Vec3& w, Vec3& u) const;
+  /// Vector of the current cell at q, world axes, with the sign of start(); not for line fields.
+  Vec3 velocity(const Vec3& q) const {
+    const Vec3 f = q - lo_;
+    if (cubic_) return sign_ * field::cubic_vector_within(samples_, f);
+    const auto& c = polynomial_;
+    return (c[0] + f.x * c[1]) + f.y * (c[2] + f.x * c[3]) + f.z * ((c[4] + f.x * c[5]) + f.y * (c[6] + f.x * c[7]));
+  }
+  const Vec3& lower_faces() const { return lo_; }             ///< Lower faces of the current cell, index coordinates.
+  const Vec3& upper_faces() const { return hi_; }             ///< Upper faces of the current cell, index coordinates.
+  const field::Mapping& mapping() const { return mapping_; }  ///< Mapping of the index coordinates.
   /// Moves to neighboring cells while q lies on (or beyond) a face and w points outward. At the boundary q is put onto the face.
   CellAdvance advance_cell(Vec3& q, const Vec3& w);
   /// Finds the first point where `piece` leaves the current cell. Returns false when it stays inside.
-  bool find_exit(const Hermite& piece, CellExit& exit) const;
+  bool find_exit(const Hermite& piece, CellExit& exit) const { return find_exit_of_box(piece, lo_, hi_, exit); }
   /// Enters the neighboring cell behind a face. Returns false when there is none or it is not valid.
   bool cross_face(const CellExit& exit);
   void set_reference(const Vec3& motion) { reference_ = motion; }
@@ -114,21 +150,24 @@ class CellFlowSource {
   double max_step_ = 0;
 };
 
+/// Position in a state of land_on_face(), which has an overload for each type of state.
+inline const Vec3& position_of(const Vec3& q) { return q; }
+
 /// Shortens a step of length h from q (rate w there) that leaves the cell through `exit`, so that it ends on the face: repeats true steps
-/// until |q - face| <= 1e-14 L. `rate` is that of the cell; `domain` is L. Returns false when a stage stopped; `step.stop` holds the
+/// until |q - face| <= `accuracy` L. `rate` is that of the cell; `domain` is L. Returns false when a stage stopped; `step.stop` holds the
 /// reason.
-template <class Medium, class Rate>
-bool land_on_face(const Medium& medium, const Tableau& tableau, const Vec3& q, const Vec3& w, const CellExit& exit, double domain,
-                  Rate&& rate, double& h, Step& step) {
+template <class Medium, class State, class Rate>
+bool land_on_face(const Medium& medium, const Tableau& tableau, const State& q, const State& w, const CellExit& exit, double domain,
+                  Rate&& rate, double& h, StepOf<State>& step, double accuracy = 1e-14) {
   double lo = 0, hi = h, at = exit.theta * h;
   const double unit = norm(medium.world_difference(Vec3(exit.axis == 0, exit.axis == 1, exit.axis == 2)));
   for (int i = 0; i < 12; ++i) {
     step = runge_kutta_step(tableau, q, w, at, true, rate);
     if (step.stop != StopReason::none) return false;
-    const double miss = exit.side * (q[exit.axis] + step.displacement[exit.axis] - exit.face);
-    if (std::fabs(miss) * unit <= 1e-14 * domain) break;
+    const double miss = exit.side * (position_of(q)[exit.axis] + position_of(step.displacement)[exit.axis] - exit.face);
+    if (std::fabs(miss) * unit <= accuracy * domain) break;
     (miss < 0 ? lo : hi) = at;
-    const double next = at - miss / (exit.side * step.end_rate[exit.axis]);
+    const double next = at - miss / (exit.side * position_of(step.end_rate)[exit.axis]);
     if (!(hi - lo > 1e-16 * h)) break;
     at = next > lo && next < hi ? next : 0.5 * (lo + hi);
   }

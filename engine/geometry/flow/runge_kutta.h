@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// One explicit Runge-Kutta step of q' = rate(q), for any space (world or index coordinates) and any tableau.
+/// One explicit Runge-Kutta step of q' = rate(q), for any space (world or index coordinates, or a state with further components, such as
+/// the time) and any tableau.
 /// Bitwise reversible: only products (h a) k are formed, so that h -> -h and k -> -k give the same sums.
 /// Any thread; no allocation, lock or throw.
 #pragma once
@@ -18,6 +19,9 @@ struct Tableau {
   double b[6] = {};
   double e[6] = {};
   double e_last = 0;
+  /// dp54: weights of the stages, the last one that of the end, in the term by which the continuous extension of order 4 (Hairer, Norsett
+  /// and Wanner 1993) differs from the cubic Hermite: theta^2 (1 - theta)^2 h sum of d_i k_i.
+  double d[7] = {};
 };
 
 namespace tableaus {
@@ -44,7 +48,9 @@ inline constexpr Tableau dp54{5,
                                {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656}},
                               {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84},
                               {71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525},
-                              -1.0 / 40};
+                              -1.0 / 40,
+                              {-12715105075.0 / 11282082432, 0, 87487479700.0 / 32700410799, -10690763975.0 / 1880347072,
+                               701980252875.0 / 199316789632, -1453857185.0 / 822651844, 69997945.0 / 29380423}};
 
 }  // namespace tableaus
 
@@ -68,24 +74,28 @@ inline const Tableau& tableau_of(Method method) {
   return tableaus::rkf34;
 }
 
-/// Result of runge_kutta_step().
-struct Step {
-  Vec3 displacement{0.0};
-  Vec3 end_rate{0.0};  ///< Rate at the end of the step, if requested.
-  Vec3 error{0.0};     ///< Error estimate of the embedded pair.
+/// Result of runge_kutta_step(). `State` is a vector space with +, += and multiplication by a number.
+template <class State>
+struct StepOf {
+  State displacement{};
+  State end_rate{};  ///< Rate at the end of the step, if requested.
+  State error{};     ///< Error estimate of the embedded pair.
+  State bend{};      ///< h sum of d_i k_i (Tableau), if requested.
   StopReason stop = StopReason::none;
   int evaluations = 0;
 };
+using Step = StepOf<Vec3>;  ///< Step of a position.
 
 /// Takes one step of size h from q. `rate(q, out)` returns a StopReason; `first` is the rate at q; `want_last` requests the rate at the end
-/// and, for embedded pairs, the error. If a stage stops, `stop` is set and the displacement is meaningless.
-template <class Rate>
-Step runge_kutta_step(const Tableau& tableau, const Vec3& q, const Vec3& first, double h, bool want_last, Rate&& rate) noexcept {
-  Step step;
-  Vec3 k[6];
+/// and, for embedded pairs, the error; `kBend` requests the term of the continuous extension. If a stage stops, `stop` is set and the
+/// displacement is meaningless.
+template <bool kBend = false, class State, class Rate>
+StepOf<State> runge_kutta_step(const Tableau& tableau, const State& q, const State& first, double h, bool want_last, Rate&& rate) noexcept {
+  StepOf<State> step;
+  State k[6];
   k[0] = first;
   for (int i = 1; i < tableau.stages; ++i) {
-    Vec3 d = (h * tableau.a[i][0]) * k[0];
+    State d = (h * tableau.a[i][0]) * k[0];
     for (int j = 1; j < i; ++j) d += (h * tableau.a[i][j]) * k[j];
     ++step.evaluations;
     step.stop = rate(q + d, k[i]);
@@ -100,6 +110,10 @@ Step runge_kutta_step(const Tableau& tableau, const Vec3& q, const Vec3& first, 
   step.error = (h * tableau.e[0]) * k[0];
   for (int i = 1; i < tableau.stages; ++i) step.error += (h * tableau.e[i]) * k[i];
   step.error += (h * tableau.e_last) * step.end_rate;
+  if constexpr (kBend) {
+    step.bend = (h * tableau.d[6]) * step.end_rate;
+    for (int i = 0; i < tableau.stages; ++i) step.bend += (h * tableau.d[i]) * k[i];
+  }
   return step;
 }
 

@@ -36,16 +36,6 @@ std::vector<Vec3> spline_slopes(const std::vector<Vec3>& p, const std::vector<do
   return m;
 }
 
-/// Returns the arc length of a Hermite piece, by the five-point Gauss-Legendre rule.
-double length_of(const Hermite& piece) {
-  constexpr double abscissae[] = {0.0, 0.5384693101056831, 0.9061798459386640};
-  constexpr double weights[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
-  double sum = weights[0] * norm(piece.derivative(0.5));
-  for (int i = 1; i < 3; ++i)
-    sum += weights[i] * (norm(piece.derivative(0.5 - 0.5 * abscissae[i])) + norm(piece.derivative(0.5 + 0.5 * abscissae[i])));
-  return 0.5 * sum;
-}
-
 }  // namespace
 
 std::vector<Vec3> fair_points(const std::vector<Vec3>& points, bool closed, int half_window) {
@@ -89,7 +79,7 @@ CurvePtr spline_through(const std::vector<Vec3>& points, bool closed, const Line
   for (int pass = 0; pass < 2; ++pass) {
     for (std::size_t k = 0; k < pieces; ++k) {
       const std::size_t next = (k + 1) % n;
-      h[k] = length_of(Hermite(points[k], points[next] - points[k], h[k], slopes[k], slopes[next]));
+      h[k] = Hermite(points[k], points[next] - points[k], h[k], slopes[k], slopes[next]).length();
     }
     slopes = spline_slopes(points, h, closed);
   }

@@ -17,19 +17,28 @@ constexpr const char* kTypeWord = std::is_same_v<T, double> ? "Float64" : "Int64
 
 }  // namespace
 
+const char* polyline_table_header(const std::vector<flow::CurvePtr>& curves) {
+  return !curves.empty() && !curves.front()->times().empty() ? kTimedPolylineTableHeader : kPolylineTableHeader;
+}
+
 void append_polyline_rows(std::string& text, std::size_t line, const flow::Curve& curve) {
-  for (const flow::Knot& knot : curve.knots()) {
+  for (std::size_t k = 0; k < curve.knots().size(); ++k) {
+    const flow::Knot& knot = curve.knots()[k];
     text += std::to_string(line);
     for (const double x : {knot.s, knot.p.x, knot.p.y, knot.p.z, knot.t.x, knot.t.y, knot.t.z}) {
       text += ',';
       append_number(text, x);
+    }
+    if (!curve.times().empty()) {
+      text += ',';
+      append_number(text, curve.times()[k]);
     }
     text += '\n';
   }
 }
 
 void write_polylines_csv(OutputFile& out, const std::vector<flow::CurvePtr>& curves, const field::VectorField&) {
-  out.write(kPolylineTableHeader);
+  out.write(polyline_table_header(curves));
   std::string rows;
   for (std::size_t line = 0; line < curves.size(); ++line) {
     rows.clear();
@@ -65,7 +74,12 @@ void write_polylines_vtp(OutputFile& out, const std::vector<flow::CurvePtr>& cur
   const std::vector<AppendedArray> point_data{
       by_knot("s", 1, 0.0, [](std::size_t, const flow::Knot& k) { return k.s; }),
       by_knot("tangent", 3, 0.0, [](std::size_t, const flow::Knot& k) { return k.t; }),
-      by_knot("velocity", 3, 0.0, [&](std::size_t, const flow::Knot& k) { return field.sample(k.p, cursor).value; }),
+      curves.empty() || curves.front()->times().empty()
+          ? by_knot("velocity", 3, 0.0, [&](std::size_t, const flow::Knot& k) { return field.sample(k.p, cursor).value; })
+          : by_knot("time", 1, 0.0,
+                    [&](std::size_t line, const flow::Knot& k) {
+                      return curves[line]->times()[static_cast<std::size_t>(&k - curves[line]->knots().data())];
+                    }),
       by_knot("line", 1, Int(0), [](std::size_t line, const flow::Knot&) { return static_cast<Int>(line); })};
   const std::vector<AppendedArray> positions{by_knot("Points", 3, 0.0, [](std::size_t, const flow::Knot& k) { return k.p; })};
   const std::vector<AppendedArray> cell_data{
@@ -83,7 +97,8 @@ void write_polylines_vtp(OutputFile& out, const std::vector<flow::CurvePtr>& cur
   VtkXmlWriter file(out, "PolyData", "",
                     fmt::format("NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"0\"",
                                 points, curves.size()));
-  file.add_section("PointData", "Scalars=\"s\" Vectors=\"velocity\"", point_data);
+  const bool is_timed = !curves.empty() && !curves.front()->times().empty();
+  file.add_section("PointData", is_timed ? "Scalars=\"s\" Vectors=\"tangent\"" : "Scalars=\"s\" Vectors=\"velocity\"", point_data);
   file.add_section("CellData", "Scalars=\"line\"", cell_data);
   file.add_section("Points", "", positions);
   file.add_section("Lines", "", cells);

@@ -30,13 +30,14 @@ import zlib as _zlib
 import numpy as _np
 
 from ._catena import (Chain, Curve, Error, Field, MachineError, STATUSES, Ticks, __version__, _from_array, _from_file, _histogram, _measure_labels,
-                      _measure_parts, _profile, _recording, _render, _study_table, _values_at, analytic, analytic_names, memory_limit, trace)
+                      _measure_parts, _profile, _recording, _render, _study_table, _values_at, analytic, analytic_names, memory_limit, trace,
+                      trace_unsteady)
 
 _FILES = "file", "firmware", "transfer", "itk", "fsl", "reference"  # keys of a scene whose words name files
 
 __all__ = ["Chain", "Curve", "Error", "Field", "MachineError", "Picture", "STATUSES", "Served", "Ticks", "analytic", "analytic_names",
            "field", "histogram", "measure_labels", "measure_parts", "memory_limit", "profile", "recording", "render", "serve", "show",
-           "study_table", "trace", "trade_report", "values_at"]
+           "study_table", "trace", "trace_unsteady", "trade_report", "values_at"]
 
 
 def field(data, *, axes="zyx", affine=None, name="field", interpolation="linear", grid="", step=0, vectors=None):

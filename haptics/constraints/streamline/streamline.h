@@ -10,6 +10,12 @@ namespace catena::haptics {
 
 ConstraintType streamline_constraint();
 
+/// Keeps the proxy on a path line (engine/geometry/flow/pathlines.h), as on a selected streamline: the curve does not change with the
+/// scene's time. The time of the particle at the proxy is the curve's; with "clock": "proxy" the scene follows it (frame thread).
+ConstraintType pathline_constraint();
+/// Reads which path line a link asks for: `seed`, `times`, `time_interpolation`.
+Result<PathlineSpec> read_pathline_spec(const json::Node& link);
+
 /// Keeps the probe in a tube about a vortex core line (the vortex tube of the haptic flow literature). The lines are traced off the tick,
 /// while the link is built (engine/geometry/flow/vortex_cores.h); `curves` of a scene render the same lines.
 ///   c: the point of all lines that is nearest to the probe x (engine/geometry/flow/curve.h), a function of x alone, so that the force

@@ -4,6 +4,7 @@
 
 #include "engine/io/field_cache.h"
 #include "engine/io/volume/load_field.h"
+#include "engine/scene/unsteady_lines.h"
 #include "tests/haptics/build/build_fixture.h"
 #include "tests/haptics/constraints/constraint_fixture.h"
 
@@ -93,6 +94,69 @@ TEST_F(GrowingTimeSeries, APatternWithoutFilesIsRefused) {
   const auto scene = scene::parse_scene("{\"fields\": {\n\"r\": {\"file\": \"none_*.vdb\"}}}", folder_ / "s.json");
   ASSERT_FALSE(scene);
   EXPECT_NE(scene.error().message.find("s.json:2: field \"r\": no file matches the pattern"), std::string::npos) << scene.error().message;
+}
+
+/// A uniform flow that turns: along x, between x and y, along y; with a step a unit of time.
+class TurningFlow : public testing::Test {
+ protected:
+  TurningFlow() {
+    constexpr int kNodes = 9;
+    const auto mapping = field::Mapping::from_linear(Mat3(0.5), Vec3(-2.0));
+    const Vec3 velocities[] = {{0.5, 0, 0}, {0.5, 0.5, 0}, {0, 0.5, 0}};
+    for (int s = 0; s < 3; ++s) {
+      std::vector<float> xyz;
+      for (int k = 0; k < kNodes * kNodes * kNodes; ++k)
+        for (int a = 0; a < 3; ++a) xyz.push_back(static_cast<float>(velocities[s][a]));
+      field::AnyField field;
+      field.vector = field::make_vector_grid("v", mapping, {kNodes, kNodes, kNodes}, xyz);
+      EXPECT_TRUE(field::write_vdb(folder_ / fmt::format("flow_{}.vdb", s), {{field, "v"}}));
+    }
+  }
+  ~TurningFlow() override { field::clear_cache(); }
+  scene::Scene read(const std::string& link) {
+    return build_tests::scene_of(
+        R"({"fields": {"v": {"file": "flow_*.vdb"}}, "chain": [{"name": "line", "field": "v", "seed": [0, 0, 0], )" + link +
+            R"(}], "coupling": {"stiffness": 300, "max_force": 8, "ramp_s": 0.02},
+                                     "workspace": {"metres_per_unit": 0.05}})",
+        folder_ / "s.json");
+  }
+  /// Forces at a still hand over 100 ticks before each step and after the last one.
+  static std::vector<Vec3> forces(scene::Scene& scene, const Vec3& probe) {
+    test::ChainDriver hand(*build_tests::program_of(scene));
+    std::vector<Vec3> forces;
+    for (int step = 0; step < 3; ++step) {
+      scene::set_step(scene, step);
+      if (step > 0) hand.replace(*build_tests::program_of(scene));
+      for (int k = 0; k < 100; ++k) {
+        hand.step(probe);
+        forces.push_back(hand.out.force_n);
+      }
+    }
+    return forces;
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(TurningFlow, AStreamlineFollowsTheTimeWithoutAStepInForce) {
+  scene::Scene scene = read(R"("type": "streamline")");
+  const std::vector<Vec3> felt = forces(scene, {0.3, 0.1, 0});
+  const double newtons = 300 * 0.05;
+  EXPECT_NEAR(norm(felt[99] - newtons * Vec3(0, -0.1, 0)), 0, 1e-9);
+  EXPECT_NEAR(norm(felt[199] - newtons * Vec3(-0.1, 0.1, 0)), 0, 1e-9);
+  EXPECT_NEAR(norm(felt[299] - newtons * Vec3(-0.3, 0, 0)), 0, 1e-9);
+  for (std::size_t k = 100; k < felt.size(); ++k) ASSERT_LE(norm(felt[k] - felt[k - 1]), 0.05 * 8 + 1e-9) << k;
+}
+
+TEST_F(TurningFlow, APathLineIsTheSameAtAllTimes) {
+  scene::Scene scene = read(R"("type": "pathline")");
+  // x = 0.5 t up to t = 1, then 0.5 (t - (t - 1)^2 / 2); y = 0.25 t^2, then 0.25 + 0.5 (t - 1)
+  const auto curve = scene::resolve_pathline(scene, "v", Vec3(0.0), {}, {});
+  ASSERT_TRUE(curve) << curve.error().message;
+  EXPECT_NEAR(norm((*curve)->knots().back().p - Vec3(0.75, 0.75, 0)), 0, 1e-12);
+  EXPECT_EQ((*curve)->times().back(), 2);
+  const std::vector<Vec3> felt = forces(scene, {0.5, 0.35, 0});
+  EXPECT_GT(norm(felt[99]), 0.5);
+  for (std::size_t k = 100; k < felt.size(); ++k) ASSERT_EQ(felt[k], felt[99]) << k;
 }
 
 }  // namespace catena::haptics::time_steps_test

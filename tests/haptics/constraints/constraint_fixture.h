@@ -70,6 +70,11 @@ struct Fields {
       if (!curve) return json::error_at(where, curve.error().message);
       return last_curve = *curve;
     };
+    c.pathline = [this](const json::Node& where, const std::string& name, const PathlineSpec& spec) -> Result<flow::CurvePtr> {
+      auto curve = flow::trace({named.at(name).vector.get(), false, 0}, spec.seed);  // the path in a steady field
+      if (!curve) return json::error_at(where, curve.error().message);
+      return last_curve = *curve;
+    };
     return c;
   }
 };

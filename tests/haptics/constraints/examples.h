@@ -122,6 +122,7 @@ inline std::map<std::string, std::vector<std::string>> examples() {
        {R"("field": "helix")", R"("field": "rankine", "radius": 0.2)", R"("field": "lamb-oseen", "search_radius": 1)", R"("field": "hill")",
         R"("field": "saddle")", R"("field": "circle_grid", "radius": 0.1)", R"("field": "noise_vectors")",
         R"("field": "broken_circle", "radius": 0.05)"}},
+      {"pathline", {R"("field": "circle", "seed": [0.5, 0, 0])", R"("field": "hill", "seed": [0.5, 0, 0], "clock": "proxy")"}},
       {"streamline",
        {R"("field": "circle", "seed": [0.5, 0, 0])", R"("field": "saddle", "seed": [0.5, 0.2, 0.1])", R"("field": "circle")",
         R"("field": "hill", "seed": [0.5, 0, 0], "follow": "online")", R"("field": "circle", "seed": [0.5, 0, 0], "method": "linear")",

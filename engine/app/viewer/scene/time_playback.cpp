@@ -2,13 +2,17 @@
 #include "engine/app/viewer/scene/time_playback.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 #include <vector>
 
+#include "engine/app/viewer/input/haptic_session.h"
 #include "engine/base/clock.h"
 #include "engine/io/field_cache.h"
 #include "engine/scene/time_steps.h"
+#include "engine/scene/unsteady_lines.h"
+#include "haptics/constraints/streamline/streamline.h"
 
 namespace catena::app {
 
@@ -45,6 +49,36 @@ Outcome TimePlayback::advance(SceneModel& host) {
   }
   field::prefetch(std::move(requests));
   return Done{};
+}
+
+Outcome TimePlayback::follow_proxy(SceneModel& host, const HapticSession& hand) {
+  if (is_playing) return Done{};
+  scene::Scene& scene = host.scene();
+  std::optional<json::Node> found;
+  scene.entities.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
+    const json::Node* clock = link.node.find("clock");
+    if (clock != nullptr && clock->string == "proxy") found = link.node;
+  });
+  if (!found) {
+    proxy_clock_.reset();
+    return Done{};
+  }
+  const auto& names = hand.link_names();
+  const auto index = static_cast<std::size_t>(std::ranges::find(names, found->find("name")->string) - names.begin());
+  const HapticState& state = hand.latest_state();
+  if (index >= names.size() || index >= static_cast<std::size_t>(state.link_count) || !state.links[index].active) return Done{};
+  if (!proxy_clock_ || !json::is_equal_value(proxy_clock_->link, *found)) {
+    CATENA_TRY(const haptics::PathlineSpec spec, haptics::read_pathline_spec(*found));
+    const scene::UnsteadyLineRequest request{scene::LineKind::path, spec.times, spec.is_cubic_in_time};
+    const auto curve = scene::resolve_pathline(scene, found->find("field")->string, spec.seed, request, *found);
+    if (!curve) return curve.error();
+    proxy_clock_.emplace(ProxyClock{*found, flow::NearestOnCurve(*curve), *curve, {}});
+    proxy_clock_->times = scene::times_of_field(scene, scene::find_field(scene, found->find("field")->string));
+    if (proxy_clock_->times.empty()) proxy_clock_->times.push_back(0);
+  }
+  const double time = proxy_clock_->curve->time(proxy_clock_->nearest->find(state.links[index].proxy).s);
+  const auto closest = std::ranges::min_element(proxy_clock_->times, {}, [&](double step) { return std::fabs(step - time); });
+  return show(host, static_cast<int>(closest - proxy_clock_->times.begin()));
 }
 
 }  // namespace catena::app

@@ -124,6 +124,9 @@ void Session::find_animated_bands() {
   world.each<scene::StreamlineSet>([&](scene::Entity e, const scene::StreamlineSet& set) {
     has_animated_bands_ = has_animated_bands_ || (set.band_length > 0 && !is_hidden(world, e));
   });
+  world.each<scene::Slice>([&](scene::Entity e, const scene::Slice& slice) {
+    has_animated_bands_ = has_animated_bands_ || (slice.flow_texture && slice.flow_texture->is_animated && !is_hidden(world, e));
+  });
 }
 
 /// Writes the poses of widgets that the probe has moved and released into the scene.
@@ -219,6 +222,7 @@ std::optional<Failure> Session::run() {
     // collect the changes since the last frame
     poll_time_steps();
     context_.state.show_error(context_.state.playback.advance(scene));
+    context_.state.show_error(context_.state.playback.follow_proxy(scene, context_.haptic_session));
     if (context_.state.appearance.measure.labels.collect()) settle_frames_ = kNewTableFrames;
     const bool opened = files_.poll_loaded();
     if (opened) {
