@@ -59,6 +59,28 @@ Outcome read_contours(Scene& scene, const json::Node& item, Slice& slice) {
   return contours_table().read_own_keys(scene, *node, *slice.contours);
 }
 
+const Table<Slice::FlowTexture>& flow_texture_table() {
+  using FlowTexture = Slice::FlowTexture;
+  static const auto table = [] {
+    Table<FlowTexture> t;
+    bind_field(t, schema::reference("field", Role::vector_field, "Vector field of the streaks.").required(), &FlowTexture::field);
+    t.bind(schema::number("length", "world", "Length of a streak.").positive().with_default("1/25 of the plane's longer edge"),
+           &FlowTexture::length);
+    t.bind(schema::number("strength", "", "Contrast of the streaks.").within(0, 1), &FlowTexture::strength);
+    t.bind(schema::boolean("animated", "The streaks move downstream."), &FlowTexture::is_animated);
+    return t;
+  }();
+  return table;
+}
+
+Outcome read_flow_texture(Scene& scene, const json::Node& item, Slice& slice) {
+  const json::Node* node = item.find("lic");
+  if (node == nullptr) return Done{};
+  CATENA_CHECK(json::expect_object(*node, "lic"));
+  slice.flow_texture.emplace().where = *node;
+  return flow_texture_table().read(scene, *node, *slice.flow_texture);
+}
+
 Outcome read_colors(Scene& scene, const json::Node& item, Slice& slice) {
   CATENA_TRY(ColorScale scale, read_color_scale(scene.path, item));
   slice.color_by.where = item;
@@ -88,6 +110,10 @@ const Table<Slice>& slice_table() {
     t.custom(schema::object("contours", contours_table().keys(), "Contour lines, with exactly one of `levels`, `count` and `spacing`."),
              read_contours, [](const Scene& scene, const Slice& slice) {
                return slice.contours ? contours_table().write(scene, *slice.contours) : std::string();
+             });
+    t.custom(schema::object("lic", flow_texture_table().keys(), "Line integral convolution: streaks along the flow in the plane."),
+             read_flow_texture, [](const Scene& scene, const Slice& slice) {
+               return slice.flow_texture ? flow_texture_table().write(scene, *slice.flow_texture) : std::string();
              });
     t.bind(schema::boolean("shade", "Lighting as on surfaces; false: the colours of the values are shown unchanged."), &Slice::lit);
     t.bind(clip_key(), &Slice::clipped);

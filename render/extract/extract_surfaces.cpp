@@ -16,6 +16,7 @@
 #include "render/extract/extract.h"
 #include "render/extract/extract_internal.h"
 #include "render/extract/legends.h"
+#include "render/extract/slice_texture.h"
 #include "render/extract/threshold.h"
 
 namespace catena::render {
@@ -191,7 +192,11 @@ Outcome extract_meshes(const scene::Scene& scene, FramePacket& packet) {
 /// vector grid too large for its magnitudes.
 Outcome prepare_slices(scene::Scene& scene) {
   for (const scene::Entity e : entities_with<scene::Slice>(scene.entities))
-    if (!is_hidden(scene.entities, e)) CATENA_CHECK(prepare_slice(scene, e));
+    if (!is_hidden(scene.entities, e)) {
+      CATENA_CHECK(prepare_slice(scene, e));
+      CATENA_CHECK(
+          prepare_slice_texture(scene, e, *scene::rendered_field(scene, scene.entities.get<scene::Slice>(e).color_by.field).get()));
+    }
   return Done{};
 }
 
@@ -248,6 +253,11 @@ Outcome extract_slices(const scene::Scene& scene, FramePacket& packet) {
       CATENA_TRY(item.contour_levels, contour_levels(*slice.contours, multiples ? range.lo : lo, multiples ? range.hi : hi));
       item.line_color = slice.contours->color;
       item.line_width = static_cast<float>(slice.contours->width);
+    }
+    if (slice.flow_texture) {
+      item.texture = slice_texture(scene, e);
+      item.texture_strength = static_cast<float>(slice.flow_texture->strength);
+      item.texture_phase = static_cast<float>(scene.animation_phase - std::floor(scene.animation_phase));
     }
     item.id = packet.add_object("slice", entity_name(scene, slice.color_by.field), slice.where.label);
     item.is_clipped = slice.clipped;

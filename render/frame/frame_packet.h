@@ -22,6 +22,9 @@ namespace catena::field {
 class PagedGrid;
 class ScalarGrid;
 }  // namespace catena::field
+namespace catena::flow {
+struct LicTexture;
+}
 
 namespace catena::render {
 
@@ -217,6 +220,9 @@ struct SliceItem {
   Threshold threshold{};                          ///< values that are drawn
   /// Finest level of the data of which `grid` is a coarser one; null: `grid` is all.
   std::shared_ptr<const field::PagedGrid> paged{};
+  std::shared_ptr<const flow::LicTexture> texture{};  ///< line integral convolution in the plane; null: none
+  float texture_strength = 0;                         ///< contrast of the texture, 0 to 1
+  float texture_phase = 0;                            ///< phase of an animated texture; only the fractional part is used
   bool operator==(const SliceItem&) const = default;
 };
 

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <numbers>
 
+#include "engine/geometry/flow/lic.h"
 #include "render/passes/passes.h"
 #include "render/raycast/camera_rays.h"
 #include "render/vk/commands.h"
@@ -18,7 +20,7 @@ constexpr std::uint32_t kSliceVertexShader[] = {
 constexpr std::uint32_t kSliceFragmentShader[] = {
 #include "spirv/slice.frag.inc"
 };
-constexpr std::uint32_t kSlice = 1, kColors = 2, kLevels = 4;
+constexpr std::uint32_t kSlice = 1, kColors = 2, kLevels = 4, kTexture = 36;
 constexpr double kDepthResolution = 4e-6;  ///< share of the distance; resolution of a float depth buffer
 constexpr int kSurfaceDepthBias =
     2;  ///< depth bias in units of kDepthResolution, before surfaces in the slice's plane, whose depths are rounded differently
@@ -53,6 +55,12 @@ Result<bool> Slice::prepare(Frame& frame, SlabCache& slabs, const SliceItem& ite
     if (levels.empty()) levels.push_back(0);
     CATENA_TRY(levels_, vk::upload_buffer(frame.device, std::as_bytes(std::span(levels)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
   }
+  if (!texture_ || item.texture != item_.texture) {
+    static_assert(sizeof(flow::LicTexture::Texel) == 8);
+    const std::vector<flow::LicTexture::Texel> none(1);
+    const auto& texels = item.texture ? item.texture->texels : none;
+    CATENA_TRY(texture_, vk::upload_buffer(frame.device, std::as_bytes(std::span(texels)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
+  }
   item_ = item;
   return true;
 }
@@ -74,7 +82,8 @@ Result<const vk::Pipeline*> SliceDrawer::pipeline(std::uint32_t flags, std::uint
     info.layout_bindings = {{0, vk::DescriptorKind::uniform},
                             {kSlice, vk::DescriptorKind::uniform},
                             {kColors, vk::DescriptorKind::buffer},
-                            {kLevels, vk::DescriptorKind::buffer}};
+                            {kLevels, vk::DescriptorKind::buffer},
+                            {kTexture, vk::DescriptorKind::buffer}};
     add_grid_layout(info.layout_bindings, 1);
     info.constants = {flags};
     set_peel_stage(info, mode, has_opaque);
@@ -109,6 +118,17 @@ Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice&
   const auto to_float = [](double value) { return float(std::clamp(value, -double(FLT_MAX), double(FLT_MAX))); };
   const Threshold ranges = item.threshold.empty() ? Threshold{{-FLT_MAX, FLT_MAX}} : item.threshold;
   data.threshold = {to_float(ranges.front()[0]), to_float(ranges.front()[1]), to_float(ranges.back()[0]), to_float(ranges.back()[1])};
+  if (item.texture) {
+    const flow::LicPlane& plane = item.texture->plane;
+    data.texture_u = rays.clip_data({plane.origin, plane.u});
+    data.texture_v = rays.clip_data({plane.origin, plane.v});
+    data.texels_per_unit = float(1 / plane.texel_size);
+    data.texture_width = std::uint32_t(plane.width);
+    data.texture_height = std::uint32_t(plane.height);
+    data.texture_strength = item.texture_strength;
+    const double angle = 2 * std::numbers::pi * double(item.texture_phase);
+    data.texture_phase = {float(std::cos(angle)), float(std::sin(angle))};
+  }
   CATENA_CHECK(vk::write_uniform(*device_, slice.slice_data_, data));
   CATENA_CHECK(vk::write_uniform(*device_, slice.layer_data_, layer_data(rays, item.opacity)));
 
@@ -117,7 +137,8 @@ Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice&
   std::vector<vk::Binding> bindings{{0, vk::DescriptorKind::uniform, &slice.frame_data_, nullptr, nullptr},
                                     {kSlice, vk::DescriptorKind::uniform, &slice.slice_data_, nullptr, nullptr},
                                     {kColors, vk::DescriptorKind::buffer, &slice.colors_, nullptr, nullptr},
-                                    {kLevels, vk::DescriptorKind::buffer, &slice.levels_, nullptr, nullptr}};
+                                    {kLevels, vk::DescriptorKind::buffer, &slice.levels_, nullptr, nullptr},
+                                    {kTexture, vk::DescriptorKind::buffer, &slice.texture_, nullptr, nullptr}};
   add_grid_bindings(bindings, {&bound, 1}, 1, linear_);
   add_peel_bindings(bindings, peel, slice.layer_data_);
   const field::Field* const domain = grid;

@@ -29,7 +29,7 @@ class Slice {
   std::shared_ptr<const field::ScalarGrid> grid_;
   std::shared_ptr<const ResidentGrid> resident_;
   BrickMap map_;
-  vk::Buffer colors_, levels_, frame_data_, slice_data_, layer_data_;
+  vk::Buffer colors_, levels_, texture_, frame_data_, slice_data_, layer_data_;
 };
 
 /// Renders slices; caches the pipelines.

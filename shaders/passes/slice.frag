@@ -14,6 +14,7 @@
 layout(scalar, binding = 1) uniform Slice { SliceData slice; };
 layout(scalar, binding = 2) readonly buffer Colors { vec4 colors[]; };  // value, r, g, b
 layout(scalar, binding = 4) readonly buffer Levels { float levels[]; };
+layout(scalar, binding = 36) readonly buffer Texels { uvec2 texels[]; };  // a, b, c, presence as 16-bit fractions (engine/geometry/flow/lic.h)
 
 // Intersection of the plane and the ray of pixel coordinate q, and its derivatives by pixel.
 struct Hit {
@@ -137,6 +138,28 @@ float contour_coverage(Hit hit, vec2 q) {
   return cover;
 }
 
+vec4 texel_at(uvec2 at) {
+  const uvec2 packed = texels[at.y * slice.texture_width + at.x];
+  return vec4(unpackSnorm2x16(packed.x), unpackSnorm2x16(packed.y));
+}
+
+float plane_distance(ClipData plane, vec2 q, float t) {
+  return plane.at + plane.at_x * q.x + plane.at_y * q.y + t * (plane.along + plane.along_x * q.x + plane.along_y * q.y);
+}
+
+// Factor on the color at depth t: 1 + strength * (2 * texture - 1), the texture interpolated between texels.
+float texture_factor(vec2 q, float t) {
+  if (slice.texture_width == 0u) return 1.0;
+  const vec2 size = vec2(slice.texture_width, slice.texture_height);
+  const vec2 place = slice.texels_per_unit * vec2(plane_distance(slice.texture_u, q, t), plane_distance(slice.texture_v, q, t));
+  const vec2 inside = clamp(place, vec2(0.0), size - 1.0001), f = fract(inside);
+  const uvec2 at = uvec2(inside);
+  const vec4 low = mix(texel_at(at), texel_at(at + uvec2(1u, 0u)), f.x), high = mix(texel_at(at + uvec2(0u, 1u)), texel_at(at + uvec2(1u)), f.x);
+  const vec4 texel = mix(low, high, f.y);
+  const float streak = clamp(texel.x + dot(texel.yz, slice.texture_phase), -0.5, 0.5);
+  return 1.0 + 2.0 * slice.texture_strength * texel.w * streak;
+}
+
 void main() {
   const vec2 q = pixel_position();
   Hit hit = intersect_plane(q);
@@ -145,7 +168,7 @@ void main() {
   float alpha = 0.0;
   if (hit.is_visible) {
     const float line = contour_coverage(hit, q);
-    vec3 surface = table_color(hit.value);
+    vec3 surface = min(texture_factor(q, hit.t) * table_color(hit.value), 1.0);
     if (slice.is_lit != 0u) surface = lit(surface, slice.normal, -normalize(world_direction(q)));
     color = mix(layer.opacity * fogged(surface, hit.t), fogged(slice.line_color, hit.t), line);
     alpha = mix(layer.opacity, 1.0, line);

@@ -34,6 +34,12 @@ struct SliceData {
   float depth_bias;
   float hidden_label;  // values within 0.5 of it are not drawn; NaN: no value is hidden
   vec4 threshold;      // only values from x to y and from z to w are drawn
+  // Texture of line integral convolution: signed distances from its first column and row, texels per world unit, size; width 0: none.
+  ClipData texture_u, texture_v;
+  float texels_per_unit;
+  uint texture_width, texture_height;
+  float texture_strength;
+  vec2 texture_phase;  // cosine and sine
 };
 
 CATENA_SHARED_END

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/geometry/flow/lic.h"
 #include "render/frame/camera.h"
 #include "tests/render/support/image_fixture.h"
 
@@ -73,6 +74,47 @@ Met meet(const Camera& camera, const SliceItem& item, double x, double y) {
     met.inside = std::min({met.inside, met.index[a] - item.grid->index_box().lo[a], item.grid->index_box().hi[a] - met.index[a]});
   met.view_depth = dot(met.world - camera.position, -camera.back);
   return met;
+}
+
+TEST_F(SliceImage, ATextureChangesColorsByItsTexels) {
+  const auto grid = wavy_grid();
+  FramePacket packet = make_packet(centre_of(*grid) + Vec3(2.5, -4, 3), centre_of(*grid));
+  packet.slices = {slice_of(grid, centre_of(*grid), {0.5, -0.6, 0.9}, {{0, 0.5, 0.5, 0.25}})};
+  SliceItem& item = packet.slices[0];
+  const Image8 plain = draw(packet);
+  // a texture of four columns: bright, dark, without a flow, bright at phase 0.5 only
+  auto texture = std::make_shared<flow::LicTexture>();
+  const Vec3 n = direction(item.normal), u = direction(cross(Vec3(0, 0, 1), n));
+  texture->plane = {item.point - 3.0 * u - 3.0 * cross(n, u), u, cross(n, u), 2, 4, 4, 0, 0};
+  constexpr std::int16_t kHalf = 16384, kOne = 32767;
+  for (int j = 0; j < 4; ++j)
+    for (const flow::LicTexture::Texel& texel :
+         {flow::LicTexture::Texel{kHalf, 0, 0, kOne}, {-kHalf, 0, 0, kOne}, {kHalf, 0, 0, 0}, {0, -kHalf, 0, kOne}})
+      texture->texels.push_back(texel);
+  item.texture = texture;
+  item.texture_strength = 0.6f;
+  const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
+  for (const float phase : {0.f, 0.5f}) {
+    item.texture_phase = phase;
+    const Image8 image = draw(packet, {}, fmt::format("texture_{:.0f}", 10 * phase));
+    const double last = phase == 0 ? 0.4 : 1.6;
+    const double factors[] = {1.6, 0.4, 1, last};
+    int seen[4] = {}, worst = 0;
+    for (std::uint32_t y = 0; y < packet.height; ++y)
+      for (std::uint32_t x = 0; x < packet.width; ++x) {
+        const std::size_t at = 4 * (std::size_t{y} * packet.width + x);
+        const Met met = meet(camera, item, x + 0.5, y + 0.5);
+        const double column = dot(met.world - texture->plane.origin, u) / 2;
+        const auto k = static_cast<int>(std::lround(column));
+        if (plain.rgba[at] == 0 || met.inside < 0.1 || k < 0 || k > 3 || std::fabs(column - k) > 0.02) continue;
+        ++seen[k];
+        for (int c = 0; c < 3; ++c)
+          worst = std::max(
+              worst, std::abs(static_cast<int>(std::lround(std::min(255.0, factors[k] * (c == 2 ? 63.75 : 127.5)))) - image.rgba[at + c]));
+      }
+    EXPECT_LE(worst, 5) << phase;  // a fiftieth of the way to the next column
+    EXPECT_GT(seen[1] + seen[2], 50);
+  }
 }
 
 TEST_F(SliceImage, EveryPixelOfAShearedGridHasItsTableColorDepthAndId) {

@@ -126,6 +126,33 @@ void draw_contours(Edits& edits, const scene::Slice& slice) {
   }
 }
 
+/// Switch, strength and motion of the streaks of a vector field; without a loaded vector field nothing.
+void draw_flow_texture(Edits& edits, const scene::Scene& scene, const scene::Slice& slice) {
+  std::vector<std::string> fields;
+  scene.entities.each<scene::FieldSource>([&](scene::Entity e, const scene::FieldSource& source) {
+    if (source.loaded.vector) fields.push_back(entity_name(scene, e));
+  });
+  if (fields.empty()) return;
+  const std::string pointer = item_pointer(slice.where) + "/lic";
+  bool on = slice.flow_texture.has_value();
+  if (ImGui::Checkbox("streaks", &on)) {
+    if (on)
+      edits.set(pointer, "{\"field\": " + scene::to_json(fields.front()) + "}", "streaks");
+    else
+      edits.remove(pointer, "streaks");
+    return;
+  }
+  show_short_tooltip("line integral convolution: streaks along a vector field in the plane");
+  if (!slice.flow_texture) return;
+  std::string chosen = entity_name(scene, slice.flow_texture->field);
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(-FLT_MIN);
+  if (choose_from_list("##streak field", fields, chosen)) edits.set(pointer + "/field", scene::to_json(chosen), "streaks");
+  edit_slider(edits, "strength", slice.flow_texture->strength, 0, 1, pointer + "/strength");
+  bool animated = slice.flow_texture->is_animated;
+  if (ImGui::Checkbox("moving", &animated)) edits.set(pointer + "/animated", animated ? "true" : "false", "streaks");
+}
+
 void draw_slices(PanelContext& context) {
   Edits& edits = context.edits;
   const scene::Scene& scene = context.scene.scene();
@@ -136,6 +163,7 @@ void draw_slices(PanelContext& context) {
     if (field != nullptr) draw_plane(edits, scene, slice, *field);
     edit_color_scale(edits, scene, slice.where, slice.color_by);
     draw_contours(edits, slice);
+    draw_flow_texture(edits, scene, slice);
     edit_simple_keys(edits, "slices", slice.where, {"axis"});
     end_item();
   });
