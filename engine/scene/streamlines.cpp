@@ -265,6 +265,12 @@ static Result<Curves> unsteady_lines(Scene& scene, const Seeds& seeds, std::vect
   const json::Node& items = json::member_or_parent(where, "seeds");
   unsteady.node_of = [&](std::size_t i) {
     const std::size_t item = request.seed_index(i);
+    if (!request.seed_table.empty()) {
+      json::Node row;
+      row.file = std::make_shared<const std::string>(request.seed_table);
+      row.line = static_cast<int>(item) + 2;  // 1-based, after the header
+      return row;
+    }
     return seeds.points.empty() || item >= items.items.size() ? items : items.items[item];
   };
   CATENA_TRY(Curves curves, trace_unsteady_lines(scene, request.field, some, unsteady, where));

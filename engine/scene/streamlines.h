@@ -48,6 +48,7 @@ struct LineRequest {
   LineKind lines = LineKind::stream;                 ///< Kind of the lines
   Entity field{};                                    ///< Path lines and streak lines: field of the scene
   std::optional<std::array<double, 2>> times{};      ///< Path lines and streak lines: as in StreamlineSet
+  std::string seed_table{};                          ///< Path lines and streak lines: table of the seeds, for errors
   bool is_cubic_in_time = false;                     ///< Path lines and streak lines: as in StreamlineSet
 
   /// Index among all seeds of the k-th seed that is traced.

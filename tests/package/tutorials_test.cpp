@@ -159,6 +159,7 @@ TEST(Tutorials, OwnConstraint) {
   follow("own-constraint", "tutorials/", true);
 }
 TEST(Tutorials, OwnExperiment) { follow("own-experiment"); }
+TEST(Tutorials, VorticesInAJet) { follow("vortices-in-a-jet"); }
 TEST(Tutorials, FromPython) {
   if (std::string(CATENA_PYTHON_FOLDER).empty()) GTEST_SKIP() << "the Python module was not built";
   follow("from-python");
@@ -172,7 +173,8 @@ TEST(Tutorials, FromOtherPrograms) {
 TEST(Tutorials, EveryPageHasATest) {
   std::set<std::string> pages;
   for (const auto& entry : fs::directory_iterator(test::source_dir() + "/docs/user/tutorials")) pages.insert(entry.path().stem());
-  EXPECT_EQ(pages, (std::set<std::string>{"first-force", "first-picture", "from-python", "own-constraint", "own-data", "own-experiment"}));
+  EXPECT_EQ(pages, (std::set<std::string>{"first-force", "first-picture", "from-python", "own-constraint", "own-data", "own-experiment",
+                                          "vortices-in-a-jet"}));
 }
 
 TEST(Tutorials, DetectsDifferentOutput) {

@@ -227,7 +227,8 @@ class Curves(unittest.TestCase):
         np.testing.assert_allclose(path.points[:, 1], 2 + path.times ** 2 / 4, atol=1e-9)
         streak = catena.trace_unsteady(steps, [0, 2], [[2, 2, 2]], lines="streak")[0][0]
         np.testing.assert_allclose(streak.points[:, 1], 3 - streak.times ** 2 / 4, atol=1e-9)
-        self.says("times[1] does not rise", lambda: catena.trace_unsteady(steps, [0, 0], [2, 2, 2]))
+        with self.assertRaisesRegex(catena.Error, "times.1. does not rise"):
+            catena.trace_unsteady(steps, [0, 0], [2, 2, 2])
 
 
 class Chains(unittest.TestCase):

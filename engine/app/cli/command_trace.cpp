@@ -233,7 +233,10 @@ Result<SeededLines> trace_unsteady(const TraceOptions& options, const json::Node
     if (times.size() > 1) request.times = std::array{times.front(), times.back()};
   }
   json::Node where = pattern;
-  if (!is_pattern(options.seeds)) where.file = std::make_shared<const std::string>(options.seeds);
+  if (!is_pattern(options.seeds)) {
+    where.file = std::make_shared<const std::string>(options.source);
+    request.seed_table = options.seeds;
+  }
   for (int n = 1; n < options.repeat; ++n) {
     scene.traced_paths.clear();
     lines.seeds.clear();
@@ -278,6 +281,10 @@ Outcome trace_lines(const TraceOptions& given) {
     return Error{options.output + ": with --shard, a file that ends in .csv was expected, which catena merge makes of the parts"};
   if (shard && options.lines == "streak")
     return Error{"--shard: streak lines may have several pieces; streamlines or path lines were expected"};
+  for (const double time : options.times)
+    if (!std::isfinite(time)) return Error{"--times: expected finite numbers"};
+  if (options.lines != "stream" && options.kind == "line")
+    return Error{"--kind line: fibres do not move particles; --lines stream was expected"};
   if (options.lines == "stream" && (!options.times.empty() || options.time_interpolation != "linear"))
     return Error{"--times and --time-interpolation: --lines path or --lines streak was expected with them"};
   CATENA_TRY(scene::Scene scene, scene_of(options));

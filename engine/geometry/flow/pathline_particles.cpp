@@ -12,12 +12,18 @@
 namespace catena::flow {
 namespace {
 
+std::size_t count_knots(std::span<const Particle> particles) {
+  std::size_t knots = 0;
+  for (const Particle& particle : particles) knots += particle.knots.size();
+  return knots;
+}
+
 /// Calls work(make_source(), next particle) for all particles, with one source per core. A particle that the interval does not concern is
 /// left as it is.
 template <class MakeSource>
 void march_all(std::span<Particle> particles, double from, double until, double sign, double length, const MoveOptions& options,
                const MakeSource& make_source) {
-  std::atomic<std::size_t> next{0};
+  std::atomic<std::size_t> next{0}, knots{count_knots(particles)};
   const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
   parallel_for(std::min(cores, particles.size()), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t worker = begin; worker < end; ++worker)
@@ -26,16 +32,18 @@ void march_all(std::span<Particle> particles, double from, double until, double 
         for (std::size_t at; (at = next.fetch_add(1, std::memory_order_relaxed)) < particles.size();) {
           Particle& particle = particles[at];
           const bool concerns = sign > 0 ? particle.time >= from && particle.time < until : particle.time <= from && particle.time > until;
-          if (concerns && !particle.end) march.march(particle, until);
+          if (!concerns || particle.end) continue;
+          if (particle.keeps_knots && knots.load(std::memory_order_relaxed) > options.max_all_knots) return;  // an error for check_knots()
+          const std::size_t before = particle.knots.size();
+          march.march(particle, until);
+          knots.fetch_add(particle.knots.size() - before, std::memory_order_relaxed);
         }
       });
   });
 }
 
 Outcome check_knots(std::span<const Particle> particles, const MoveOptions& options) {
-  std::size_t knots = 0;
-  for (const Particle& particle : particles) knots += particle.knots.size();
-  if (knots <= options.max_all_knots) return Done{};
+  if (count_knots(particles) <= options.max_all_knots) return Done{};
   return Error{fmt::format("the lines of {} seeds have more than {} points together; fewer seeds or a shorter time were expected",
                            particles.size(), options.max_all_knots)};
 }

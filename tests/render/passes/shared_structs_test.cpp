@@ -128,7 +128,9 @@ TEST(SharedStructs, SliceData) {
       {"slice.frag"}, "SliceData",
       {MEMBER(SliceData, plane), MEMBER(SliceData, normal), MEMBER(SliceData, clip_slack), MEMBER(SliceData, is_lit),
        MEMBER(SliceData, color_last), MEMBER(SliceData, level_count), MEMBER(SliceData, line_color), MEMBER(SliceData, half_width),
-       MEMBER(SliceData, depth_bias), MEMBER(SliceData, hidden_label), MEMBER(SliceData, threshold)});
+       MEMBER(SliceData, depth_bias), MEMBER(SliceData, hidden_label), MEMBER(SliceData, threshold), MEMBER(SliceData, texture_u),
+       MEMBER(SliceData, texture_v), MEMBER(SliceData, texels_per_unit), MEMBER(SliceData, texture_width),
+       MEMBER(SliceData, texture_height), MEMBER(SliceData, texture_strength), MEMBER(SliceData, texture_phase)});
 }
 
 TEST(SharedStructs, ComposeData) {
