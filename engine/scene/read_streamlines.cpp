@@ -51,7 +51,7 @@ const Table<StreamlineSet>& streamlines_table() {
            &StreamlineSet::lines);
     t.bind(schema::vector("times", 2, "time",
                           "Start and end of `path` and `streak`: release of the particle, or of the first one, and end of the lines.")
-               .with_default("all times; `streak` ends at the current one"),
+               .with_default("all times, of formulas those of `time`; `streak` ends at the current one"),
            &StreamlineSet::times);
     t.bind(schema::choice("time_interpolation", {"linear", "cubic"}, "`path` and `streak`: interpolation between time steps."),
            &StreamlineSet::is_cubic_in_time);

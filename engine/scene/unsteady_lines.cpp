@@ -136,14 +136,12 @@ Result<flow::UnsteadyField> unsteady_field(Scene& scene, Entity entity, bool is_
 /// Start and end of the lines. Error: they are not within the times of the field.
 Result<std::array<double, 2>> times_of(const Scene& scene, const flow::UnsteadyField& field, const UnsteadyLineRequest& request,
                                        const json::Node& where) {
-  if (!request.times && field.times.empty())
-    return json::error_at(where, "\"times\" is missing; [start, end] was expected, because " + field.name + " has no time steps");
   std::array<double, 2> times =
-      request.times.value_or(field.times.empty() ? std::array<double, 2>{} : std::array{field.times.front(), field.times.back()});
+      request.times.value_or(field.times.empty() ? scene.time.range : std::array{field.times.front(), field.times.back()});
   const json::Node& node = json::member_or_parent(where, "times");
   if (request.kind == LineKind::streak && !request.times && step_count(scene) > 1) {
     const auto now = current_step_time(scene);
-    times[1] = now ? now->value : field.times[std::min<std::size_t>(scene.time.step, field.times.size() - 1)];
+    times[1] = now ? now->value : static_cast<double>(scene.time.step);
   }
   if (request.times && times[0] == times[1])
     return json::error_at(node, "the start and the end of \"times\" are equal; two times were expected");

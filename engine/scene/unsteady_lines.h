@@ -19,8 +19,9 @@ std::vector<double> times_of_field(const Scene& scene, Entity field);
 
 /// Path lines or streak lines to trace.
 struct UnsteadyLineRequest {
-  LineKind kind = LineKind::path;                      ///< path or streak
-  std::optional<std::array<double, 2>> times{};        ///< Start and end; empty: all times, of streak lines up to the current one
+  LineKind kind = LineKind::path;  ///< path or streak
+  std::optional<std::array<double, 2>>
+      times{};  ///< Start and end; empty: all times (of a formula those of the scene), of streak lines up to the current one
   bool is_cubic_in_time = false;                       ///< Interpolation between steps
   double tolerance = 0;                                ///< Error of a step, relative to L; 0: 1e-11
   std::function<void(double share)> progress{};        ///< Receives the share of the work that is done

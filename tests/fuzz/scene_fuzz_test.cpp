@@ -59,9 +59,9 @@ const std::string kWidgets = R"({ "fields": {"s": {"analytic": "sphere", "resolu
               {"name": "s", "type": "seed", "position": [1, 0, 0]}, {"name": "r", "type": "rake", "from": [0.5, 0, 0], "to": [1, 0, 0], "step": 0.1},
               {"name": "l", "type": "isolevel", "field": "s", "position": [0.5, 0, 0]}, {"name": "b", "type": "box", "min": [-1, -1, -1], "max": [1, 1, 1]},
               {"name": "u", "type": "ruler", "from": [1, 0, 0], "to": [0, 1, 0], "along": ["curve", "skin"]}],
-  "slices": [{"field": "s", "widget": "cut", "contours": {"count": 3}}],
+  "slices": [{"field": "s", "widget": "cut", "contours": {"count": 3}, "lic": {"field": "v", "length": 0.5, "animated": true}}],
   "clip": [{"widget": "other", "side": "behind"}, {"widget": "b"}],
-  "streamlines": [{"field": "v", "seeds": {"widget": "s"}}, {"field": "v", "seeds": {"widget": "r", "count": 4}}],
+  "streamlines": [{"field": "v", "seeds": {"widget": "s"}, "lines": "streak", "times": [0, 2], "time_interpolation": "cubic"}, {"field": "v", "seeds": {"widget": "r", "count": 4}}],
   "isosurfaces": [{"field": "s", "level": {"widget": "l"}}],
   "glyphs": [{"field": "v", "on": {"plane": {"widget": "cut"}}}, {"field": "v", "on": {"isosurface": 0}}] })";
 

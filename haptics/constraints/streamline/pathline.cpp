@@ -12,7 +12,8 @@ namespace {
 constexpr std::array<std::string_view, 2> kClocks{"free", "proxy"}, kInterpolations{"linear", "cubic"};
 
 schema::Key pathline_times_key() {
-  return schema::vector("times", 2, "time", "Release of the particle and end of its path; the end may be first.").with_default("all times");
+  return schema::vector("times", 2, "time", "Release of the particle and end of its path; the end may be first.")
+      .with_default("all times, of formulas those of `time`");
 }
 
 Result<std::shared_ptr<const Constraint>> build_pathline(const json::Node& link, const BuildContext& context) {

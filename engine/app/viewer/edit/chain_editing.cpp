@@ -11,6 +11,7 @@
 #include "engine/field/field_display_range.h"
 #include "engine/scene/ruler.h"
 #include "engine/scene/to_json.h"
+#include "engine/scene/unsteady_lines.h"
 #include "haptics/constraints/presets/mode_presets.h"
 
 namespace catena::app {
@@ -154,6 +155,14 @@ std::string first_name(scene::Scene& scene, Role role) {
   return {};
 }
 
+/// All times of the link's field.
+std::string all_times(const scene::Scene& scene, const json::Node& link) {
+  const json::Node* name = link.find("field");
+  const scene::Entity field = name != nullptr ? scene::find_field(scene, name->string) : scene::Entity();
+  const std::vector<double> times = field ? scene::times_of_field(scene, field) : std::vector<double>();
+  return scene::to_json(times.size() > 1 ? std::array{times.front(), times.back()} : scene.time.range);
+}
+
 }  // namespace
 
 std::string default_key_value(scene::Scene& scene, const schema::Key& key, const json::Node& link, const Vec3& probe, double length) {
@@ -165,6 +174,7 @@ std::string default_key_value(scene::Scene& scene, const schema::Key& key, const
     case ValueType::number:
       return first_number(scene, key, length);
     case ValueType::vector:
+      if (key.name == "times") return all_times(scene, link);
       return first_vector(key, probe, length);
     case ValueType::choice:
       return scene::to_json(key.options.front());

@@ -69,10 +69,10 @@ std::vector<double> direct(const field::VectorField& field, const LicPlane& plan
         glm::dvec2 p = seed;
         for (int k = 1; k <= 20; ++k) {
           bool goes_on = true;
-          for (int step = 0; step < 4 && goes_on; ++step) {  // quarter texels: a finer integration than the texture's
+          for (int step = 0; step < 2 && goes_on; ++step) {  // half texels: a finer integration than the texture's
             glm::dvec2 middle(0.0);
-            goes_on = velocity(p, d) && velocity(p + 0.125 * sign * d, middle);
-            p += 0.25 * sign * middle;
+            goes_on = velocity(p, d) && velocity(p + 0.25 * sign * d, middle);
+            p += 0.5 * sign * middle;
           }
           glm::dvec2 there;
           if (!goes_on || !velocity(p, there) || glm::dot(there, d) < 0) break;
@@ -97,11 +97,11 @@ struct Case {
 };
 
 std::vector<Case> cases() {
-  LicPlane flat{Vec3(-1.0), {1, 0, 0}, {0, 1, 0}, 0.0125, 140, 110};
-  LicPlane oblique{{-0.7, -0.5, -0.4}, direction(Vec3(1, 0.3, 0.5)), {}, 0.01, 130, 100};
+  LicPlane flat{Vec3(-1.0), {1, 0, 0}, {0, 1, 0}, 0.0135, 130, 102};
+  LicPlane oblique{{-0.7, -0.5, -0.4}, direction(Vec3(1, 0.3, 0.5)), {}, 0.0105, 124, 96};
   oblique.v = direction(cross(Vec3(0.1, 0.4, 0.9), oblique.u));
   oblique.first_u = -37;
-  return {{"vortices", lambda_field([](const Vec3& p) { return Vec3(std::sin(4 * p.y), std::sin(3 * p.x + 1), p.z); }), flat},
+  return {{"vortices", 2, lambda_field([](const Vec3& p) { return Vec3(std::sin(4 * p.y), std::sin(3 * p.x + 1), p.z); }), flat},
           {"circle with a hole", 4,
            lambda_field([](const Vec3& p) { return Vec3(-p.y, p.x, 0); }, [](const Vec3& p) { return std::hypot(p.x, p.y) > 0.3; }), flat},
           {"oblique plane", 2, lambda_field([](const Vec3& p) { return Vec3(std::cos(2 * p.z), 0.4 + p.x * p.y, std::sin(2 * p.x)); }),
@@ -112,7 +112,7 @@ TEST(Lic, IsTheDirectConvolution) {
   for (const Case& c : cases())
     for (const bool animated : {false, true})
       for (const double phase : {0.0, 0.3}) {
-        if (!animated && phase > 0) continue;
+        if (animated == (phase == 0)) continue;
         const auto texture = compute_lic(*c.field, c.plane, animated);
         const std::vector<double> expected = direct(*c.field, c.plane, animated, phase);
         double squares = 0, contrast = 0;
@@ -137,18 +137,18 @@ TEST(Lic, IsTheSameInAPartOfThePlane) {
   const Case c = cases().front();
   const auto whole = compute_lic(*c.field, c.plane, false);
   LicPlane part = c.plane;
-  part.origin += 20 * part.texel_size * part.u + 10 * part.texel_size * part.v;
-  part.first_u += 20;
-  part.first_v += 10;
-  part.width -= 40;
-  part.height -= 20;
+  part.origin += 12 * part.texel_size * part.u + 7 * part.texel_size * part.v;
+  part.first_u += 12;
+  part.first_v += 7;
+  part.width -= 24;
+  part.height -= 14;
   const auto cut = compute_lic(*c.field, part, false);
   double squares = 0;
   int count = 0;
-  for (int j = 30; j < part.height - 30; ++j)
-    for (int i = 30; i < part.width - 30; ++i, ++count)
+  for (int j = 21; j < part.height - 21; ++j)
+    for (int i = 21; i < part.width - 21; ++i, ++count)
       squares += std::pow(
-          (cut->texels[std::size_t(j * part.width + i)].a - whole->texels[std::size_t((j + 10) * c.plane.width + i + 20)].a) / 32767.0, 2);
+          (cut->texels[std::size_t(j * part.width + i)].a - whole->texels[std::size_t((j + 7) * c.plane.width + i + 12)].a) / 32767.0, 2);
   EXPECT_LT(std::sqrt(squares / count), 0.03);  // the same streaks; the contrast is that of another part
 }
 
