@@ -17,7 +17,7 @@ using glm::vec2;
 constexpr int kHalf = kLicHalfLength, kTaps = 2 * kHalf + 1;
 constexpr int kReuse = 96;           // texels on either side of a seed that get values from its streamline
 constexpr int kFirstSpacing = 9;     // texels between the first seeds
-constexpr int kBlockSize = 256;      // texels
+constexpr int kBlockSize = 128;      // texels
 constexpr float kNear = 0.1f;        // distance of a streamline from a texel's center that needs no other, texels
 constexpr float kBetween = 1.1f;     // distance of two streamlines between which a texel needs no other, texels
 constexpr double kDeviations = 2.5;  // standard deviations that reach 0 and 1
@@ -168,38 +168,50 @@ struct Line {
   void trace(const Lattice& lattice, const vec2& seed, const vec2& low, const vec2& high) {
     vec2* const all = points.data();
     all[kSide] = seed;
-    last = kSide + reach(lattice, lattice.forward, all + kSide, 1, low, high);
-    first = kSide - reach(lattice, lattice.backward, all + kSide, -1, low, high);
+    // both directions in turn: the processor overlaps their steps
+    Walk forward{lattice.forward.data(), all + kSide, 1, seed}, backward{lattice.backward.data(), all + kSide, -1, seed};
+    while (forward.goes_on || backward.goes_on) {
+      if (forward.goes_on) forward.step(lattice, low, high);
+      if (backward.goes_on) backward.step(lattice, low, high);
+    }
+    last = kSide + forward.count;
+    first = kSide - backward.count;
   }
 
  private:
   static constexpr float kShort = 0.01f, kMixed = 0.8f;  // squared lengths of interpolated displacements
 
-  /// Number of points that follow the seed.
-  static std::size_t reach(const Lattice& lattice, const std::vector<vec2>& displacements, vec2* seed, int stride, const vec2& low,
-                           const vec2& high) {
-    const vec2* const data = displacements.data();
-    const int width = lattice.width, last_column = lattice.width - 2, last_row = lattice.height - 2;
-    const float right = static_cast<float>(lattice.width - 1), top = static_cast<float>(lattice.height - 1);
-    vec2 p = *seed;
-    std::size_t outside = 0;
-    for (std::size_t k = 0;; ++k) {
-      const int i = std::min(static_cast<int>(p.x), last_column), j = std::min(static_cast<int>(p.y), last_row);
+  /// One direction from the seed.
+  struct Walk {
+    const vec2* displacements;
+    vec2* seed;
+    std::ptrdiff_t stride;
+    vec2 p;
+    std::size_t count = 0, outside = 0;  // points that follow the seed; the last of them that are outside of the block
+    bool goes_on = true;
+
+    void step(const Lattice& lattice, const vec2& low, const vec2& high) {
+      const int width = lattice.width, i = std::min(static_cast<int>(p.x), width - 2),
+                j = std::min(static_cast<int>(p.y), lattice.height - 2);
       const float fx = p.x - static_cast<float>(i), fy = p.y - static_cast<float>(j);
-      const vec2* const row = data + static_cast<std::ptrdiff_t>(j) * width + i;
+      const vec2* const row = displacements + static_cast<std::ptrdiff_t>(j) * width + i;
       const vec2 below = row[0] + fx * (row[1] - row[0]), above = row[width] + fx * (row[width + 1] - row[width]);
       vec2 d = below + fy * (above - below);
       const vec2& nearest = row[(fy < 0.5f ? 0 : width) + (fx < 0.5f ? 0 : 1)];
       const float squared = d.x * d.x + d.y * d.y;
-      if ((nearest.x == 0 && nearest.y == 0) || squared < kShort) return k > 0 ? k - 1 : 0;
+      if ((nearest.x == 0 && nearest.y == 0) || squared < kShort) {
+        count -= count > 0 ? 1 : 0;  // there is no flow here
+        goes_on = false;
+        return;
+      }
       if (squared < kMixed) d /= std::sqrt(squared);  // next to texels without a flow
-      if (k == kSide || outside > static_cast<std::size_t>(kHalf)) return k;
       p += d;
-      if (!(p.x >= 0 && p.y >= 0 && p.x <= right && p.y <= top)) return k;
+      goes_on = count < kSide && outside <= static_cast<std::size_t>(kHalf) && lattice.contains(p);
+      if (!goes_on) return;
       outside = p.x < low.x || p.y < low.y || p.x > high.x || p.y > high.y ? outside + 1 : 0;
-      seed[static_cast<std::ptrdiff_t>(k + 1) * stride] = p;
+      seed[static_cast<std::ptrdiff_t>(++count) * stride] = p;
     }
-  }
+  };
 };
 
 /// Taps of the kernel, and those of its cosine and sine.
@@ -315,25 +327,24 @@ class Block {
     const std::size_t before = k > begin ? k - 1 : k, after = k < end ? k + 1 : k;
     if (before == after) return add_single(px, py, k);
     const vec2 t = (after - before == 2 ? 0.5f : 1.0f) * (points[after] - points[before]);  // nearly a unit vector
-    const int i = static_cast<int>(px + 1) - 1, j = static_cast<int>(py + 1) - 1;
     const std::size_t m = k - kHalf;
-    for (int dj = 0; dj < 2; ++dj) {
-      const float oy = static_cast<float>(j + dj) - py;
-      if (j + dj < 0 || j + dj >= height_) continue;
-      for (int di = 0; di < 2; ++di) {
-        const float ox = static_cast<float>(i + di) - px, along = ox * t.x + oy * t.y;
-        if (!(along > -0.52f && along < 0.52f) || i + di < 0 || i + di >= width_) continue;
-        const float across = t.x * oy - t.y * ox, distance = std::fabs(across);
-        Sides::Side& side = texels_.data()[(j + dj) * width_ + i + di].sides.data()[across < 0 ? 0 : 1];
-        if (distance >= side.distance) continue;
-        const std::size_t next = (along < 0 ? before : after) - kHalf;
-        const float f = std::fabs(along);
-        side.distance = distance;
-        side.a = a_.data()[m] + f * (a_.data()[next] - a_.data()[m]);
-        if (!animated_) continue;
-        side.b = b_.data()[m] + f * (b_.data()[next] - b_.data()[m]);
-        side.c = c_.data()[m] + f * (c_.data()[next] - c_.data()[m]);
-      }
+    const bool is_steep = std::fabs(t.y) > std::fabs(t.x);  // then the texels to the left and right, else above and below
+    const int i = is_steep ? static_cast<int>(px + 1) - 1 : static_cast<int>(px + 1.5f) - 1;
+    const int j = is_steep ? static_cast<int>(py + 1.5f) - 1 : static_cast<int>(py + 1) - 1;
+    for (int n = 0; n < 2; ++n) {
+      const int column = i + (is_steep ? n : 0), row = j + (is_steep ? 0 : n);
+      if (column < 0 || row < 0 || column >= width_ || row >= height_) continue;
+      const float ox = static_cast<float>(column) - px, oy = static_cast<float>(row) - py, along = ox * t.x + oy * t.y;
+      const float across = t.x * oy - t.y * ox, distance = std::fabs(across);
+      Sides::Side& side = texels_.data()[row * width_ + column].sides.data()[across < 0 ? 0 : 1];
+      if (distance >= side.distance) continue;
+      const std::size_t next = (along < 0 ? before : after) - kHalf;
+      const float f = std::min(std::fabs(along), 1.0f);
+      side.distance = distance;
+      side.a = a_.data()[m] + f * (a_.data()[next] - a_.data()[m]);
+      if (!animated_) continue;
+      side.b = b_.data()[m] + f * (b_.data()[next] - b_.data()[m]);
+      side.c = c_.data()[m] + f * (c_.data()[next] - c_.data()[m]);
     }
   }
 
