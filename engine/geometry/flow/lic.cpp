@@ -23,6 +23,9 @@ constexpr float kBetween = 1.1f;     // distance of two streamlines between whic
 constexpr double kDeviations = 2.5;  // standard deviations that reach 0 and 1
 constexpr std::size_t kSide = kReuse + kHalf, kPoints = 2 * kSide + 1;
 
+/// Nearest whole number of x >= 0.
+int nearest_texel(float x) { return (static_cast<int>(2 * x) + 1) / 2; }
+
 /// Values of all texels. Vectors are unit vectors in the plane, or (0, 0) where there is no flow.
 struct Lattice {
   int width, height;
@@ -35,7 +38,7 @@ struct Lattice {
     return p.x >= 0 && p.y >= 0 && p.x <= static_cast<float>(width - 1) && p.y <= static_cast<float>(height - 1);
   }
   bool has_flow(const vec2& p) const {
-    const vec2& d = directions.data()[at(static_cast<int>(p.x + 0.5f), static_cast<int>(p.y + 0.5f))];
+    const vec2& d = directions.data()[at(nearest_texel(p.x), nearest_texel(p.y))];
     return d.x != 0 || d.y != 0;
   }
 };
@@ -275,7 +278,7 @@ class Block {
         y_(y),
         width_(std::min(kBlockSize, lattice.width - x)),
         height_(std::min(kBlockSize, lattice.height - y)),
-        texels_(static_cast<std::size_t>(width_ * height_)) {}
+        texels_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) {}
 
   /// Computes the block's texels; `out`: values of the whole plane.
   void run(std::vector<Sides::Side>& out) {
@@ -284,14 +287,18 @@ class Block {
       for (int j = spacing / 2; j < height_; j += spacing)
         for (int i = spacing / 2; i < width_; i += spacing) {
           const vec2& v = lattice_.directions[lattice_.at(x_ + i, y_ + j)];
-          if ((v.x == 0 && v.y == 0) || texels_[static_cast<std::size_t>(j * width_ + i)].is_known()) continue;
+          if ((v.x == 0 && v.y == 0) || texels_[index(i, j)].is_known()) continue;
           add_line(vec2(static_cast<float>(x_ + i), static_cast<float>(y_ + j)));
         }
     for (int j = 0; j < height_; ++j)
-      for (int i = 0; i < width_; ++i) out[lattice_.at(x_ + i, y_ + j)] = texels_[static_cast<std::size_t>(j * width_ + i)].between();
+      for (int i = 0; i < width_; ++i) out[lattice_.at(x_ + i, y_ + j)] = texels_[index(i, j)].between();
   }
 
  private:
+  std::size_t index(int i, int j) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(i);
+  }
+
   void add_line(const vec2& seed) {
     line_.trace(lattice_, seed, vec2(static_cast<float>(x_ - 1), static_cast<float>(y_ - 1)),
                 vec2(static_cast<float>(x_ + width_), static_cast<float>(y_ + height_)));
@@ -351,7 +358,7 @@ class Block {
   /// Gives the value of a line of one point to the seed's texel.
   void add_single(float px, float py, std::size_t k) {
     const std::size_t m = k - kHalf;
-    Sides::Side& side = texels_[static_cast<std::size_t>(static_cast<int>(py + 0.5f) * width_ + static_cast<int>(px + 0.5f))].sides[0];
+    Sides::Side& side = texels_[index(nearest_texel(px), nearest_texel(py))].sides[0];
     if (side.distance > 0) side = {0, a_[m], b_[m], c_[m]};
   }
 
